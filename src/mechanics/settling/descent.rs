@@ -320,3 +320,47 @@ fn between(from: &Pose, to: &Pose) -> Twist {
         rate,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::mechanics::geometry::ring::Ring;
+    use crate::mechanics::tie::{Anchor, Tie};
+
+    /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
+    #[test]
+    fn ties_that_depend_on_each_other_are_balanced_together() {
+        let ring = Ring::new(0.15, PI).unwrap();
+        let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
+        let across = |joint: usize, stiffness_n_m: f64| Tie {
+            ends: [(joint, joint), (7 - joint, 8 - joint)].map(|(block, joint)| Anchor {
+                block: Some(block),
+                at_m: row.joints()[joint].intrados_m,
+            }),
+            stiffness_n_m,
+            prestress_n: 0.0,
+            yield_force_n: f64::INFINITY,
+            breaks_at_strain: f64::INFINITY,
+        };
+        let ties = vec![across(2, 1e6), across(1, 6e5)];
+        let row = row.with_ties(ties, 9.81).unwrap();
+        let (stance, length) = (Stance::undeformed(&row), 0.01);
+        let mut descent = Descent::new(&row);
+        let push_g = Vector2::new(0.6, -1.0);
+        let fastest = descent.balance_ties(&stance, push_g, length).unwrap();
+        assert!(fastest > 0.01, "{fastest}");
+        let lines: Vec<TieLine> = stance.lines(&row).collect();
+        for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
+            let longer_m = length * line.lengthening(descent.program.velocities());
+            let then_kg = tie.stiffness_n_m * longer_m / row.gravity_m_s2();
+            let kg = descent.ties_kg[index];
+            assert!(kg > 0.01 * row.mass_kg(), "{kg}");
+            assert!(
+                (kg - then_kg).abs() < FORCE * row.mass_kg(),
+                "{kg} {then_kg}"
+            );
+        }
+    }
+}

@@ -552,3 +552,68 @@ impl<'a> Chain<'a> {
         (&there.curvature + pins * held).cholesky().is_some()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::mechanics::geometry::ring::Ring;
+    use crate::mechanics::tie::{Anchor, Tie};
+
+    /// The curvature of the energy of weight, ties and the force in the last pin is the slope of its slopes, by central differences: on five
+    /// hinges, with ties between bodies and from one to the ground.
+    #[test]
+    fn curvatures_are_slopes_of_slopes() {
+        let ring = Ring::new(0.15, PI).unwrap();
+        let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
+        let weight_n = row.mass_kg() * 9.81;
+        let end = |block: usize| Anchor {
+            block: Some(block),
+            at_m: row.blocks()[block].centre_m,
+        };
+        let foot = Anchor {
+            block: None,
+            at_m: Vector2::new(-0.4, 0.0),
+        };
+        let tie = |ends, parts: f64| Tie {
+            ends,
+            stiffness_n_m: 4.0 * parts * weight_n,
+            prestress_n: parts * weight_n,
+            yield_force_n: f64::INFINITY,
+            breaks_at_strain: f64::INFINITY,
+        };
+        let ties = vec![
+            tie([end(1), end(6)], 0.7),
+            tie([end(2), end(5)], 0.9),
+            tie([foot, end(3)], 0.5),
+        ];
+        let row = row.with_ties(ties, 9.81).unwrap();
+        let hinges = EDGES.into_iter().cycle().zip([0, 2, 4, 6, 8]);
+        let hinges = hinges.map(|(edge, joint)| Hinge { joint, edge });
+        let pins = Pins::new(&row, hinges.collect());
+        let condition = Condition {
+            supports: [Pose::UNDEFORMED; 2],
+            force_g: Vector2::new(0.3, -1.0),
+        };
+        let before = Stance::undeformed(&row);
+        let mut chain = Chain::new(&pins, &row, &condition, &before);
+        chain.rotations_rad = vec![0.02, -0.03, 0.01, 0.04];
+        let reaction = Vector2::new(-0.2, 0.5);
+        let told = chain.unbalanced(reaction).curvature;
+        let step = 1e-5;
+        for body in 0..4 {
+            let mut slopes_at = |by: f64| {
+                let own = chain.rotations_rad[body];
+                chain.rotations_rad[body] = own + by;
+                let slopes = chain.unbalanced(reaction).slopes;
+                chain.rotations_rad[body] = own;
+                slopes
+            };
+            let due = (slopes_at(step) - slopes_at(-step)) / (2.0 * step);
+            // Squares of the step, and rounding over it.
+            let off = (told.column(body) - due).amax();
+            assert!(off < 1e-8 * told.amax(), "{body}: {off:e}");
+        }
+    }
+}
