@@ -1169,6 +1169,24 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
     assert!(path["stages"][0]["thrust_n"].is_null());
     let rows = Table::read(folder.path().join("results/arch/spread.csv"));
     assert_eq!(rows.numbers("movement_m").len(), 3 * 21);
+    // Where it is about to fall any push moves it, and `limit` tells no less than none.
+    let brink_m = path["falls_at_m"].as_f64().unwrap() * (1.0 - 1e-13);
+    let moved = format!("supports={{right={{spread_m={brink_m:?}}}}}");
+    let limit = [
+        "limit",
+        "arch.toml",
+        "--format",
+        "json",
+        "--set",
+        &moved,
+        "--set",
+        "free_hinges={}",
+    ];
+    let limit: serde_json::Value = serde_json::from_str(&printed(folder.path(), &limit)).unwrap();
+    for side in ["right", "left"] {
+        assert_eq!(path["stages"][20]["first_motion_g"][side], 0.0);
+        assert_eq!(limit["incipient_acceleration_g"][side], 0.0);
+    }
     // Five metres of radius, and the weight of the ring.
     let half = &path["stages"][10];
     let weight_n = told["weight_n"].as_f64().unwrap();
