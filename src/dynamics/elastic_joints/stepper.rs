@@ -25,7 +25,7 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 
-/// Steps from one observation of a motion to the next: a few periods of the fastest vibration, which nothing that is observed follows.
+/// Steps from one observation of a motion to the next: one to four periods of the fastest vibration, of structures that rock much slower.
 const STRIDE: u64 = 16;
 /// At rest a row may still vibrate, with energies below this fraction of the elastic energy under its own weight: by less than a
 /// third of its deflection under it ...
