@@ -70,40 +70,18 @@
 //! quoted by its equation numbers. Where a result is derived here instead, the documentation says so.
 
 #[macro_use]
-mod named;
-mod argument;
-mod bisection;
-pub mod dynamics;
-pub mod mechanics;
+extern crate archrock_motion;
+
+use archrock_motion::{argument, bisection};
+
 pub mod output;
 pub mod scenario;
 pub mod studies;
 
-/// What tests and benchmarks reach below the models of motion. It is not for users, and may change with any release.
 #[doc(hidden)]
-pub mod internals {
-    pub mod complementarity {
-        pub use crate::mechanics::complementarity::*;
-    }
-    pub mod contact {
-        pub use crate::mechanics::contact::*;
-    }
-    pub mod coulomb {
-        pub use crate::mechanics::coulomb::*;
-    }
-    pub mod hybrid {
-        pub use crate::dynamics::hybrid::*;
-    }
-    pub mod joints {
-        pub use crate::mechanics::joints::*;
-    }
-    pub mod lanes {
-        pub use crate::mechanics::lanes::*;
-    }
-    pub mod slip {
-        pub use crate::mechanics::slip::*;
-    }
-}
+pub use archrock_motion::internals;
+#[doc(inline)]
+pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
 pub use dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};

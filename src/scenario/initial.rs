@@ -11,43 +11,42 @@ use crate::mechanics::sway::Sway;
 
 const ROTATION_RAD: Number = Number(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
-impl Initial {
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        structure: Option<&Structure>,
-        hinges: Hinges,
-    ) -> Reading<Self> {
-        if hinges == Hinges::Elastic {
+/// The initial state that `[initial]` asks for, if a model with such hinges is released at all.
+pub(super) fn read(
+    table: &mut Table<'_>,
+    structure: Option<&Structure>,
+    hinges: Hinges,
+) -> Reading<Initial> {
+    if hinges == Hinges::Elastic {
+        return Err(table.wrong_itself(
+            "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
+             [initial] out",
+        ));
+    }
+    let sways = OneOf {
+        all: Sway::ALL,
+        name: Sway::name,
+    };
+    let sway = table.required("sway", &sways);
+    let rotation_rad = table.required("rotation_rad", &ROTATION_RAD);
+    if let (Some(structure), Ok(rotation_rad)) = (structure, &rotation_rad) {
+        let Some(limit_rad) = structure.release_limit_rad() else {
             return Err(table.wrong_itself(
-                "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
+                "releases from the first mechanism of four links, and this arch does not start as one; leave \
                  [initial] out",
             ));
-        }
-        let sways = OneOf {
-            all: Sway::ALL,
-            name: Sway::name,
         };
-        let sway = table.required("sway", &sways);
-        let rotation_rad = table.required("rotation_rad", &ROTATION_RAD);
-        if let (Some(structure), Ok(rotation_rad)) = (structure, &rotation_rad) {
-            let Some(limit_rad) = structure.release_limit_rad() else {
-                return Err(table.wrong_itself(
-                    "releases from the first mechanism of four links, and this arch does not start as one; leave \
-                     [initial] out",
-                ));
-            };
-            if *rotation_rad >= limit_rad {
-                let wrong = format!(
-                    "is beyond the limit position of the mechanism; must be \
-                     below {}",
-                    short(rounded_down(limit_rad))
-                );
-                return Err(table.wrong("rotation_rad", wrong));
-            }
+        if *rotation_rad >= limit_rad {
+            let wrong = format!(
+                "is beyond the limit position of the mechanism; must be \
+                 below {}",
+                short(rounded_down(limit_rad))
+            );
+            return Err(table.wrong("rotation_rad", wrong));
         }
-        Ok(Self {
-            sway: sway?,
-            rotation_rad: rotation_rad?,
-        })
     }
+    Ok(Initial {
+        sway: sway?,
+        rotation_rad: rotation_rad?,
+    })
 }

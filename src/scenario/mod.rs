@@ -330,7 +330,7 @@ impl Scenario {
             right_foot.suits(table, structure.as_ref().ok(), hinges)?;
         }
         let initial = table.table("initial", |table| {
-            Initial::read(table, structure.as_ref().ok(), hinges)
+            initial::read(table, structure.as_ref().ok(), hinges)
         });
         let map = table.table("map", |table| {
             let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());

@@ -153,7 +153,7 @@ impl<'a> OverturningSpectrum<'a> {
                 .map_err(FourLinkError::from)?;
             vec![
                 (StructureKind::Arch, model),
-                (StructureKind::Column, Box::new(column)),
+                (StructureKind::Column, column.into()),
             ]
         } else {
             vec![(StructureKind::Column, model)]

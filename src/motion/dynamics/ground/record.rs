@@ -17,11 +17,10 @@ impl GroundMotion {
     /// lines; zero after the last.
     ///
     /// ```
-    /// use archrock::GroundMotion;
-    ///
+    /// # use archrock_motion::dynamics::ground::{GroundError, GroundMotion};
     /// let ground = GroundMotion::from_samples(0.01, &[0.0, 0.8, -1.2, 0.3])?;
     /// assert_eq!(ground.peaks_m_s2(f64::INFINITY).x, 1.2);
-    /// # Ok::<(), archrock::GroundError>(())
+    /// # Ok::<(), GroundError>(())
     /// ```
     ///
     /// # Errors
@@ -70,11 +69,7 @@ impl GroundMotion {
 
     /// The same for samples that are known to be in bounds; where the acceleration jumps, two samples have the same
     /// time.
-    pub(crate) fn polylines(
-        horizontal: &[(f64, f64)],
-        vertical: &[(f64, f64)],
-        start_s: f64,
-    ) -> Self {
+    pub fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
         corners.dedup_by(|later, earlier| *later - *earlier < MIN_CORNER_SPACING_S);

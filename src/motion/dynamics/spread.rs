@@ -224,7 +224,7 @@ impl Verdict {
 }
 
 /// How a repetition contradicts a history that ended like this; `None` if it agrees.
-pub(crate) fn objection(
+pub fn objection(
     own: Outcome,
     name: &str,
     repeated: &Result<Summary, SimulationError>,
@@ -240,7 +240,7 @@ pub(crate) fn objection(
 }
 
 /// A history with what studies of many cases ask of it.
-pub(crate) struct Checked {
+pub struct Checked {
     /// The history.
     pub own: Result<Summary, SimulationError>,
     /// When it was ended, in seconds, since it cannot overturn any more and comes to rest in time; `None` where it was followed to its end.
@@ -250,7 +250,7 @@ pub(crate) struct Checked {
 }
 
 /// Histories of cases, in their order, repeated where that may matter. Those followed until they have settled count as come to rest.
-pub(crate) fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> {
+pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> {
     let mut checks = Checks::new(model, cases);
     checks.settles = until == Until::Settled;
     // If the result does not depend on how it is computed, the fast way serves.
@@ -271,7 +271,7 @@ pub(crate) fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Ch
 }
 
 /// The same where the histories themselves are known.
-pub(crate) fn repeated(
+pub fn repeated(
     model: &dyn Model,
     cases: &[Case],
     own: Vec<Result<Summary, SimulationError>>,

@@ -51,9 +51,9 @@ pub struct ElasticOptions {
 
 impl ElasticOptions {
     /// With shorter steps a run takes forever.
-    pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+    pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
     /// The most steps that a motion may have: some hours of computing.
-    pub(crate) const MOST_STEPS: f64 = 1e9;
+    pub const MOST_STEPS: f64 = 1e9;
 }
 
 /// The longest step over the longest stable one: without damping, and with the damping below. Undamped vibration that opens and
@@ -185,7 +185,7 @@ impl ElasticJoints {
     }
 
     /// The longest step where none is given, in seconds.
-    pub(crate) fn default_step_s(structure: &ElasticStructure) -> f64 {
+    pub fn default_step_s(structure: &ElasticStructure) -> f64 {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s() * frequency / DAMPED;
         let [undamped, enough] = STEP_RATIO;

@@ -13,31 +13,30 @@ use crate::mechanics::geometry::ring::Ring;
 
 /// Range of lengths in metres and of densities in kg/m3: wide enough for any arch, and no product of them leaves
 /// the range of an `f64`.
-pub(crate) const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
+pub const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
 
 /// A thinner arch is lost in rounding.
-pub(crate) const MIN_THICKNESS_RATIO: f64 = 1e-6;
+pub const MIN_THICKNESS_RATIO: f64 = 1e-6;
 
 /// An arch as thick as its diameter has no hole.
-pub(crate) const THICKNESS_RATIO_BOUND: f64 = 2.0;
+pub const THICKNESS_RATIO_BOUND: f64 = 2.0;
 
 /// Below one degree a straight thrust line fits into all but the thinnest rings, and no push moves them.
-pub(crate) const EMBRACE_DEG: RangeInclusive<f64> = 1.0..=180.0;
+pub const EMBRACE_DEG: RangeInclusive<f64> = 1.0..=180.0;
 
 /// Voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
-pub(crate) const VOUSSOIRS: RangeInclusive<usize> = 3..=200;
+pub const VOUSSOIRS: RangeInclusive<usize> = 3..=200;
 
 /// Depth where none is given.
-pub(crate) const DEPTH_M: f64 = 1.0;
+pub const DEPTH_M: f64 = 1.0;
 
 /// Density where none is given.
-pub(crate) const DENSITY_KG_M3: f64 = 2000.0;
+pub const DENSITY_KG_M3: f64 = 2000.0;
 
 /// A circular arch of constant thickness.
 ///
 /// ```
-/// use archrock::Arch;
-///
+/// # use archrock_motion::mechanics::arch::Arch;
 /// // Mean radius, thickness over mean radius, embrace angle in degrees.
 /// let arch = Arch::new(10.0, 0.15, 157.5)?.with_voussoirs(7)?;
 /// assert!((arch.incipient()?.acceleration_g - 0.370009738).abs() < 1e-9);

@@ -4,7 +4,7 @@ use std::convert::Infallible;
 
 /// The width at which bisection stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Width {
+pub enum Width {
     /// Until no number lies between its ends.
     Rounding,
     /// Until it is at most this wide, or no number lies between its ends.
@@ -27,12 +27,12 @@ impl Width {
 }
 
 /// The middle of an interval; of two neighbouring numbers, the even one.
-pub(crate) fn middle(low: f64, high: f64) -> f64 {
+pub fn middle(low: f64, high: f64) -> f64 {
     0.5 * (low + high)
 }
 
 /// The numbers about which [`bisect`] may ask in its next steps, for this many steps.
-pub(crate) fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
+pub fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
     if steps == 0 || width.is_reached(low, high) {
         return Vec::new();
     }
@@ -44,12 +44,7 @@ pub(crate) fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> V
 
 /// Halves the interval from `low`, where a property does not hold yet, to `high`, where it holds, until it is
 /// narrow enough. Returns its ends.
-pub(crate) fn bisect(
-    low: f64,
-    high: f64,
-    width: Width,
-    mut holds: impl FnMut(f64) -> bool,
-) -> (f64, f64) {
+pub fn bisect(low: f64, high: f64, width: Width, mut holds: impl FnMut(f64) -> bool) -> (f64, f64) {
     let Ok(ends) = try_bisect(low, high, width, |at| Ok::<_, Infallible>(holds(at)));
     ends
 }
@@ -58,7 +53,7 @@ pub(crate) fn bisect(
 ///
 /// # Errors
 /// Those of the property.
-pub(crate) fn try_bisect<E>(
+pub fn try_bisect<E>(
     mut low: f64,
     mut high: f64,
     width: Width,

@@ -17,7 +17,7 @@ pub struct ArgumentError {
 }
 
 /// The value, if it is in the range; NaN never is.
-pub(crate) fn within(
+pub fn within(
     argument: &'static str,
     value: f64,
     range: RangeInclusive<f64>,
@@ -37,7 +37,7 @@ pub(crate) fn within(
 }
 
 /// The value, if it is above the first bound and at most the second; NaN never is.
-pub(crate) fn above(
+pub fn above(
     argument: &'static str,
     value: f64,
     low: f64,
@@ -54,19 +54,19 @@ pub(crate) fn above(
 }
 
 /// A number as people write it, with at most six digits: 0.12, not 0.12000000000000002.
-pub(crate) fn plain(x: f64) -> String {
+pub fn plain(x: f64) -> String {
     // Six digits, in the notation that gives the fewest digits without trailing zeros.
     short(format!("{x:.5e}").parse().unwrap_or(x))
 }
 
 /// Rounded up to four significant digits, so that a bound in a message is itself allowed.
-pub(crate) fn rounded_up(x: f64) -> f64 {
+pub fn rounded_up(x: f64) -> f64 {
     let unit = whole(x, 4.0);
     (x * unit).ceil() / unit
 }
 
 /// Rounded down to six significant digits, for the same reason.
-pub(crate) fn rounded_down(x: f64) -> f64 {
+pub fn rounded_down(x: f64) -> f64 {
     let unit = whole(x, 6.0);
     (x * unit).floor() / unit
 }
@@ -77,7 +77,7 @@ fn whole(x: f64, digits: f64) -> f64 {
 }
 
 /// A bound as people write it: 1e6, not 1000000.0.
-pub(crate) fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
         format!("{x:e}")
     } else {

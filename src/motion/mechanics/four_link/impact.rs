@@ -108,7 +108,7 @@ impl ImpactLaw {
 
     /// Whether impacts are those of the model, unchanged.
     #[expect(clippy::float_cmp, reason = "the factor of the model itself")]
-    pub(crate) fn is_theory(self) -> bool {
+    pub fn is_theory(self) -> bool {
         self.restitution_factor == 1.0
     }
 }

@@ -61,21 +61,21 @@ pub struct ElasticProperties {
 
 impl ElasticProperties {
     /// Above this range explicit steps are too many, and joints as good as rigid; below it nothing stands.
-    pub(crate) const NORMAL_STIFFNESS_PA_M: RangeInclusive<f64> = 1e6..=1e14;
+    pub const NORMAL_STIFFNESS_PA_M: RangeInclusive<f64> = 1e6..=1e14;
     /// Stiffness against slip over that against penetration.
     pub(crate) const SHEAR_RATIO: RangeInclusive<f64> = 1e-2..=1e2;
     /// From soft rubber to beyond diamond, in Pa.
-    pub(crate) const MODULUS_PA: RangeInclusive<f64> = 1e5..=1e13;
+    pub const MODULUS_PA: RangeInclusive<f64> = 1e5..=1e13;
     /// Thickness of mortar, in m.
-    pub(crate) const MORTAR_M: RangeInclusive<f64> = 0.0..=1.0;
+    pub const MORTAR_M: RangeInclusive<f64> = 0.0..=1.0;
     /// Joints of stone have 0.5 to 0.8.
-    pub(crate) const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
+    pub const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
     /// Damping times, in s. One of 0.05 s is that of a very viscous base.
-    pub(crate) const DAMPING_TIME_S: RangeInclusive<f64> = 0.0..=1.0;
+    pub const DAMPING_TIME_S: RangeInclusive<f64> = 0.0..=1.0;
     /// Strengths, in Pa.
-    pub(crate) const STRENGTH_PA: RangeInclusive<f64> = 1e3..=1e12;
+    pub const STRENGTH_PA: RangeInclusive<f64> = 1e3..=1e12;
     /// Numbers of contact points. One does not hold a block.
-    pub(crate) const CONTACT_POINTS: RangeInclusive<usize> = 2..=100;
+    pub const CONTACT_POINTS: RangeInclusive<usize> = 2..=100;
 
     /// Joints of this stiffness against penetration, and 0.4 of it against slip (the shear modulus over Young's); friction 0.7, a
     /// damping time of 0.1 ms, continuous contact, no crushing; a metre wide.

@@ -2,6 +2,7 @@
 
 /// Defines an enum whose variants have names in files. A variant, its name and its documentation
 /// stay together.
+#[macro_export]
 macro_rules! named {
     (
         $(#[$attribute:meta])*

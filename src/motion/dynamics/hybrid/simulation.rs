@@ -21,6 +21,7 @@ use crate::dynamics::model::{
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
+use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::four_link::arch::FourLinkArch;
 use crate::mechanics::four_link::chain::Chain;
@@ -187,6 +188,26 @@ impl FourLinkModel for FourLinkRow {
 
     fn impulse_unit_n_s_per_m(&self) -> f64 {
         self.impulse_unit_n_s_per_m()
+    }
+}
+
+// These name the mechanisms, so that the engine is compiled for them here and not in every crate that moves one.
+
+impl From<RockingColumn> for Box<dyn MechanismModel> {
+    fn from(column: RockingColumn) -> Self {
+        Box::new(column)
+    }
+}
+
+impl From<FourLinkArch> for Box<dyn FourLinkModel> {
+    fn from(arch: FourLinkArch) -> Self {
+        Box::new(arch)
+    }
+}
+
+impl From<FourLinkRow> for Box<dyn FourLinkModel> {
+    fn from(row: FourLinkRow) -> Self {
+        Box::new(row)
     }
 }
 

@@ -14,7 +14,7 @@ use super::profile::Profile;
 use super::ring::MassMoments;
 
 /// `k x v`: `v` turned by a right angle anticlockwise.
-pub(crate) fn turned(v: Vector2<f64>) -> Vector2<f64> {
+pub fn turned(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 

@@ -49,12 +49,12 @@ pub struct RowOptions {
 
 impl RowOptions {
     /// With shorter steps a run takes forever; longer ones miss the motion.
-    pub(crate) const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+    pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
     /// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
-    pub(crate) const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
+    pub const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
 
     /// Refuses steps and coefficients that are not valid.
-    pub(crate) fn checked(self) -> Result<Self, ArgumentError> {
+    pub fn checked(self) -> Result<Self, ArgumentError> {
         for (argument, value, range) in [
             ("longest_step_s", self.longest_step_s, Self::STEP_S),
             ("shortest_step_s", self.shortest_step_s, Self::STEP_S),
@@ -201,7 +201,7 @@ impl FreeHinges {
     }
 
     /// The longest step that a history takes, in seconds.
-    pub(crate) fn longest_step_s(&self, request: &Request) -> f64 {
+    pub fn longest_step_s(&self, request: &Request) -> f64 {
         self.settings(request).longest_step_s
     }
 

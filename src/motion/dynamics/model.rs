@@ -318,7 +318,7 @@ pub struct Initial {
 
 impl Initial {
     /// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.
-    pub(crate) const MIN_ROTATION_RAD: f64 = 1e-100;
+    pub const MIN_ROTATION_RAD: f64 = 1e-100;
 }
 
 impl Default for Request {
@@ -337,16 +337,16 @@ impl Default for Request {
 
 impl Request {
     /// Accelerations of gravity.
-    pub(crate) const GRAVITY_M_S2: RangeInclusive<f64> = 1e-3..=1e3;
+    pub const GRAVITY_M_S2: RangeInclusive<f64> = 1e-3..=1e3;
     /// Lengths of a history, and intervals of its samples. At shorter times the errors of a step fall below the resolution of
     /// numbers.
-    pub(crate) const TIME_S: RangeInclusive<f64> = 1e-6..=1e6;
+    pub const TIME_S: RangeInclusive<f64> = 1e-6..=1e6;
     /// Tolerances of the integrator.
-    pub(crate) const RELATIVE_TOLERANCE: RangeInclusive<f64> = 1e-13..=1e-3;
+    pub const RELATIVE_TOLERANCE: RangeInclusive<f64> = 1e-13..=1e-3;
     /// Energies at which a structure is at rest.
-    pub(crate) const REST_ENERGY_RATIO: RangeInclusive<f64> = 1e-16..=0.1;
+    pub const REST_ENERGY_RATIO: RangeInclusive<f64> = 1e-16..=0.1;
     /// Samples that a history may have: about a gigabyte of rows.
-    pub(crate) const MOST_SAMPLES: f64 = 1e7;
+    pub const MOST_SAMPLES: f64 = 1e7;
 
     /// How many samples its history has at most: one at every output step, one at the end.
     #[must_use]
@@ -356,7 +356,7 @@ impl Request {
     }
 
     /// Refuses numbers that no simulation can work with.
-    pub(crate) fn check(&self) -> Result<(), ArgumentError> {
+    pub fn check(&self) -> Result<(), ArgumentError> {
         within("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2)?;
         within("end_s", self.end_s, Self::TIME_S)?;
         within("output_step_s", self.output_step_s, Self::TIME_S)?;
@@ -392,7 +392,7 @@ impl Request {
 }
 
 /// Why four links do not take feet that move differently.
-pub(crate) const FEET_NEED_JOINTS: &str = "between feet that move differently joints are open at every instant, and the hinges of four links all shut at once";
+pub const FEET_NEED_JOINTS: &str = "between feet that move differently joints are open at every instant, and the hinges of four links all shut at once";
 
 /// Why a motion could not be computed.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -424,7 +424,7 @@ pub enum SimulationError {
 
 impl SimulationError {
     /// An error for a reason of the model.
-    pub(crate) fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
+    pub fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
     }
 }
