@@ -4,7 +4,7 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
 use archrock::studies::run::Scales;
 use archrock::{
-    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Pulse, Request,
+    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, Model, Pulse, Request,
     RockingColumn, Sway,
 };
 
@@ -89,7 +89,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
 
 /// Dimensionless history: time, acceleration and rotation of the samples, and the instants of the impacts.
 fn dimensionless(
-    structure: &impl MechanismChain,
+    structure: &(impl MechanismChain + Model),
     p_t_p: f64,
     amplitude: f64,
 ) -> (Vec<[f64; 3]>, Vec<f64>) {

@@ -247,7 +247,7 @@ fn a_history_keeps_what_a_recorder_is_told() {
 
 /// At rest at the unstable equilibrium, every link has exactly the energy of its own barrier; samples are relative to
 /// the barrier of the link that moves.
-fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain>(chain: &C) {
+fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain + Model>(chain: &C) {
     let still = GroundMotion::still();
     let rocking = Rocking::new(chain, &still, GRAVITY, 1e-8);
     for link in (0..12).map_while(|index| chain.link(index)) {

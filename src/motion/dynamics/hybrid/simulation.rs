@@ -35,91 +35,109 @@ const MAX_TRANSITIONS: usize = 1_000_000;
 /// Error of a step of a fall, which is only drawn, relative to the state.
 const FALL_TOLERANCE: f64 = 1e-6;
 
-impl<C: MechanismChain> Model for C {
-    fn bodies(&self) -> Vec<String> {
-        let bodies = C::Mechanism::BODIES.iter();
-        bodies.map(|body| (*body).to_owned()).collect()
-    }
+/// A chain of mechanisms is a model by itself. It is said of each of them, so that the engine is compiled for them here and not in every
+/// crate that moves one.
+macro_rules! models {
+    ($($chain:ty),+) => {$(
+        impl Model for $chain {
+            fn bodies(&self) -> Vec<String> {
+                let bodies = <Self as MechanismChain>::Mechanism::BODIES.iter();
+                bodies.map(|body| (*body).to_owned()).collect()
+            }
 
-    fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
-        Some(self)
-    }
+            fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
+                Some(self)
+            }
 
-    fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        Some(self.incipient_towards_g(sway))
-    }
+            fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+                Some(self.incipient_towards_g(sway))
+            }
 
-    fn simulate(
-        &self,
-        ground: &GroundMotion,
-        request: &Request,
-        recorder: Option<&mut dyn Recorder>,
-    ) -> Result<Summary, SimulationError> {
-        let rocking = checked(self, ground, request)?;
-        let (mode, state) = match request.initial {
-            Some(initial) => (
-                rocking.released(initial.sway),
-                RockingState::new(initial.rotation_rad, 0.0, 0.0),
-            ),
-            None => (Mode::Rest, RockingState::zeros()),
-        };
-        let settings = Settings {
-            end_s: request.end_s,
-            relative_tolerance: request.relative_tolerance,
-            max_transitions: MAX_TRANSITIONS,
-        };
-        let mut tally = Tally::new(&rocking, mode, &state);
-        let mut sampler = recorder.map(|recorder| Sampler::new(request.output_step_s, recorder));
-        let finish = simulate(
-            &rocking,
-            mode,
-            state,
-            &settings,
-            &mut (&mut tally, &mut sampler),
-        )?;
-        if let Some(sampler) = &mut sampler
-            && !finish.stopped
-        {
-            // The history ends here whether the recorder breaks or not.
-            let _ = sampler.finish(&rocking, finish.mode, finish.time_s, &finish.state);
+            fn simulate(
+                &self,
+                ground: &GroundMotion,
+                request: &Request,
+                recorder: Option<&mut dyn Recorder>,
+            ) -> Result<Summary, SimulationError> {
+                history_of(self, ground, request, recorder)
+            }
         }
-        tally.note_peak(finish.mode, &finish.state);
-        tally.check_energy(&rocking, finish.mode, &finish.state);
-        if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
-            sampler.follow_fall(&rocking, finish.mode, finish.time_s, &finish.state);
-        }
-        let (outcome, outcome_time_s) = match finish.mode {
-            Mode::Overturned { sway, .. } => (
-                Outcome::Overturned(sway),
-                tally.last_outward_s.unwrap_or(finish.time_s),
-            ),
-            Mode::Rest => tally
-                .last_rest_s
-                .map_or((Outcome::NeverMoved, finish.time_s), |time_s| {
-                    (Outcome::Rest, time_s)
-                }),
-            Mode::Rocking { .. } => (Outcome::StillRocking, finish.time_s),
-        };
-        Ok(Summary {
-            outcome,
-            outcome_time_s,
-            end_s: finish.time_s,
-            impacts: tally.impacts,
-            peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
-            peak_over_critical: Some(tally.peak_over_critical),
-            peak_potential_over_barrier: None,
-            energy_defect_ratio: tally.largest_defect / rocking.barrier(),
-            thrust: sampler.map(|sampler| match outcome {
-                Outcome::Overturned(_) => sampler.thrust_before_critical,
-                _ => sampler.thrust,
-            }),
-            cost: finish.cost,
-            row: None,
-        })
-    }
+    )+};
 }
 
-impl<C: MechanismChain> MechanismModel for C {
+models!(FourLinkArch, FourLinkRow, RockingColumn);
+
+/// The history of a chain of mechanisms.
+fn history_of<C: MechanismChain + Model>(
+    chain: &C,
+    ground: &GroundMotion,
+    request: &Request,
+    recorder: Option<&mut dyn Recorder>,
+) -> Result<Summary, SimulationError> {
+    let rocking = checked(chain, ground, request)?;
+    let (mode, state) = match request.initial {
+        Some(initial) => (
+            rocking.released(initial.sway),
+            RockingState::new(initial.rotation_rad, 0.0, 0.0),
+        ),
+        None => (Mode::Rest, RockingState::zeros()),
+    };
+    let settings = Settings {
+        end_s: request.end_s,
+        relative_tolerance: request.relative_tolerance,
+        max_transitions: MAX_TRANSITIONS,
+    };
+    let mut tally = Tally::new(&rocking, mode, &state);
+    let mut sampler = recorder.map(|recorder| Sampler::new(request.output_step_s, recorder));
+    let finish = simulate(
+        &rocking,
+        mode,
+        state,
+        &settings,
+        &mut (&mut tally, &mut sampler),
+    )?;
+    if let Some(sampler) = &mut sampler
+        && !finish.stopped
+    {
+        // The history ends here whether the recorder breaks or not.
+        let _ = sampler.finish(&rocking, finish.mode, finish.time_s, &finish.state);
+    }
+    tally.note_peak(finish.mode, &finish.state);
+    tally.check_energy(&rocking, finish.mode, &finish.state);
+    if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
+        sampler.follow_fall(&rocking, finish.mode, finish.time_s, &finish.state);
+    }
+    let (outcome, outcome_time_s) = match finish.mode {
+        Mode::Overturned { sway, .. } => (
+            Outcome::Overturned(sway),
+            tally.last_outward_s.unwrap_or(finish.time_s),
+        ),
+        Mode::Rest => tally
+            .last_rest_s
+            .map_or((Outcome::NeverMoved, finish.time_s), |time_s| {
+                (Outcome::Rest, time_s)
+            }),
+        Mode::Rocking { .. } => (Outcome::StillRocking, finish.time_s),
+    };
+    Ok(Summary {
+        outcome,
+        outcome_time_s,
+        end_s: finish.time_s,
+        impacts: tally.impacts,
+        peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
+        peak_over_critical: Some(tally.peak_over_critical),
+        peak_potential_over_barrier: None,
+        energy_defect_ratio: tally.largest_defect / rocking.barrier(),
+        thrust: sampler.map(|sampler| match outcome {
+            Outcome::Overturned(_) => sampler.thrust_before_critical,
+            _ => sampler.thrust,
+        }),
+        cost: finish.cost,
+        row: None,
+    })
+}
+
+impl<C: MechanismChain + Model> MechanismModel for C {
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64> {
         self.link_from(first, impacts).map(|link| link.restitution)
     }
@@ -212,7 +230,7 @@ impl From<FourLinkRow> for Box<dyn FourLinkModel> {
 }
 
 /// The structure on its ground, if the request is valid.
-fn checked<'a, C: MechanismChain>(
+fn checked<'a, C: MechanismChain + Model>(
     chain: &'a C,
     ground: &'a GroundMotion,
     request: &Request,
