@@ -211,6 +211,13 @@ impl Program {
         finite.then_some(effort).ok_or(ContactError { iterations })
     }
 
+    /// Velocities under another load while the same corners press as in the last solution, even where they would pull.
+    pub fn solve_alike(&mut self, load: &Load) {
+        self.set_up(load);
+        self.answer.take_load(&self.factor, None);
+        self.set_velocities();
+    }
+
     /// Takes the load; returns the largest velocity.
     fn set_up(&mut self, load: &Load) -> f64 {
         let (largest_rate, momentum) = self.factor.row.load(load);

@@ -446,12 +446,6 @@ impl TieMemory<Lanes<1>> {
         Self::stretched(tie, self.yielded_m.0[0], stretch_m)
     }
 
-    /// What it would pull with then, in N, if it did not break on the way.
-    #[must_use]
-    pub fn would_pull_n(&self, tie: &Tie, stretch_m: f64) -> f64 {
-        tie.pull_n(self.yielded_m.0[0], Lanes([stretch_m])).0[0] * self.intact.0[0]
-    }
-
     /// Whether it has broken.
     #[must_use]
     pub fn is_broken(&self) -> bool {

@@ -5,11 +5,14 @@
 //! rotations ten and a hundred times as much led to the same hinges.
 //!
 //! A tie may be stiffer than any step of a descent is short. So it pulls with the force that it has at the end of a step, which is found from
-//! velocities that depend on it.
+//! velocities that depend on it. These are linear in the forces of the ties as long as the same corners press, and a step has an energy that is convex
+//! in them: Newton's method, which goes as far as that energy falls, finds the forces of all ties at once.
+//!
+//! What a tie lacks is measured as a length and not as a force, since a stiff one multiplies the last digit of its force by more than a million.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::{Condition, Pins};
+use super::{Condition, Pins, SettlingError};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{ContactError, Load, Program};
@@ -33,10 +36,25 @@ const MOST_STEPS: usize = 20_000;
 const NEAR_RAD: f64 = 1e-2;
 /// Forces of ties are found to this part of the weight.
 const FORCE: f64 = 1e-11;
-/// Trials of the force of a tie, and rounds over all ties, at most.
-const MOST_TRIALS: usize = 100;
+/// A length that is this part of what gravity alone moves a row by in a step is rounding.
+const LEVEL: f64 = 1e-14;
+/// Rounds in which the forces of all ties are found, at most.
+const MOST_ROUNDS: usize = 100;
+/// Trials of how far a round goes, at most.
+const MOST_TRIALS: usize = 60;
+/// A round goes on until the energy falls by less than this part of how it falls at the beginning.
+const FLAT: f64 = 0.1;
 /// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
 const LONGEST: f64 = 1e3;
+
+/// A step of a descent, whose forces of ties are sought.
+struct Step<'a> {
+    stance: &'a Stance,
+    /// How the ties lie when it begins.
+    lines: Vec<TieLine>,
+    force_g: Vector2<f64>,
+    length: f64,
+}
 
 /// The descent of a row, with all the memory that it needs.
 #[derive(Clone, Debug)]
@@ -73,7 +91,7 @@ impl<'a> Descent<'a> {
         from: &Condition,
         to: &Condition,
         tilt_g: f64,
-    ) -> Result<bool, ContactError> {
+    ) -> Result<bool, SettlingError> {
         let size_m = self.row.size_m();
         let force_g = to.force_g + Vector2::new(tilt_g, 0.0);
         let gravity_m_s2 = self.row.gravity_m_s2();
@@ -205,7 +223,7 @@ impl<'a> Descent<'a> {
         stance: &Stance,
         force_g: Vector2<f64>,
         longest: &mut f64,
-    ) -> Result<f64, ContactError> {
+    ) -> Result<f64, SettlingError> {
         let farthest_m = STEP * self.row.size_m();
         loop {
             let fastest = self.balance_ties(stance, force_g, *longest)?;
@@ -216,57 +234,171 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Finds what the ties pull with at the end of a step, one after the other until none changes: the energy of the step is convex in these
-    /// forces.
+    /// Finds what the ties pull with at the end of a step, and how fast the row is with that.
     fn balance_ties(
         &mut self,
         stance: &Stance,
         force_g: Vector2<f64>,
         length: f64,
-    ) -> Result<f64, ContactError> {
-        let row = self.row;
-        let lines: Vec<TieLine> = stance.lines(row).collect();
-        let least_kg = FORCE * row.mass_kg();
-        let mut fastest = 0.0;
-        for _ in 0..MOST_TRIALS {
-            let mut changed = false;
-            for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
-                let before_kg = self.ties_kg[index];
-                let mut excess_kg = |descent: &mut Self, kg: f64| -> Result<f64, ContactError> {
-                    descent.ties_kg[index] = kg;
-                    fastest = descent.solve(stance, force_g, 1.0)?;
-                    let longer_m = length * line.lengthening(descent.program.velocities());
-                    let then_n = stance.ties[index].would_pull_n(tie, line.stretch_m + longer_m);
-                    Ok(kg - then_n / row.gravity_m_s2())
-                };
-                // What it pulls with falls as it slows the blocks: so the answer is between what it pulls with now and after that.
-                let excess = excess_kg(self, before_kg)?;
-                let (mut one, mut other) = ((before_kg, excess), (before_kg - excess, 0.0));
-                if excess.abs() <= least_kg {
-                    continue;
-                }
-                changed = true;
-                other.1 = excess_kg(self, other.0)?;
-                for _ in 0..MOST_TRIALS {
-                    if other.1.abs() <= least_kg || other.0 == one.0 {
-                        break;
-                    }
-                    let next = (other.0 * one.1 - one.0 * other.1) / (one.1 - other.1);
-                    let left = excess_kg(self, next)?;
-                    // The end that stays counts half, so that both ends move.
-                    if left * other.1 < 0.0 {
-                        one = other;
-                    } else {
-                        one.1 *= 0.5;
-                    }
-                    other = (next, left);
-                }
+    ) -> Result<f64, SettlingError> {
+        let step = Step {
+            stance,
+            lines: stance.lines(self.row).collect(),
+            force_g,
+            length,
+        };
+        // Some may have broken in the step before.
+        for tie in 0..step.lines.len() {
+            let [least_kg, most_kg] = self.bounds_kg(&step, tie);
+            self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
+        }
+        let mut left = f64::INFINITY;
+        self.solve(stance, force_g, 1.0)?;
+        for _ in 0..MOST_ROUNDS {
+            let lacks_m = self.lacks_m(&step);
+            let Some(way_kg) = self.way_kg(&step, &lacks_m) else {
+                break;
+            };
+            let pairs = way_kg.iter().zip(&lacks_m);
+            let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * length);
+            left = wrong.fold(0.0, |most, (kg, _)| kg.abs().max(most)) / self.row.mass_kg();
+            if left <= FORCE {
+                return Ok(self.solve(stance, force_g, 1.0)?);
             }
-            if !changed {
+            self.go_along(&step, &way_kg, lacks_m.dot(&way_kg))?;
+        }
+        Err(SettlingError::Ties { left })
+    }
+
+    /// The forces between which a tie pulls, over gravity.
+    fn bounds_kg(&self, step: &Step<'_>, tie: usize) -> [f64; 2] {
+        if step.stance.ties[tie].is_broken() {
+            return [0.0; 2];
+        }
+        [
+            0.0,
+            self.row.ties()[tie].yield_force_n / self.row.gravity_m_s2(),
+        ]
+    }
+
+    /// After which part of this change a tie pulls with nothing, or with as much as it can.
+    fn ends_at(&self, step: &Step<'_>, tie: usize, change_kg: f64) -> f64 {
+        if change_kg == 0.0 {
+            return f64::INFINITY;
+        }
+        let end_kg = self.bounds_kg(step, tie)[usize::from(change_kg > 0.0)];
+        (end_kg - self.ties_kg[tie]) / change_kg
+    }
+
+    /// By how much longer each tie is at the end of a step than its force makes it, with the last velocities.
+    fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
+        let (row, velocities) = (self.row, self.program.velocities());
+        let lacks_m =
+            (row.ties().iter().zip(&step.lines).enumerate()).map(|(index, (tie, line))| {
+                let then_m = line.stretch_m + step.length * line.lengthening(velocities);
+                let elastic_m = self.ties_kg[index] * row.gravity_m_s2() / tie.stiffness_n_m;
+                then_m - step.stance.ties[index].yielded_m.0[0] - elastic_m
+            });
+        DVector::from_iterator(self.ties_kg.len(), lacks_m)
+    }
+
+    /// By how much the forces of ties have to change, over gravity, to lack nothing if the same corners went on pressing. Ties that pull with
+    /// all or nothing, and would go beyond, stay. `None` where that is not determined.
+    fn way_kg(&mut self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
+        let slopes = self.slopes(step);
+        let mut goes = self.may_go(step, lacks_m);
+        loop {
+            let equations = DMatrix::from_fn(goes.len(), goes.len(), |one, other| {
+                if goes[one] && goes[other] {
+                    slopes[(one, other)]
+                } else {
+                    f64::from(u8::from(one == other))
+                }
+            });
+            let sought_m =
+                lacks_m.zip_map(&goes, |lacks_m, goes| f64::from(u8::from(goes)) * lacks_m);
+            let way_kg = equations.lu().solve(&sought_m)?;
+            let still = goes.zip_map(&self.may_go(step, &way_kg), |goes, may| goes && may);
+            if still == goes {
+                return way_kg.iter().all(|kg| kg.is_finite()).then_some(way_kg);
+            }
+            goes = still;
+        }
+    }
+
+    /// Which ties can pull harder or less, as they would on this way.
+    fn may_go(&self, step: &Step<'_>, way: &DVector<f64>) -> DVector<bool> {
+        let ties = 0..way.len();
+        DVector::from_iterator(
+            way.len(),
+            ties.map(|tie| self.ends_at(step, tie, way[tie]) > 0.0),
+        )
+    }
+
+    /// By how much less each tie lacks for what each pulls more, in m/kg, while the same corners press.
+    fn slopes(&mut self, step: &Step<'_>) -> DMatrix<f64> {
+        let (row, count) = (self.row, step.lines.len());
+        let mut slopes = DMatrix::zeros(count, count);
+        let centres_m = step.stance.placement.centres_m();
+        for (pulling, line) in step.lines.iter().enumerate() {
+            self.free.fill(Twist::ZERO);
+            line.add_to(row.blocks(), centres_m, 1.0, &mut self.free);
+            self.program.solve_alike(&Load {
+                free: &self.free,
+                jumps: &self.jumps,
+                touching: &self.touching,
+            });
+            for (lacking, other) in step.lines.iter().enumerate() {
+                let slower = other.lengthening(self.program.velocities());
+                slopes[(lacking, pulling)] = -step.length * slower;
+            }
+            let tie = &row.ties()[pulling];
+            slopes[(pulling, pulling)] += row.gravity_m_s2() / tie.stiffness_n_m;
+        }
+        slopes
+    }
+
+    /// Changes the forces of ties on this way until one of them cannot go on, or until the energy of the step falls hardly more: at first it
+    /// falls by so much.
+    fn go_along(
+        &mut self,
+        step: &Step<'_>,
+        way_kg: &DVector<f64>,
+        falls: f64,
+    ) -> Result<(), ContactError> {
+        let from_kg = self.ties_kg.clone();
+        let ends = (0..from_kg.len()).map(|tie| self.ends_at(step, tie, way_kg[tie]));
+        let ends: Vec<f64> = ends.collect();
+        let whole = ends.iter().copied().fold(1.0, f64::min);
+        let (mut part, mut near, mut far) = (whole, 0.0, whole);
+        for _ in 0..MOST_TRIALS {
+            for (tie, from_kg) in from_kg.iter().enumerate() {
+                // Where it can go no further it pulls with all or nothing, to the last digit.
+                self.ties_kg[tie] = if part == ends[tie] {
+                    self.bounds_kg(step, tie)[usize::from(way_kg[tie] > 0.0)]
+                } else {
+                    from_kg + part * way_kg[tie]
+                };
+            }
+            self.solve(step.stance, step.force_g, 1.0)?;
+            let left = self.lacks_m(step).dot(way_kg);
+            if left.abs() <= FLAT * falls || (part == whole && left > 0.0) {
                 break;
             }
+            if left > 0.0 {
+                near = part;
+            } else {
+                far = part;
+            }
+            // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
+            let next = part + left / way_kg.dot(&(self.slopes(step) * way_kg));
+            part = if near < next && next < far {
+                next
+            } else {
+                0.5 * (near + far)
+            };
         }
-        Ok(fastest)
+        Ok(())
     }
 
     /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
@@ -329,23 +461,28 @@ mod tests {
     use crate::mechanics::geometry::ring::Ring;
     use crate::mechanics::tie::{Anchor, Tie};
 
-    /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
-    #[test]
-    fn ties_that_depend_on_each_other_are_balanced_together() {
+    /// A row of 8 blocks with such ties, from the joint given to the one across.
+    fn tied(ties: &[(usize, f64)]) -> Row {
         let ring = Ring::new(0.15, PI).unwrap();
         let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
-        let across = |joint: usize, stiffness_n_m: f64| Tie {
-            ends: [(joint, joint), (7 - joint, 8 - joint)].map(|(block, joint)| Anchor {
+        let across = |(joint, stiffness_n_m): &(usize, f64)| Tie {
+            ends: [(*joint, *joint), (7 - joint, 8 - joint)].map(|(block, joint)| Anchor {
                 block: Some(block),
                 at_m: row.joints()[joint].intrados_m,
             }),
-            stiffness_n_m,
+            stiffness_n_m: *stiffness_n_m,
             prestress_n: 0.0,
             yield_force_n: f64::INFINITY,
             breaks_at_strain: f64::INFINITY,
         };
-        let ties = vec![across(2, 1e6), across(1, 6e5)];
-        let row = row.with_ties(ties, 9.81).unwrap();
+        let ties = ties.iter().map(across).collect();
+        row.with_ties(ties, 9.81).unwrap()
+    }
+
+    /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
+    #[test]
+    fn ties_that_depend_on_each_other_are_balanced_together() {
+        let row = tied(&[(2, 1e6), (1, 6e5)]);
         let (stance, length) = (Stance::undeformed(&row), 0.01);
         let mut descent = Descent::new(&row);
         let push_g = Vector2::new(0.6, -1.0);
@@ -362,5 +499,32 @@ mod tests {
                 "{kg} {then_kg}"
             );
         }
+    }
+    /// Ties of millions of weights for each metre, side by side: together they hold what one of both stiffnesses holds alone. A force times
+    /// such a stiffness has no digits left.
+    #[test]
+    fn very_stiff_ties_are_balanced() {
+        let pulls_kg = |ties: &[(usize, f64)], length: f64| {
+            let row = tied(ties);
+            let mut descent = Descent::new(&row);
+            let stance = Stance::undeformed(&row);
+            descent.balance_ties(&stance, Vector2::new(0.6, -1.0), length)?;
+            Ok::<f64, SettlingError>(descent.ties_kg.iter().sum())
+        };
+        for length in [1e-3, 1.0, 1e3] {
+            let one_kg = pulls_kg(&[(2, 3e10)], length).unwrap();
+            let two_kg = pulls_kg(&[(2, 1e10), (2, 2e10)], length).unwrap();
+            let mass_kg = tied(&[]).mass_kg();
+            assert!(one_kg > 0.01 * mass_kg, "{one_kg}");
+            assert!(
+                (one_kg - two_kg).abs() < 1e-9 * mass_kg,
+                "{one_kg} {two_kg}"
+            );
+        }
+        let error = pulls_kg(&[(2, 3e10)], f64::NAN).unwrap_err().to_string();
+        assert!(
+            error.contains("what the ties pull with was not found"),
+            "{error}"
+        );
     }
 }
