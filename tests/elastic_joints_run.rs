@@ -211,6 +211,40 @@ fn a_run_tells_what_joints_bear() {
     assert!(taken_j > 0.0 && taken_j < 0.5 * number("ground_j"));
 }
 
+/// The friction that is needed is that of joints that bear more than a hundredth of the weight: as an arch rocks, others hardly press.
+#[test]
+fn friction_is_needed_where_a_joint_presses() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\
+                [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n\
+                [ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let said = printed(
+        folder.path(),
+        &["run", "s.toml", "--out", "o", "--no-spread", "--no-report"],
+    );
+    let weight_n = 0.75 * 5.0 * PI * 2000.0 * 9.81;
+    let joints = Table::read(folder.path().join("o/joints.csv"));
+    let [mut needed, mut of_all] = [0.0_f64; 2];
+    for joint in 0..=36 {
+        let normals_n = joints.numbers(&format!("normal_{joint}_n"));
+        let shears_n = joints.numbers(&format!("shear_{joint}_n"));
+        for (normal_n, shear_n) in normals_n.iter().zip(&shears_n) {
+            if *normal_n > 0.0 {
+                of_all = of_all.max(shear_n.abs() / normal_n);
+            }
+            if *normal_n > 0.01 * weight_n {
+                needed = needed.max(shear_n.abs() / normal_n);
+            }
+        }
+    }
+    let summary = json(&folder.path().join("o/summary.json"));
+    let told = summary["largest_friction_demand"].as_f64().unwrap();
+    assert!((told / needed - 1.0).abs() < 1e-9, "{told} {needed}");
+    assert!(of_all > 10.0 && needed < 2.0, "{of_all} {needed}");
+    assert!(!said.contains("more than 10"), "{said}");
+}
+
 /// The threshold of a block is that of its table, in every study; the same block with rigid joints stands up to 0.5017 g.
 #[test]
 fn studies_take_elastic_joints() {
