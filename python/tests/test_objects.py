@@ -383,12 +383,23 @@ def test_feet_springings_and_ties() -> None:
     assert np.array_equal(history.feet_apart, other.feet_apart) and np.abs(history.feet_apart).max() > 1e-3
     assert np.array_equal(history.tie_forces, other.tie_forces) and history.tie_forces[0, 0] > 2e3
     assert pickle.loads(pickle.dumps(late)) == late
+    at_once = simulate(arch, ground, right={"delay_s": 0.05}, supports=supports, point=(0.0, 4.7), **joints)
+    assert np.array_equal(history.rotations, at_once.rotations) and np.array_equal(history.poses, at_once.poses)
+    assert np.array_equal(history.feet_apart, at_once.feet_apart) and at_once.point is not None
+    assert np.array_equal(history.tie_forces, at_once.tie_forces) and history.summary == at_once.summary
+    # Springings alone, and nothing that the structure keeps for other calls.
+    settled = simulate(arch, ground, supports=supports, **joints)
+    assert np.array_equal(settled.rotations, Scenario.of(arch, ground, supports=supports, **joints).run().rotations)
+    built = simulate(arch, ground, **joints)
+    assert np.array_equal(built.rotations, Scenario.of(arch, ground, **joints).run().rotations)
+    assert not np.array_equal(built.rotations, settled.rotations)
 
     time = np.array([0.0, 0.1, 0.2])
     left, right = (Record(time, [0.0, peak, 0.0], unit="g") for peak in (0.1, 0.05))
     two = Scenario.of(arch, left, right=right, **joints)
     assert two.tables["ground"]["right"]["record"]["file"] == "right-record"
     assert np.abs(two.run().feet_apart).max() > 1e-4
+    assert np.array_equal(simulate(arch, left, right=right, **joints).rotations, two.run().rotations)
     # What the right foot does keeps its own files, whatever those of the left one are called.
     up, down = (Record(time, [0.0, peak, 0.0], unit="g") for peak in (0.02, -0.03))
     left, right = (
@@ -409,3 +420,7 @@ def test_feet_springings_and_ties() -> None:
     }
     with pytest.raises(ValueError, match="give that too"):
         Scenario.of(arch, right=right, **joints)
+    with pytest.raises(ValueError, match="give that too"):
+        simulate(arch, right=right, **joints)
+    with pytest.raises(ValueError, match="supports"):
+        simulate(arch, ground, supports=supports)

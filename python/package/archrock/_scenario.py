@@ -289,6 +289,8 @@ def simulate(
     structure: Structure,
     ground: Ground | None = None,
     *,
+    right: Record | Mapping[str, Any] | None = None,
+    supports: Mapping[str, Mapping[str, float]] | None = None,
     model: Model = "four_links",
     impact: str = "max_restitution",
     restitution: float | None = None,
@@ -322,6 +324,9 @@ def simulate(
     Args:
         structure: the structure.
         ground: the ground motion; ``None`` for a release from a rotated position.
+        right: how the ground under the right foot moves instead, as for :meth:`Scenario.of`; with joints.
+        supports: where the springings have gone before time begins, as for :meth:`Scenario.of`; with joints. With this or ``right`` the
+            structure keeps nothing from call to call.
         model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere,
             or ``"elastic_joints"``: blocks with elastic joints; these need a stiffness.
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
@@ -381,6 +386,10 @@ def simulate(
         rest_energy_ratio,
         gravity_m_s2,
     )
+    if right is not None or supports is not None:
+        settings = Settings(*key)._asdict()
+        scenario = Scenario.of(structure, ground, right=right, supports=supports, **settings)
+        return History(scenario._native.run(None, _bytes(memory_gb), point), scenario._files, None)
     try:
         base = structure._bases[key]
     except (KeyError, TypeError, AttributeError):
