@@ -200,13 +200,9 @@ pub enum SettlingError {
     Contact(#[from] ContactError),
     /// What ties pull with was not found.
     #[error(
-        "what the ties pull with was not found where the row gives way: the last trial changed a force by {left:.1e} of the weight; give \
-         them less stiffness, or other places"
+        "what the ties pull with was not found where the row gives way: give them less stiffness, or other places"
     )]
-    Ties {
-        /// By how much a force still changes, over the weight.
-        left: f64,
-    },
+    Ties,
     /// No hinges were found on which it stands.
     #[error(
         "the hinges of the row were not found where they give way, {at:.3e} of the way on: choose another way or other joints"

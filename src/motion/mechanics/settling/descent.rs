@@ -252,7 +252,6 @@ impl<'a> Descent<'a> {
             let [least_kg, most_kg] = self.bounds_kg(&step, tie);
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
-        let mut left = f64::INFINITY;
         self.solve(stance, force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
             let lacks_m = self.lacks_m(&step);
@@ -261,13 +260,13 @@ impl<'a> Descent<'a> {
             };
             let pairs = way_kg.iter().zip(&lacks_m);
             let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * length);
-            left = wrong.fold(0.0, |most, (kg, _)| kg.abs().max(most)) / self.row.mass_kg();
-            if left <= FORCE {
+            let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
+            if left_kg <= FORCE * self.row.mass_kg() {
                 return Ok(self.solve(stance, force_g, 1.0)?);
             }
             self.go_along(&step, &way_kg, lacks_m.dot(&way_kg))?;
         }
-        Err(SettlingError::Ties { left })
+        Err(SettlingError::Ties)
     }
 
     /// The forces between which a tie pulls, over gravity.
@@ -500,6 +499,7 @@ mod tests {
             );
         }
     }
+
     /// Ties of millions of weights for each metre, side by side: together they hold what one of both stiffnesses holds alone. A force times
     /// such a stiffness has no digits left.
     #[test]
