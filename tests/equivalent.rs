@@ -4,8 +4,8 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
 use archrock::studies::run::Scales;
 use archrock::{
-    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, Model, Pulse, Request,
-    RockingColumn, Sway,
+    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, MechanismModel, Model as _,
+    Pulse, Request, RockingColumn, Sway,
 };
 
 const GRAVITY_M_S2: f64 = 9.81;
@@ -89,7 +89,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
 
 /// Dimensionless history: time, acceleration and rotation of the samples, and the instants of the impacts.
 fn dimensionless(
-    structure: &(impl MechanismChain + Model),
+    structure: &(impl MechanismChain + MechanismModel),
     p_t_p: f64,
     amplitude: f64,
 ) -> (Vec<[f64; 3]>, Vec<f64>) {

@@ -14,8 +14,8 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::{
     Arch, ArgumentError, Column, Event, FourLinkArch, FourLinkError, GroundMotion, Hinge, History,
-    ImpactModel, Initial, Model, OpenHinge, Pose, Pulse, Recorder, Request, RockingColumn, Sample,
-    SimulationError, State, Sway,
+    ImpactModel, Initial, MechanismModel, Model, OpenHinge, Pose, Pulse, Recorder, Request,
+    RockingColumn, Sample, SimulationError, State, Sway,
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -247,7 +247,9 @@ fn a_history_keeps_what_a_recorder_is_told() {
 
 /// At rest at the unstable equilibrium, every link has exactly the energy of its own barrier; samples are relative to
 /// the barrier of the link that moves.
-fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain + Model>(chain: &C) {
+fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain + MechanismModel>(
+    chain: &C,
+) {
     let still = GroundMotion::still();
     let rocking = Rocking::new(chain, &still, GRAVITY, 1e-8);
     for link in (0..12).map_while(|index| chain.link(index)) {

@@ -139,10 +139,10 @@ impl Structure {
         impact: impl Into<ImpactLaw>,
     ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
+            Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
             Self::Column(column) if !column.ties().is_empty() => return Err(FourLinkError::Ties),
-            Self::Column(column) => RockingColumn::new(column, impact)?.into(),
-            Self::Arch(arch) => four_link_arch(arch, impact)?,
-            Self::Masonry(masonry) => four_link_row(masonry, impact)?,
+            Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
+            Self::Masonry(masonry) => Box::new(four_link_row(masonry, impact)?),
         })
     }
 
@@ -155,9 +155,9 @@ impl Structure {
         impact: impl Into<ImpactLaw>,
     ) -> Result<Option<Box<dyn FourLinkModel>>, FourLinkError> {
         Ok(match self {
-            Self::Arch(arch) => Some(four_link_arch(arch, impact)?),
+            Self::Arch(arch) => Some(Box::new(FourLinkArch::new(arch.clone(), impact)?)),
             Self::Column(_) => None,
-            Self::Masonry(masonry) => Some(four_link_row(masonry, impact)?),
+            Self::Masonry(masonry) => Some(Box::new(four_link_row(masonry, impact)?)),
         })
     }
 
@@ -252,22 +252,13 @@ impl Structure {
     }
 }
 
-/// A circular arch as four links.
-fn four_link_arch(
-    arch: &Arch,
-    impact: impl Into<ImpactLaw>,
-) -> Result<Box<dyn FourLinkModel>, FourLinkError> {
-    Ok(FourLinkArch::new(arch.clone(), impact)?.into())
-}
-
 /// A row of blocks as four links, with the depth that the scenario gives.
 fn four_link_row(
     masonry: &Masonry,
     impact: impl Into<ImpactLaw>,
-) -> Result<Box<dyn FourLinkModel>, FourLinkError> {
+) -> Result<FourLinkRow, FourLinkError> {
     let depth_m = masonry.shape().material().depth_m;
-    let row = FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?;
-    Ok(row.into())
+    Ok(FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?)
 }
 
 /// The contents of a table that describes a structure.

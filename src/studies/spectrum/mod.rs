@@ -153,7 +153,7 @@ impl<'a> OverturningSpectrum<'a> {
                 .map_err(FourLinkError::from)?;
             vec![
                 (StructureKind::Arch, model),
-                (StructureKind::Column, column.into()),
+                (StructureKind::Column, Box::new(column)),
             ]
         } else {
             vec![(StructureKind::Column, model)]

@@ -62,13 +62,65 @@ macro_rules! models {
                 history_of(self, ground, request, recorder)
             }
         }
+
+        impl MechanismModel for $chain {
+            fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64> {
+                self.link_from(first, impacts).map(|link| link.restitution)
+            }
+
+            fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+                self.hinges(impacts, sway)
+            }
+
+            fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64> {
+                self.link_from(sway, 0).map_or(Vec::new(), |first| {
+                    let rotations = first.mechanism.rotations(first.critical_rad);
+                    seen_from_ground::<Self>(sway, rotations, 1.0)
+                        .as_ref()
+                        .to_vec()
+                })
+            }
+
+            fn limit_towards_rad(&self, sway: Sway) -> f64 {
+                self.link_from(sway, 0).map_or(0.0, |first| first.limit_rad)
+            }
+
+            fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
+                equivalent_towards(self, sway, gravity_m_s2)
+            }
+
+            fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced> {
+                displaced(self, sway, part)
+            }
+
+            fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64> {
+                let mechanism = &self.link_from(first, impacts)?.mechanism;
+                Some(mechanism.displacement(q_rad).x * self.mass_unit_kg() * self.length_m())
+            }
+
+            fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
+                moving_bodies(self, sway)
+            }
+
+            fn overturns_without_impact(
+                &self,
+                ground: &GroundMotion,
+                request: &Request,
+            ) -> Result<Option<Sway>, SimulationError> {
+                let rocking = checked(self, ground, request)?;
+                Ok(super::first_fall::overturns(
+                    &rocking,
+                    request.relative_tolerance,
+                )?)
+            }
+        }
     )+};
 }
 
 models!(FourLinkArch, FourLinkRow, RockingColumn);
 
 /// The history of a chain of mechanisms.
-fn history_of<C: MechanismChain + Model>(
+fn history_of<C: MechanismChain + MechanismModel>(
     chain: &C,
     ground: &GroundMotion,
     request: &Request,
@@ -137,58 +189,6 @@ fn history_of<C: MechanismChain + Model>(
     })
 }
 
-impl<C: MechanismChain + Model> MechanismModel for C {
-    fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64> {
-        self.link_from(first, impacts).map(|link| link.restitution)
-    }
-
-    fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        self.hinges(impacts, sway)
-    }
-
-    fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64> {
-        self.link_from(sway, 0).map_or(Vec::new(), |first| {
-            let rotations = first.mechanism.rotations(first.critical_rad);
-            seen_from_ground::<C>(sway, rotations, 1.0)
-                .as_ref()
-                .to_vec()
-        })
-    }
-
-    fn limit_towards_rad(&self, sway: Sway) -> f64 {
-        self.link_from(sway, 0).map_or(0.0, |first| first.limit_rad)
-    }
-
-    fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
-        equivalent_towards(self, sway, gravity_m_s2)
-    }
-
-    fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced> {
-        displaced(self, sway, part)
-    }
-
-    fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64> {
-        let mechanism = &self.link_from(first, impacts)?.mechanism;
-        Some(mechanism.displacement(q_rad).x * self.mass_unit_kg() * self.length_m())
-    }
-
-    fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
-        moving_bodies(self, sway)
-    }
-
-    fn overturns_without_impact(
-        &self,
-        ground: &GroundMotion,
-        request: &Request,
-    ) -> Result<Option<Sway>, SimulationError> {
-        let rocking = checked(self, ground, request)?;
-        Ok(super::first_fall::overturns(
-            &rocking,
-            request.relative_tolerance,
-        )?)
-    }
-}
-
 impl FourLinkModel for FourLinkArch {
     fn chain_from(&self, _first: Sway) -> &Chain {
         self.chain()
@@ -209,28 +209,8 @@ impl FourLinkModel for FourLinkRow {
     }
 }
 
-// These name the mechanisms, so that the engine is compiled for them here and not in every crate that moves one.
-
-impl From<RockingColumn> for Box<dyn MechanismModel> {
-    fn from(column: RockingColumn) -> Self {
-        Box::new(column)
-    }
-}
-
-impl From<FourLinkArch> for Box<dyn FourLinkModel> {
-    fn from(arch: FourLinkArch) -> Self {
-        Box::new(arch)
-    }
-}
-
-impl From<FourLinkRow> for Box<dyn FourLinkModel> {
-    fn from(row: FourLinkRow) -> Self {
-        Box::new(row)
-    }
-}
-
 /// The structure on its ground, if the request is valid.
-fn checked<'a, C: MechanismChain + Model>(
+fn checked<'a, C: MechanismChain + MechanismModel>(
     chain: &'a C,
     ground: &'a GroundMotion,
     request: &Request,
