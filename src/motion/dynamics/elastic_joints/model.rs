@@ -25,7 +25,7 @@ use crate::mechanics::sway::Sway;
 /// Rigid blocks in a row, an arch or a stack, whose joints carry no tension, deform elastically, slip, and crush.
 ///
 /// It starts from its equilibrium under its own weight. No impact takes energy in an instant, and the hinge of a joint lies inside its
-/// edge: such a row overturns before its twin with rigid joints ([`FreeHinges`](crate::FreeHinges)) does.
+/// edge: such a row overturns before its twin with rigid joints ([`FreeHinges`](crate::dynamics::free_hinges::FreeHinges)) does.
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {
     rigid: RigidRow,
