@@ -40,8 +40,9 @@ impl Kind {
     }
 
     /// In the order of the legend.
-    pub(crate) const ALL: [Self; 19] = [
+    pub(crate) const ALL: [Self; 21] = [
         kind("never_moved", "never moves", "#e4e4e4"),
+        kind("vibrates", "vibrates without opening", "#dfe8c8"),
         kind("rest", "comes to rest", "#bcdcf0"),
         SURVIVED[0],
         SURVIVED[1],
@@ -55,6 +56,7 @@ impl Kind {
         kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
         kind("overturned-more", "overturns after more", color::PURPLE),
         kind("overturned", "overturns", "#a6361c"),
+        kind("incomplete", "ends too early for a verdict", "#8c7aa0"),
         kind(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
         kind(CANNOT_STAND, "cannot stand", "#ffffff"),
         kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),

@@ -141,11 +141,13 @@ pub(crate) type Words = (u8, &'static str);
 /// How a case ended, in words.
 pub(crate) const fn in_words(ending: &Ending) -> Words {
     match (&ending.uncertain, ending.outcome) {
-        (Some(_), _) => (4, "are uncertain"),
+        (Some(_), _) => (5, "are uncertain"),
         (None, Outcome::NeverMoved) => (0, "never move"),
-        (None, Outcome::Rest) => (1, "come to rest"),
-        (None, Outcome::Overturned(_)) => (2, "overturn"),
-        (None, Outcome::StillRocking) => (3, "are still rocking"),
+        (None, Outcome::Vibrates) => (1, "vibrate without opening"),
+        (None, Outcome::Rest) => (2, "come to rest"),
+        (None, Outcome::Overturned(_)) => (3, "overturn"),
+        (None, Outcome::StillRocking) => (4, "are still rocking"),
+        (None, Outcome::Incomplete) => (6, "are incomplete"),
     }
 }
 

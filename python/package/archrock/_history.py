@@ -321,7 +321,11 @@ class History:
 
     @property
     def outcome(self) -> str:
-        """How it ended: ``"never_moved"``, ``"rest"``, ``"overturned"`` or ``"still_rocking"``."""
+        """How it ended.
+
+        ``"never_moved"``, ``"vibrates"``, ``"rest"``, ``"overturned"``, ``"still_rocking"`` or ``"incomplete"``. An incomplete
+        history ended too early for a verdict: it counts neither as survived nor as overturned.
+        """
         outcome: str = self._once("outcome", lambda native: native.outcome())
         return outcome
 
@@ -496,6 +500,8 @@ class History:
             at += " without impact" if impacts == 0 else f" after {impacts} impact{'s'[: impacts > 1]}"
         return {
             "never_moved": "never moved",
+            "vibrates": "vibrated without opening",
+            "incomplete": f"incomplete {at}",
             "rest": f"came to rest {at}",
             "overturned": f"overturned to the {self.overturning_sway} {at}",
             "still_rocking": f"still rocking {at}",

@@ -15,17 +15,29 @@ use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Tie, TieMemory};
 
 /// How a history ended.
+///
+/// A history is complete if the structure overturned, or if the ground is quiet for good and at most a quarter of the energy barrier is
+/// left as energy above rest. The energy is the kinetic and potential energy beside the barrier of the first mechanism. Where that barrier
+/// or the energy at rest is not known (joints that slipped, feet that move differently, ties, supports that have moved) it is the largest
+/// kinetic energy of the last part of the history, beside the barrier of the structure as it was built, with rigid joints and without ties:
+/// that of its first mechanism, else that of the part above a joint which overturns most easily as one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// The structure never moved.
+    /// Nothing moved: no joint opened or slipped, and elastic joints did not vibrate. The history is complete.
     NeverMoved,
-    /// It moved and came to rest.
+    /// Elastic joints vibrated, but no joint opened beyond its state at rest by more than the weight compresses a joint, and the structure
+    /// did not slide. The history is complete.
+    Vibrates,
+    /// A joint opened or slipped, and the structure came to rest.
     Rest,
-    /// It overturned, to this side.
+    /// It overturned, to this side: it passed the point from which gravity alone overturns it, and did not return.
     Overturned(Sway),
-    /// It was still moving at the end of the simulation.
+    /// It still moved at the end of a complete history: it survives, but has not come to rest.
     StillRocking,
+    /// The history ended too early for a verdict: the ground still moved, or more than a quarter of the energy barrier was left. It
+    /// counts neither as survived nor as overturned.
+    Incomplete,
 }
 
 impl Outcome {
@@ -34,9 +46,11 @@ impl Outcome {
     pub const fn name(self) -> &'static str {
         match self {
             Self::NeverMoved => "never_moved",
+            Self::Vibrates => "vibrates",
             Self::Rest => "rest",
             Self::Overturned(_) => "overturned",
             Self::StillRocking => "still_rocking",
+            Self::Incomplete => "incomplete",
         }
     }
 }
@@ -370,8 +384,8 @@ impl Impact {
 pub struct Summary {
     /// How it ended.
     pub outcome: Outcome,
-    /// When: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end of
-    /// the simulation.
+    /// When: the last outward passage of the unstable equilibrium, the last time it came to rest, or else the end of
+    /// the history.
     pub outcome_time_s: f64,
     /// When the simulation ended.
     pub end_s: f64,

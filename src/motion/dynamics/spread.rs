@@ -186,8 +186,10 @@ impl Repetitions {
 /// Whether a structure overturns, as far as that is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
-    /// It does not, to the end of the simulation.
+    /// It does not.
     Survives,
+    /// The history ended too early: [`Outcome::Incomplete`].
+    Incomplete,
     /// That depends on how it is computed.
     Uncertain,
     /// It does.
@@ -198,7 +200,10 @@ impl From<Outcome> for Verdict {
     fn from(outcome: Outcome) -> Self {
         match outcome {
             Outcome::Overturned(_) => Self::Overturns,
-            Outcome::NeverMoved | Outcome::Rest | Outcome::StillRocking => Self::Survives,
+            Outcome::Incomplete => Self::Incomplete,
+            Outcome::NeverMoved | Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
+                Self::Survives
+            }
         }
     }
 }
@@ -209,6 +214,7 @@ impl Verdict {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Survives => "survives",
+            Self::Incomplete => "incomplete",
             Self::Uncertain => "uncertain",
             Self::Overturns => "overturns",
         }
@@ -217,6 +223,7 @@ impl Verdict {
     const fn words(self) -> &'static str {
         match self {
             Self::Survives => "survives",
+            Self::Incomplete => "is incomplete",
             Self::Uncertain => "is uncertain",
             Self::Overturns => "overturns",
         }
@@ -386,16 +393,16 @@ pub(super) const GONE: f64 = 0.01;
 /// A survivor that never reached this fraction of the energy barrier of its first mechanism is not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
-/// Whether repetitions can be spared: the structure never moved, it overturned before its first change of side, up to which
+/// Whether repetitions can be spared: the history is incomplete, the structure never moved, it overturned before its first change of side, up to which
 /// all ways agree, or it survived far from overturning.
 fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
-        Outcome::NeverMoved => true,
+        Outcome::NeverMoved | Outcome::Incomplete => true,
         Outcome::Overturned(_) => own
             .row
             .as_ref()
             .is_some_and(|row| row.half_cycles.len() <= 1),
-        Outcome::Rest | Outcome::StillRocking => {
+        Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
             let row = own.row.as_ref();
             let elastic = row.and_then(|row| Some((row, row.elastic.as_ref()?)));
             let ratio = match elastic {

@@ -22,7 +22,7 @@ pub enum Until {
 /// On ground that stays quiet, a structure with less than this fraction of the energy barrier of its first mechanism cannot overturn
 /// any more. Rows overturn by other mechanisms as well: 125 histories of random rows that overturned never had less than 0.45 of the
 /// barrier on quiet ground before.
-const SAFE: f64 = 0.25;
+pub(super) const SAFE: f64 = 0.25;
 
 /// With less than this fraction of the largest energy that it had, a structure turns no block as far as it did.
 const DECAYED: f64 = 0.1;

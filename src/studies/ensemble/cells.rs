@@ -12,6 +12,7 @@ use super::{NoAnswer, SampleRow, Told, files, uncertain};
 use crate::dynamics::history::Outcome;
 use crate::output::OutputError;
 use crate::scenario::{Axis, Quantity, Scenario, Spacing, Uncertain, UncertainKey};
+use crate::studies::ending::Ending;
 use crate::studies::map::{CellResult, OverturningMap};
 use crate::studies::results::{Look, Results};
 use crate::studies::runner::Study;
@@ -28,6 +29,8 @@ pub enum Came {
     Rest,
     /// It never moved.
     NeverMoved,
+    /// Its elastic joints vibrated without opening.
+    Vibrates,
     /// It had not come to rest at the end.
     StillRocking,
     /// It makes no structure that stands, or none of four links.
@@ -44,7 +47,9 @@ impl From<CellResult> for Came {
                 Outcome::Overturned(_) => Self::Overturned,
                 Outcome::Rest => Self::Rest,
                 Outcome::NeverMoved => Self::NeverMoved,
+                Outcome::Vibrates => Self::Vibrates,
                 Outcome::StillRocking => Self::StillRocking,
+                Outcome::Incomplete => Self::Failed(Ending::INCOMPLETE.into()),
             },
             CellResult::CannotStand => Self::Invalid("it cannot stand".into()),
             CellResult::NotFourLinks => Self::Invalid("it is too thick for four links".into()),
@@ -228,25 +233,32 @@ pub struct Likely {
     pub samples: usize,
     /// How many certainly overturn; `None` where no sample has an outcome.
     pub overturned: Option<Share>,
-    /// How many are uncertain, come to rest, never move, are still rocking.
-    pub others: [usize; 4],
+    /// How many are uncertain, come to rest, never move, vibrate, are still rocking.
+    pub others: [usize; 5],
     /// How many have none because of their values, and because they could not be computed.
     pub without: [usize; 2],
 }
 
 /// Outcomes beside overturning, by their names in results.
-const OTHERS: [&str; 4] = ["uncertain", "rest", "never_moved", "still_rocking"];
+const OTHERS: [&str; 5] = [
+    "uncertain",
+    "rest",
+    "never_moved",
+    "vibrates",
+    "still_rocking",
+];
 
 impl Likely {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r Came>) -> Self {
-        let (mut overturned, mut others, mut without) = (0, [0; 4], [0; 2]);
+        let (mut overturned, mut others, mut without) = (0, [0; 5], [0; 2]);
         for row in rows {
             *match row {
                 Came::Overturned => &mut overturned,
                 Came::Uncertain => &mut others[0],
                 Came::Rest => &mut others[1],
                 Came::NeverMoved => &mut others[2],
-                Came::StillRocking => &mut others[3],
+                Came::Vibrates => &mut others[3],
+                Came::StillRocking => &mut others[4],
                 Came::Invalid(_) => &mut without[0],
                 Came::Failed(_) => &mut without[1],
             } += 1;

@@ -121,6 +121,9 @@ impl Histories {
         let checked = repeated(model, &[case], own).remove(0);
         let summary = checked.own.map_err(|error| failed(error.to_string()))?;
         let ending = Ending::from_summary(&summary, None, checked.doubt).map_err(failed)?;
+        if ending.verdict() == Verdict::Incomplete {
+            return Err(failed(Ending::INCOMPLETE.to_owned()));
+        }
         Ok(Went {
             ending,
             peak_rotation_rad: summary.largest_rotation_rad(),
@@ -152,7 +155,8 @@ impl Went {
     pub fn overturned(&self) -> f64 {
         match self.ending.verdict() {
             Verdict::Survives => 0.0,
-            Verdict::Uncertain => 0.5,
+            // No sample answers with an incomplete history.
+            Verdict::Incomplete | Verdict::Uncertain => 0.5,
             Verdict::Overturns => 1.0,
         }
     }
@@ -208,6 +212,7 @@ impl Told<'_, Went> {
             "uncertain",
             "rest",
             "never_moved",
+            "vibrates",
             "still_rocking",
         ];
         let all = self.answered().count();

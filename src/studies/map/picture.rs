@@ -15,7 +15,7 @@ use crate::studies::results::Look;
 /// The kind by which a cell is coloured.
 pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
     if let (true, CellResult::Ended(ending)) = (look.by_peak, result)
-        && let (Outcome::Rest | Outcome::StillRocking, Some(peak)) =
+        && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
             (ending.outcome, ending.peak.over_critical())
     {
         return Kind::survived(peak);

@@ -147,12 +147,12 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
         CellResult::Ended(ending)
             if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking =>
         {
-            (3, "are still rocking at duration_s of [simulation]")
+            (4, "are still rocking at the end, which counts as survived")
         }
         CellResult::Ended(ending) => in_words(ending),
-        CellResult::CannotStand => (5, "cannot stand"),
-        CellResult::NotFourLinks => (6, "are too thick for four links"),
-        CellResult::Failed(_) => (7, "failed"),
+        CellResult::CannotStand => (7, "cannot stand"),
+        CellResult::NotFourLinks => (8, "are too thick for four links"),
+        CellResult::Failed(_) => (9, "failed"),
     };
     let counts = counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];

@@ -38,6 +38,8 @@ fn ends(history: &Summary) -> String {
     let time_s = history.outcome_time_s;
     match history.outcome {
         Outcome::NeverMoved => "never moves".to_owned(),
+        Outcome::Vibrates => "vibrates without opening".to_owned(),
+        Outcome::Incomplete => format!("no verdict: the run ends too early, at {time_s:.4} s"),
         Outcome::Rest => format!("rests at {time_s:.4} s"),
         Outcome::Overturned(sway) => format!("overturns to the {} at {time_s:.4} s", sway.name()),
         Outcome::StillRocking => format!("still rocks at {time_s:.4} s"),

@@ -219,7 +219,9 @@ fn doing(summary: &Summary) -> States {
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
-        Outcome::NeverMoved | Outcome::StillRocking => None,
+        Outcome::NeverMoved | Outcome::Vibrates | Outcome::StillRocking | Outcome::Incomplete => {
+            None
+        }
     };
     let cycles = summary.half_cycles().iter();
     let changes = cycles

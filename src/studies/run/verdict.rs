@@ -25,7 +25,7 @@ impl Evidence<'_> {
             .into_iter()
             .flat_map(|spread| &spread.outcomes);
         let mut others = others.map(|other| Verdict::from(*other));
-        if others.any(|other| other != own) {
+        if own != Verdict::Incomplete && others.any(|other| other != own) {
             return Verdict::Uncertain;
         }
         own
@@ -74,6 +74,8 @@ impl Evidence<'_> {
         match history.outcome {
             Outcome::Overturned(sway) => format!("overturns to the {}", sway.name()),
             Outcome::NeverMoved => "never moves: the ground is too weak to start it".to_owned(),
+            Outcome::Vibrates => "survives: it vibrates, and no joint opens".to_owned(),
+            Outcome::Incomplete => self.incomplete(),
             Outcome::Rest | Outcome::StillRocking => {
                 let (rotation, energy) = (
                     history.peak_over_critical,
@@ -95,9 +97,22 @@ impl Evidence<'_> {
         }
     }
 
+    /// Why the run has no verdict.
+    fn incomplete(&self) -> String {
+        let (end_s, ground_s) = (self.history.end_s, self.scenario.ground_motion().end_s());
+        let why = if end_s < ground_s {
+            format!("the run ends at {end_s:.4} s and the ground moves until {ground_s:.4} s")
+        } else {
+            format!(
+                "at {end_s:.4} s, the end of the run, it still rocks with more than a quarter of the energy that overturns"
+            )
+        };
+        format!("NO VERDICT: {why}; give a longer duration_s in [simulation], or leave it out")
+    }
+
     /// How sure the outcome is, from the repetitions or from the line of thrust of four links.
     fn how_sure(&self) -> Option<String> {
-        if self.history.outcome == Outcome::NeverMoved {
+        if let Outcome::NeverMoved | Outcome::Incomplete = self.history.outcome {
             return None;
         }
         if self.repeated().is_some() {
@@ -122,6 +137,9 @@ impl Evidence<'_> {
     /// On what the outcome depends: friction that stone may not have, and properties that change the ending.
     fn doubts(&self) -> Vec<String> {
         let own = Verdict::from(self.history.outcome);
+        if own == Verdict::Incomplete {
+            return Vec::new();
+        }
         let mut doubts = Vec::new();
         if let Some(needed) = needs(self.scenario, self.history) {
             doubts.push(needed);

@@ -219,6 +219,8 @@ fn ended(history: &Summary) -> String {
             return format!("overturns to the {} at {time_s:.4} s", sway.name());
         }
         Outcome::NeverMoved => return "never moves".to_owned(),
+        Outcome::Vibrates => return "vibrates without opening".to_owned(),
+        Outcome::Incomplete => "has no verdict, because the run ends too early",
         Outcome::Rest | Outcome::StillRocking => "survives",
     };
     match first_peak_rad(history) {
@@ -437,6 +439,8 @@ fn outcome(history: &Summary) -> String {
     };
     match history.outcome {
         Outcome::NeverMoved => "  never moved\n".to_owned(),
+        Outcome::Vibrates => "  vibrated, and no joint opened\n".to_owned(),
+        Outcome::Incomplete => format!("  incomplete at {time_s:.4} s{impacts}\n"),
         Outcome::Rest => format!("  came to rest at {time_s:.4} s{impacts}\n"),
         Outcome::Overturned(sway) => {
             let sway = sway.name();
@@ -763,6 +767,8 @@ fn sure(spread: &Spread) -> String {
 fn ending(outcome: Outcome) -> String {
     match outcome {
         Outcome::NeverMoved => "never moved".to_owned(),
+        Outcome::Vibrates => "vibrated without opening".to_owned(),
+        Outcome::Incomplete => "incomplete".to_owned(),
         Outcome::Rest => "rest".to_owned(),
         Outcome::Overturned(sway) => format!("overturned to the {}", sway.name()),
         Outcome::StillRocking => "still rocking".to_owned(),

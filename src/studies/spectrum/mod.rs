@@ -291,6 +291,10 @@ impl Study for OverturningSpectrum<'_> {
                     break;
                 }
                 Ok(ending) if ending.outcome == Outcome::StillRocking => row.still_rocking += 1,
+                Ok(ending) if ending.outcome == Outcome::Incomplete => row.failures.push(Failure {
+                    over_incipient: Some(over_incipient),
+                    reason: Ending::INCOMPLETE.to_owned(),
+                }),
                 Ok(_) => {}
                 Err(reason) => row.failures.push(Failure {
                     over_incipient: Some(over_incipient),

@@ -58,6 +58,13 @@ impl CaseRow {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
+    /// The verdict; `None` if there is no history, or an incomplete one.
+    #[must_use]
+    pub fn known_verdict(&self) -> Option<Verdict> {
+        self.verdict()
+            .filter(|verdict| *verdict != Verdict::Incomplete)
+    }
+
     /// Whether it certainly survived, but had not come to rest.
     #[must_use]
     pub fn still_rocking(&self) -> bool {
@@ -255,6 +262,8 @@ pub struct FragilityRow {
     pub uncertain: usize,
     /// Number of those that had neither overturned nor come to rest.
     pub still_rocking: usize,
+    /// Number of cases whose history ended too early for a verdict. They do not count.
+    pub incomplete: usize,
     /// Number of cases whose history could not be computed.
     pub failed: usize,
     /// The curve at this intensity, if there is one.
@@ -351,7 +360,7 @@ impl SuiteFragility {
             let known = evidence.iter().filter_map(|case| {
                 Some(Observation {
                     intensity: case.level(measure),
-                    overturned: case.verdict()? >= least,
+                    overturned: case.known_verdict()? >= least,
                     record: indices[case.record.as_str()],
                 })
             });
@@ -365,13 +374,14 @@ impl SuiteFragility {
                 let cases = cases.iter();
                 cases.filter(|case| case.verdict() == verdict).count()
             };
-            let failed = of(None);
+            let (failed, incomplete) = (of(None), of(Some(Verdict::Incomplete)));
             FragilityRow {
                 intensity,
-                cases: cases.len() - failed,
+                cases: cases.len() - failed - incomplete,
                 overturned: of(Some(Verdict::Overturns)),
                 uncertain: of(Some(Verdict::Uncertain)),
                 still_rocking: cases.iter().filter(|case| case.still_rocking()).count(),
+                incomplete,
                 failed,
                 curve: CurvePoint::of(&fit, intensity),
                 curve_with_uncertain: CurvePoint::of(&fit_with_uncertain, intensity),
@@ -403,7 +413,7 @@ impl SuiteFragility {
         for cases in shakes {
             let levels: Vec<_> = cases
                 .iter()
-                .map(|case| (case.level(self.measure), case.verdict()))
+                .map(|case| (case.level(self.measure), case.known_verdict()))
                 .collect();
             let survival = Survival::of_levels(&levels);
             let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
@@ -431,7 +441,7 @@ impl SuiteFragility {
     pub fn always(&self, wanted: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
         for case in &self.cases {
-            if let Some(verdict) = case.verdict() {
+            if let Some(verdict) = case.known_verdict() {
                 *alike.entry(&case.record).or_insert(true) &= verdict == wanted;
             }
         }

@@ -10,8 +10,8 @@ use crate::argument::plain;
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, finite, pretty};
 use crate::scenario::{Measure, Scenario, Spacing, Spectral, Suite, shown};
-use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, number};
+use crate::studies::ending::{Ending, Verdict};
 use crate::studies::remarks::{Remarks, counts, in_words};
 use crate::studies::results::Results;
 use crate::studies::survival;
@@ -145,6 +145,7 @@ impl Heading {
             column("cases", |level: &FragilityRow| level.cases),
             column("overturned", |level: &FragilityRow| level.overturned),
             column("still_rocking", |level: &FragilityRow| level.still_rocking),
+            column("incomplete", |level: &FragilityRow| level.incomplete),
             column("failed", |level: &FragilityRow| level.failed),
             column("fraction", FragilityRow::fraction),
         ];
@@ -293,6 +294,7 @@ fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputE
             "still_rocking_counted_as_not_overturned",
             total(|level| level.still_rocking),
         ),
+        ("incomplete_left_out", total(|level| level.incomplete)),
         ("failed_left_out", total(|level| level.failed)),
     ];
     for (name, count) in counts {
@@ -441,9 +443,18 @@ fn words(heading: &Heading, results: &SuiteFragility) -> String {
         lines.push(format!("{}{mirrored}: {words}", record.record));
     }
     if results.cases.iter().any(CaseRow::still_rocking) {
-        lines.push(
-            "those still rocking at duration_s of [simulation] count as not overturned".to_owned(),
-        );
+        lines.push("those still rocking at the end count as not overturned".to_owned());
+    }
+    let incomplete = results
+        .levels
+        .iter()
+        .map(|level| level.incomplete)
+        .sum::<usize>();
+    if incomplete > 0 {
+        lines.push(format!(
+            "{incomplete} histories do not count; {}",
+            Ending::INCOMPLETE
+        ));
     }
     let remarks = remarks(results);
     lines.extend(remarks.uncertain_in_words(FRAGILITY));

@@ -137,6 +137,7 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
             let what = match verdict {
                 Verdict::Overturns => "overturns",
                 Verdict::Uncertain => "uncertain",
+                Verdict::Incomplete => "incomplete",
                 Verdict::Survives => "survives",
             };
             if place(range.to) - place(range.from) < NARROW_PX {

@@ -330,7 +330,7 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     {
         let (what, range) = match verdict {
             Verdict::Overturns => ("overturns", "band"),
-            _ => ("uncertain", "range"),
+            other => (other.name(), "range"),
         };
         let _ = writeln!(
             text,
@@ -352,14 +352,12 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
                 lines.push(format!("overturns from factor {begins} {ends}{beyond}"));
             }
             (Verdict::Survives, None) => {}
-            (Verdict::Uncertain, None) => {
-                lines.push(format!("uncertain from factor {begins} {ends}{beyond}"));
+            (verdict, None) => {
+                let what = verdict.name();
+                lines.push(format!("{what} from factor {begins} {ends}{beyond}"));
             }
             (verdict, Some(line)) => {
-                let what = match verdict {
-                    Verdict::Uncertain => "uncertain",
-                    _ => "survives",
-                };
+                let what = verdict.name();
                 *line += &match range.to_end {
                     RangeEnd::Sampled => format!("; {what} from there on"),
                     _ if what == "survives" => format!("; survives again up to {to}{beyond}"),

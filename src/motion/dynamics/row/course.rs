@@ -803,7 +803,10 @@ impl<'a> Course<'a> {
         let ending = match outcome {
             Outcome::Rest => Some((EventKind::Rest, State::Rest)),
             Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
-            Outcome::NeverMoved | Outcome::StillRocking => None,
+            Outcome::NeverMoved
+            | Outcome::Vibrates
+            | Outcome::StillRocking
+            | Outcome::Incomplete => None,
         };
         if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
             // The history ends here anyway.
