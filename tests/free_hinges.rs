@@ -485,6 +485,7 @@ fn three_blocks() -> (Row, Linkage) {
 
 fn fall(row: &Row, linkage: &Linkage, step_s: f64) -> Kept {
     let settings = Settings {
+        may_halve: false,
         longest_step_s: step_s,
         shortest_step_s: 1e-6,
         merged_after: 50,

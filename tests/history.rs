@@ -556,7 +556,7 @@ fn the_memory_of_a_history_is_known_before_and_bounded() {
         let scenario = archrock::Scenario::parse(&text, "s.toml").unwrap();
         let (model, request) = (scenario.model().unwrap(), scenario.request());
         let history = model.history(scenario.ground_motion(), &request).unwrap();
-        let count = request.most_samples();
+        let count = request.most_samples(scenario.ground_motion());
         assert!((1001..=1003).contains(&count) && history.samples.len() as u64 <= count);
         // Not all hinges that may be open are always open; the bound is too large by that.
         let needed = model.shape().bytes(count);

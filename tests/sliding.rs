@@ -107,6 +107,7 @@ fn push(amplitude_g: f64, duration_s: f64) -> GroundMotion {
 
 fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
     Settings {
+        may_halve: false,
         longest_step_s: step_s,
         shortest_step_s: step_s,
         merged_after: 0,

@@ -91,6 +91,119 @@ fn feet_go_apart_as_their_motions_do() {
     assert!(ground.late_by(f64::NAN).is_err() && ground.late_by(-1.0).is_err());
 }
 
+/// A negative delay starts the right foot earlier. The left foot keeps its times; if the right foot accelerates before time zero, the motion
+/// starts there.
+#[test]
+fn a_negative_delay_leaves_the_left_foot_as_it_is() {
+    let at = |ground: &GroundMotion, time_s: f64| {
+        let piece = ground
+            .pieces()
+            .iter()
+            .rfind(|piece| piece.start_s <= time_s);
+        piece.unwrap().acceleration_m_s2(time_s)
+    };
+    for (from_s, start_s) in [(0.0, -0.3), (0.2, -0.1), (0.3, 0.0), (1.0, 0.0)] {
+        let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.4, from_s).unwrap();
+        let early = ground.clone().with_delayed_right_foot(-0.3).unwrap();
+        let right = early.right_foot().unwrap();
+        assert!((early.start_s() - start_s).abs() < 1e-15 && early.start_s() == right.start_s());
+        assert_eq!(early.pieces()[0].start_s, early.start_s());
+        let [left_s, right_s] = early.ends_s();
+        assert!(left_s == ground.end_s() && (left_s - right_s - 0.3).abs() < 1e-15);
+        for time_s in [0.05, 0.11, 0.33, 0.55, 1.1, 1.3] {
+            assert_eq!(at(&early, time_s), at(&ground, time_s));
+            assert!((at(right, time_s) - at(&ground, time_s + 0.3)).abs() < 1e-13);
+        }
+        // The feet are as far apart as those of the same motion with a positive delay, to the other side.
+        let late = ground.clone().with_delayed_right_foot(0.3).unwrap();
+        for (early, late) in early
+            .feet_apart_m(&[0.05, 0.4, 2.0])
+            .iter()
+            .zip(late.feet_apart_m(&[0.35, 0.7, 2.3]))
+        {
+            assert!((early + late).norm() < 1e-13, "{early} {late}");
+        }
+        let scaled = early.scaled(-2.0).unwrap();
+        assert_eq!(scaled.start_s(), early.start_s());
+    }
+    let record = shaking([3.0, 1.0], [1.5, 4.0]);
+    let early = record.clone().with_delayed_right_foot(-0.25).unwrap();
+    assert_eq!(
+        (early.start_s(), early.ends_s()),
+        (-0.25, [0.8, 0.8 - 0.25])
+    );
+    assert!(record.clone().with_delayed_right_foot(-2e9).is_err());
+    assert!(record.with_delayed_right_foot(f64::NAN).is_err());
+}
+
+/// A history with a negative start is the history on a ground that is later by that time, with all its times.
+#[test]
+fn a_history_begins_with_the_right_foot() {
+    let row = Row::arch(&crate::common::ring(0.15, 157.5), 12, 5.0, 1.0, 2000.0).unwrap();
+    let slipping = RowOptions {
+        friction_coefficient: Some(0.8),
+        ..RowOptions::default()
+    };
+    let rigid = FreeHinges::new(row).unwrap();
+    let models: [&dyn Model; 3] = [
+        &arch(),
+        &rigid,
+        &rigid.clone().with_options(slipping).unwrap(),
+    ];
+    for model in models {
+        let history = |from_s: f64, end_s: f64| {
+            let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.4, from_s).unwrap();
+            let ground = ground.with_delayed_right_foot(-0.05).unwrap();
+            model.history(&ground, &sampled(end_s, 0.02)).unwrap()
+        };
+        let (early, later) = (history(0.0, 0.45), history(0.05, 0.5));
+        let times_s = &early.samples.time_s;
+        assert_eq!(times_s[..4], [-0.05, -0.04, -0.02, 0.0]);
+        assert!((early.summary.end_s - 0.45).abs() < 1e-12);
+        assert!(times_s.windows(2).all(|pair| pair[0] < pair[1]));
+        let [first, at_zero] = [0, 3].map(|row| early.samples.get(row).unwrap());
+        assert!(first.rotations_rad != at_zero.rotations_rad);
+        // Rows are at other instants of the motion: compare peaks and half cycles.
+        let [one, other] = [&early.summary, &later.summary];
+        let [peak, due] = [one, other].map(|summary| summary.largest_rotation_rad());
+        assert!(
+            due > 1e-3 && (peak - due).abs() < 0.02 * due,
+            "{peak} {due}"
+        );
+        let [one, other] = [one, other].map(|summary| summary.half_cycles()[0]);
+        assert!((one.start_s + 0.05 - other.start_s).abs() < 2e-3);
+    }
+}
+
+/// Steps of free hinges are halved where the balance of energy needs it, unless the scenario gives their length.
+#[test]
+fn steps_are_halved_for_a_small_wave() {
+    let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.156\nembrace_deg = 157.5\nvoussoirs = 6\n\
+                [[tie]]\nheight_m = 8.4\nstiffness_n_m = 8500.0\n\
+                [ground.ricker]\namplitude_g = 0.1\nduration_s = 0.08\n[ground.right]\ndelay_s = -0.12\n\
+                [simulation]\nduration_s = 0.3\noutput_step_s = 0.02\n";
+    let history = |joints: &str| {
+        let scenario = parsed(&format!("{arch}[free_hinges]\n{joints}"));
+        let model = scenario.model().unwrap();
+        model.simulate(scenario.ground_motion(), &scenario.request(), None)
+    };
+    let halved = history("").unwrap();
+    let row = halved.row.as_ref().unwrap();
+    assert!(row.halvings > 0 && row.energy_error < 1e-2);
+    let fine = history("longest_step_s = 5e-5\n").unwrap();
+    assert_eq!(fine.row.as_ref().unwrap().halvings, 0);
+    let (peak, due) = (halved.largest_rotation_rad(), fine.largest_rotation_rad());
+    assert!((peak - due).abs() < 0.05 * due, "{peak} {due}");
+    let refused = history("longest_step_s = 3.4e-4\n")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("set `longest_step_s` in [free_hinges] to at most"),
+        "{refused}"
+    );
+    assert!(!refused.contains("masonry"), "{refused}");
+}
+
 /// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
 /// pieces.
 #[test]
@@ -485,6 +598,57 @@ fn tells_of_its_feet(folder: &Path) {
     assert_eq!(named(&picture, "right foot to the right").len(), 1);
     let page = fs::read_to_string(folder.join("r/report.html")).unwrap();
     assert!(page.contains("\"right_foot_m\":\""));
+}
+
+/// A run whose right foot begins before time zero begins there in every file.
+#[test]
+fn a_run_begins_with_the_right_foot() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arch, stem) in arches().iter().zip(["elastic", "free", "friction"]) {
+        let text = format!("{arch}{PULSE}[ground.right]\ndelay_s = -0.052\n");
+        write(folder.path(), "s.toml", &text);
+        let run = [
+            "run",
+            "s.toml",
+            "--no-spread",
+            "--snapshots=-0.03,-1",
+            "--film",
+            "50",
+            "--out",
+            stem,
+        ];
+        let said = printed(folder.path(), &run);
+        for words in [
+            "snapshots at -1 s are before the start: they show its first instant",
+            "the history begins at -0.0520 s, before time 0 of the left foot",
+        ] {
+            assert!(said.contains(words), "{words}: {said}");
+        }
+        let results = folder.path().join(stem);
+        for table in ["rotations.csv", "joints.csv"] {
+            let times_s = Table::read(results.join(table)).numbers("time_s");
+            assert!(times_s[0] == -0.052 && (times_s[1] + 0.05).abs() < 1e-12);
+        }
+        let events_s = Table::read(results.join("events.csv")).numbers("time_s");
+        let begins = if stem == "elastic" { 1.0 } else { 0.0 };
+        assert!((-0.052..begins).contains(&events_s[0]), "{events_s:?}");
+        let picture = fs::read_to_string(results.join("history.svg")).unwrap();
+        let picture = Document::parse(&picture).unwrap();
+        // The curves of all panels begin at the left edge of the frame, and none left of it.
+        let left = |name: &str| -> f64 {
+            let path = named(&picture, name)[0].attribute("d").unwrap();
+            path[1..].split([' ', 'L']).next().unwrap().parse().unwrap()
+        };
+        assert!((left("ground") - left("right foot to the right")).abs() < 0.1);
+        let summary = fs::read_to_string(results.join("summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        assert_eq!(summary["start_s"].as_f64(), Some(-0.052));
+        let first = fs::read_to_string(results.join("film/frame-0001.svg")).unwrap();
+        assert!(
+            first.contains("-0.052") || first.contains("\u{2212}0.052"),
+            "{first:.2000}"
+        );
+    }
 }
 
 /// The commands of the page of feet print the numbers shown.

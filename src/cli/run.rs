@@ -456,11 +456,8 @@ impl From<RunError> for Failure {
 }
 
 fn time_s(text: &str) -> Result<f64, String> {
-    let time_s = text
-        .parse()
-        .ok()
-        .filter(|time_s| (0.0..=1e9).contains(time_s));
-    time_s.ok_or_else(|| "give times in seconds from 0 on, such as 0.2,0.5,1.0".to_owned())
+    let time_s = text.parse().ok().filter(|time_s: &f64| time_s.abs() <= 1e9);
+    time_s.ok_or_else(|| "give times in seconds, such as 0.2,0.5,1.0".to_owned())
 }
 
 fn a_second(text: &str) -> Result<f64, String> {

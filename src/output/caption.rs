@@ -29,10 +29,17 @@ fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Op
     let right = match scenario.right_foot() {
         None => return Some(left),
         Some(RightFoot::Late(delay_s)) if !varies("delay_s") => {
-            format!("right foot {} s later", four_digits(*delay_s))
+            let when = if *delay_s < 0.0 { "earlier" } else { "later" };
+            format!("right foot {} s {when}", four_digits(delay_s.abs()))
         }
         Some(RightFoot::Wave(velocity_m_s)) if !varies("apparent_velocity_m_s") => {
-            format!("right foot by a wave of {} m/s", four_digits(*velocity_m_s))
+            let speed_m_s = four_digits(velocity_m_s.abs());
+            let side = if *velocity_m_s < 0.0 {
+                " to the left"
+            } else {
+                ""
+            };
+            format!("right foot by a wave of {speed_m_s} m/s{side}")
         }
         Some(RightFoot::Late(_) | RightFoot::Wave(_)) => "right foot later".to_owned(),
         Some(RightFoot::Record(record)) => {

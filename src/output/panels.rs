@@ -78,13 +78,9 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// Panels of a history, from time zero.
-    pub(crate) fn new(figure: Figure, title: &str, end_s: f64) -> Self {
-        Self::spanning(figure, title, [0.0, end_s.max(f64::MIN_POSITIVE)])
-    }
-
     /// Panels over this range of times.
-    pub(crate) fn spanning(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
+    pub(crate) fn new(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
+        let end_s = end_s.max(start_s + f64::MIN_POSITIVE);
         let mut drawing = Drawing::new(figure);
         let top = drawing.title(title) + 20.0;
         Self {
@@ -253,9 +249,9 @@ fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &States) -> bool
     let changes = doing.changes.iter().copied();
     let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
     // The right end of the last visible band.
-    let mut drawn = place(0.0);
+    let mut drawn = place(axes.x.low);
     let mut hops = false;
-    let states = [(0.0, doing.start)].into_iter().chain(changes);
+    let states = [(axes.x.low, doing.start)].into_iter().chain(changes);
     for ((from_s, state), to_s) in states.zip(ends_s) {
         let (left, right) = (place(from_s), place(to_s));
         if right - left < NARROWEST_PX && to_s < end_s {

@@ -16,7 +16,7 @@ pub fn draw(
     gravity_m_s2: f64,
 ) -> String {
     let span = [samples.first(), samples.last()].map(|end| end.map_or(0.0, |end| end.0));
-    let mut panels = Panels::spanning(figure, title, span);
+    let mut panels = Panels::new(figure, title, span);
     let course = |index: usize| intensity.course.iter().map(move |course| course[index]);
     let curves: [(&str, &str, Box<dyn Iterator<Item = f64>>); 4] = [
         (

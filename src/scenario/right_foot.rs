@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [ground.right]
-//! delay_s = 0.05                  # the same motion, so much later; or
+//! delay_s = 0.05                  # the same motion, later by this time, or earlier if negative; or
 //! apparent_velocity_m_s = 300.0   # later by the distance between the feet over this; or
 //!
 //! [ground.right.record]           # a record of its own, with the keys of [ground.record]
@@ -30,9 +30,10 @@ const RECORD: &str = "record";
 /// How the ground under the right foot moves.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RightFoot {
-    /// As that under the left one, later by so many seconds; earlier if that is negative.
+    /// As the left foot, later by this time in seconds. Negative: the right foot starts earlier.
     Late(f64),
-    /// The same, by the distance between the feet over this velocity in m/s; the wave goes to the left if that is negative.
+    /// As the left foot, later by the distance between the feet over this velocity in m/s. Negative: the wave travels to the left, and the right
+    /// foot starts earlier.
     Wave(f64),
     /// By a record of its own.
     Record(Box<Record>),
@@ -151,12 +152,7 @@ impl RightFoot {
                 _ => left.with_right_foot(right),
             };
         };
-        let late = left.late_by(delay_s.abs()).expect(IN_RANGE);
-        if delay_s >= 0.0 {
-            left.with_right_foot(late)
-        } else {
-            late.with_right_foot(left)
-        }
+        left.with_delayed_right_foot(delay_s).expect(IN_RANGE)
     }
 
     /// The same with other numbers for some of its keys.

@@ -44,6 +44,8 @@ const MOST_STEPS: f64 = 1e12;
 pub struct Settings {
     /// Longest step in seconds.
     pub longest_step_s: f64,
+    /// Whether steps may be halved where the energy balance needs it.
+    pub may_halve: bool,
     /// Landings that crowd within this time, in seconds, are taken as one.
     pub shortest_step_s: f64,
     /// Number of impacts within the shortest step after which landings crowd.
@@ -64,6 +66,7 @@ impl Settings {
         let longest_step_s = 3.4e-4 * (row.size_m() / gravity_m_s2).sqrt();
         Self {
             longest_step_s,
+            may_halve: false,
             shortest_step_s: SHORTEST_STEP_RATIO * longest_step_s,
             merged_after: CROWDED_IMPACTS,
             end_s,
@@ -106,6 +109,7 @@ impl Settings {
     const fn clock(&self) -> Clock {
         Clock {
             longest_step_s: self.longest_step_s,
+            may_halve: self.may_halve,
             shortest_step_s: self.shortest_step_s,
             end_s: self.end_s,
             output_step_s: self.output_step_s,
@@ -201,15 +205,14 @@ pub enum FreeHingeError {
     },
     /// Energy was created or lost.
     #[error(
-        "the energy balance is wrong by {:.2} % of the largest energy of the motion, which says nothing then: give a \
-         longest_step_s in [free_hinges] of at most {:.1e} s, and look again at amplitudes and coefficients that no masonry \
-         meets",
+        "the energy balance is wrong by {:.2} % of the largest energy of the motion, so its result is not usable: set \
+         `longest_step_s` in [free_hinges] to at most {:.1e} s",
         1e2 * .error, 0.2 * .longest_step_s
     )]
     Energy {
         /// Its error, over the larger of the barrier and the largest kinetic energy.
         error: f64,
-        /// The longest step, in seconds.
+        /// The longest step at the end, in seconds.
         longest_step_s: f64,
     },
     /// The ends of an arch parted in the computation.

@@ -192,10 +192,14 @@ pub struct TieSummary {
 
 impl TieSummary {
     /// Of a tie at rest.
-    pub(in crate::dynamics) fn at_rest(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
+    pub(in crate::dynamics) fn at_rest(
+        tie: &Tie,
+        memory: &TieMemory<Lanes<1>>,
+        time_s: f64,
+    ) -> Self {
         Self {
             peak_force_n: memory.force_n.0[0],
-            peak_force_time_s: 0.0,
+            peak_force_time_s: time_s,
             yielded_s: None,
             broken_s: None,
             yielded_m: memory.yielded_m.0[0],
@@ -499,6 +503,8 @@ pub struct RowSummary {
     pub relaxed: u64,
     /// Steps with more than one landing, or with landings too close to end at.
     pub merged: u64,
+    /// How often the longest step was halved on the way, where the energy balance needed it.
+    pub halvings: u32,
     /// Time that the longest step took to compute, where samples are made.
     pub longest_step: Elapsed,
 }

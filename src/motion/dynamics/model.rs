@@ -138,8 +138,9 @@ pub trait Model: Debug + Send + Sync {
         ground: &GroundMotion,
         request: &Request,
     ) -> Result<History, SimulationError> {
-        request.check()?;
-        let mut recording = Recording::new(self.shape(), request.most_samples(), memory_bytes)?;
+        request.check(ground)?;
+        let most_samples = request.most_samples(ground);
+        let mut recording = Recording::new(self.shape(), most_samples, memory_bytes)?;
         let summary = self.simulate(ground, request, Some(&mut recording))?;
         let (samples, events) = recording.finish()?;
         Ok(History {
@@ -348,15 +349,21 @@ impl Request {
     /// Samples that a history may have: about a gigabyte of rows.
     pub const MOST_SAMPLES: f64 = 1e7;
 
-    /// How many samples its history has at most: one at every output step, one at the end.
+    /// Largest number of samples of a history on this ground: one at the start, at every output step and at the end.
     #[must_use]
-    pub fn most_samples(&self) -> u64 {
+    pub fn most_samples(&self, ground: &GroundMotion) -> u64 {
+        let before = if ground.start_s() < 0.0 { 1 } else { 0 };
         // Numbers that cannot count samples are refused elsewhere.
-        (self.end_s / self.output_step_s) as u64 + 2
+        (self.lasts_s(ground) / self.output_step_s) as u64 + 2 + before
     }
 
-    /// Refuses numbers that no simulation can work with.
-    pub fn check(&self) -> Result<(), ArgumentError> {
+    /// Longest time from the start of the ground motion to the end of a history, in seconds.
+    fn lasts_s(&self, ground: &GroundMotion) -> f64 {
+        self.end_s - ground.start_s()
+    }
+
+    /// Refuses numbers that no simulation on this ground can work with.
+    pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
         within("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2)?;
         within("end_s", self.end_s, Self::TIME_S)?;
         within("output_step_s", self.output_step_s, Self::TIME_S)?;
@@ -377,7 +384,8 @@ impl Request {
                 Initial::MIN_ROTATION_RAD..=std::f64::consts::PI,
             )?;
         }
-        if self.end_s / self.output_step_s <= Self::MOST_SAMPLES {
+        let lasts_s = self.lasts_s(ground);
+        if lasts_s / self.output_step_s <= Self::MOST_SAMPLES {
             return Ok(());
         }
         Err(ArgumentError {
@@ -385,7 +393,7 @@ impl Request {
             value: self.output_step_s,
             allowed: format!(
                 "at least {:?}, for ten million samples",
-                self.end_s / Self::MOST_SAMPLES
+                lasts_s / Self::MOST_SAMPLES
             ),
         })
     }

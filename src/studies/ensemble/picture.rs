@@ -29,7 +29,7 @@ pub(super) fn bands(
 ) -> String {
     let title = title(told, "What follows from what is not known");
     let end_s = bands.last().map_or(1.0, |at| at.time_s);
-    let mut panels = Panels::new(figure, title, end_s);
+    let mut panels = Panels::new(figure, title, [0.0, end_s]);
     let subject = Subject {
         title,
         ground: told.scenario.ground_motion(),

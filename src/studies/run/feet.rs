@@ -22,8 +22,10 @@ impl FeetApart {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
         let step_s = scenario.simulation().output_step_s;
-        let steps = (history.end_s / step_s) as u32;
-        let mut times_s: Vec<f64> = (0..=steps).map(|step| step_s * f64::from(step)).collect();
+        let first = (ground.start_s() / step_s).ceil() as i32;
+        let last = (history.end_s / step_s).floor() as i32;
+        let mut times_s = vec![ground.start_s()];
+        times_s.extend((first..=last).map(|step| step_s * f64::from(step)));
         times_s.push(history.end_s);
         let apart_m = ground.feet_apart_m(&times_s);
         let all = || times_s.iter().copied().zip(apart_m.iter().copied());

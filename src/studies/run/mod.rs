@@ -462,13 +462,16 @@ impl Shown {
         if let Some(snapshots) = &self.snapshots {
             let picture = figure.fitted(|figure| snapshots.draw(figure, title));
             write(folder, SNAPSHOTS, "the snapshots", &picture)?;
-            let beyond: Vec<_> = snapshots.beyond_s().iter().map(f64::to_string).collect();
-            if !beyond.is_empty() {
-                let _ = writeln!(
-                    said,
-                    "  snapshots at {} s are after the end: they show its last instant",
-                    beyond.join(", ")
-                );
+            let places = [("before the start", "first"), ("after the end", "last")];
+            for ((place, shown), times_s) in places.into_iter().zip(snapshots.outside_s()) {
+                let times_s: Vec<_> = times_s.iter().map(f64::to_string).collect();
+                if !times_s.is_empty() {
+                    let _ = writeln!(
+                        said,
+                        "  snapshots at {} s are {place}: they show its {shown} instant",
+                        times_s.join(", ")
+                    );
+                }
             }
         }
         Ok(())

@@ -47,7 +47,9 @@ impl Curves {
 #[must_use]
 pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);
-    let mut panels = Panels::new(figure, subject.title, ends_s.fold(0.0, f64::max));
+    let start_s = subject.ground.start_s();
+    let span_s = [start_s, ends_s.fold(start_s, f64::max)];
+    let mut panels = Panels::new(figure, subject.title, span_s);
     panels.ground(110.0, subject, None);
     let each = |quantity: fn(&Curves) -> &Envelope| -> Vec<Curve> {
         let named = histories.iter().zip(CURVES);

@@ -152,7 +152,8 @@ impl Picture for Timeline {
         summary: &Summary,
         points: &Points,
     ) -> String {
-        let mut panels = Panels::new(figure, subject.title, self.end_s);
+        let span_s = [subject.ground.start_s(), self.end_s];
+        let mut panels = Panels::new(figure, subject.title, span_s);
         let doing = Some(&self.doing);
         let watched = points.any();
         let shows = |panel| figure.shows(panel, watched);

@@ -262,7 +262,9 @@ impl Report {
         let excess = self
             .leaves
             .then(|| curve(&self.excess_ratio.points().collect::<Vec<_>>()));
-        let end_s = frames[..fall_from].last().map_or(0.0, |frame| frame.time_s);
+        let end_s = frames[..fall_from]
+            .last()
+            .map_or(ground.start_s(), |frame| frame.time_s);
         json!({
             "bodies": self.bodies,
             "largest_body": history.largest_body(),

@@ -94,7 +94,8 @@ impl Picture for RowTimeline {
         summary: &Summary,
         points: &Points,
     ) -> String {
-        let mut panels = Panels::new(figure, subject.title, self.end_s);
+        let span_s = [subject.ground.start_s(), self.end_s];
+        let mut panels = Panels::new(figure, subject.title, span_s);
         let doing = doing(summary);
         let doing = Some(&doing);
         let watched = points.any();
@@ -198,7 +199,7 @@ impl Picture for RowTimeline {
             // A barrier far above the curve would flatten it.
             let over_barrier = summary.peak_potential_over_barrier;
             if over_barrier.is_some_and(|peak| peak >= FAR) {
-                let ends = [(0.0, 1.0), (self.end_s, 1.0)];
+                let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Curve::new("barrier", ends, BARRIER));
                 keys.push((
                     "gravity alone overturns the first mechanism",

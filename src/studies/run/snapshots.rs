@@ -16,9 +16,10 @@ pub(super) struct Snapshots {
     exaggeration: f64,
     /// The requested times, in seconds, each with the nearest sample so far.
     taken: Vec<(f64, Option<Sample>)>,
-    /// Of a film: the time from picture to picture, and when the next is taken.
+    /// Of a film: the time from picture to picture, and when the next is taken; minus infinity before the first sample.
     film: Option<(f64, f64)>,
-    end_s: f64,
+    /// When the history begins and ends, in seconds.
+    span_s: [f64; 2],
 }
 
 /// A film has so many pictures, at most.
@@ -36,21 +37,27 @@ impl Snapshots {
             exaggeration,
             taken: times_s.iter().map(|time_s| (*time_s, None)).collect(),
             film: None,
-            end_s: 0.0,
+            span_s: [f64::INFINITY, f64::NEG_INFINITY],
         }
     }
 
     /// The same at so many instants a second, for a film.
     pub(super) fn film(scene: Scene, a_second: f64, exaggeration: f64) -> Self {
         Self {
-            film: Some((1.0 / a_second, 0.0)),
+            film: Some((1.0 / a_second, f64::NEG_INFINITY)),
             ..Self::new(scene, &[], exaggeration)
         }
     }
 
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
-        self.end_s = sample.time_s;
+        let [start_s, _] = self.span_s;
+        self.span_s = [start_s.min(sample.time_s), sample.time_s];
+        if let Some((_, next_s)) = &mut self.film
+            && *next_s == f64::NEG_INFINITY
+        {
+            *next_s = sample.time_s;
+        }
         if let Some((every_s, next_s)) = &mut self.film
             && sample.time_s >= *next_s - 1e-9
             && self.taken.len() < MOST_STILLS
@@ -73,10 +80,15 @@ impl Snapshots {
         }
     }
 
-    /// Requested times after the end of the history, in seconds; their pictures show its last instant.
-    pub(super) fn beyond_s(&self) -> Vec<f64> {
-        let times = self.taken.iter().map(|(time_s, _)| *time_s);
-        times.filter(|time_s| *time_s > self.end_s).collect()
+    /// Requested times in seconds before the start of the history, whose pictures show its first instant, and after its end, whose
+    /// pictures show its last instant.
+    pub(super) fn outside_s(&self) -> [Vec<f64>; 2] {
+        let [start_s, end_s] = self.span_s;
+        let times = || self.taken.iter().map(|(time_s, _)| *time_s);
+        [
+            times().filter(|time_s| *time_s < start_s).collect(),
+            times().filter(|time_s| *time_s > end_s).collect(),
+        ]
     }
 
     /// The largest joint stress in any of the pictures, in Pa.

@@ -238,6 +238,7 @@ impl Object {
         }
         self.ties(&row.ties)?;
         if let Some(apart) = FeetApart::of(scenario, history) {
+            self.number("start_s", scenario.ground_motion().start_s())?;
             self.numbers("feet_farthest_apart_m", apart.farthest_m.as_slice())?;
             self.number("feet_farthest_apart_time_s", apart.farthest_s)?;
             self.numbers("feet_apart_at_end_m", apart.last_m.as_slice())?;
@@ -280,6 +281,9 @@ impl Object {
             ("relaxed", row.relaxed),
             ("merged", row.merged),
         ]);
+        if row.halvings > 0 {
+            self.counts([("step_halvings", row.halvings.into())]);
+        }
         Ok(())
     }
 }

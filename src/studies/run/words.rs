@@ -174,10 +174,9 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
     if row.elastic.is_none() {
         let _ = write!(text, ", {evaluations} iterations");
     }
-    if row.elastic.is_some() && row.shortest_step_s < row.longest_step_s {
-        let halvings = (row.longest_step_s / row.shortest_step_s).log2().round();
-        let times = if halvings > 1.0 {
-            format!("{halvings:.0} times")
+    if row.halvings > 0 {
+        let times = if row.halvings > 1 {
+            format!("{} times", row.halvings)
         } else {
             "once".to_owned()
         };
@@ -530,6 +529,13 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
         up_m
     );
     let ground = scenario.ground_motion();
+    if ground.start_s() < 0.0 {
+        let _ = write!(
+            text,
+            ";\n    the right foot moves first: the history begins at {:.4} s, before time 0 of the left foot",
+            ground.start_s()
+        );
+    }
     if scenario
         .right_foot()
         .is_some_and(|right| right.record().is_some())

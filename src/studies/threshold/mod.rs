@@ -273,7 +273,7 @@ pub fn thresholds(
     runner: &Runner,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<Threshold>, ThresholdError> {
-    request.check()?;
+    request.check(ground)?;
     let factors = factors.values();
     let shaking = Shaking {
         models,

@@ -269,14 +269,15 @@ impl ElasticJoints {
         }
         Ok(Clock {
             longest_step_s: step_s,
+            may_halve: self.options.longest_step_s.is_none(),
             shortest_step_s: step_s,
             end_s,
             output_step_s: Some(request.output_step_s),
         })
     }
 
-    fn check(&self, request: &Request) -> Result<(), ArgumentError> {
-        request.check()?;
+    fn check(&self, ground: &GroundMotion, request: &Request) -> Result<(), ArgumentError> {
+        request.check(ground)?;
         match request.initial {
             None => Ok(()),
             Some(initial) => Err(ArgumentError {
@@ -294,7 +295,7 @@ impl ElasticJoints {
         ground: &'a GroundMotion,
         request: &Request,
     ) -> Result<Task<'a>, SimulationError> {
-        self.check(request)?;
+        self.check(ground, request)?;
         let gravity_m_s2 = request.gravity_m_s2;
         Ok(Task {
             row: self.row(),
@@ -310,7 +311,6 @@ impl ElasticJoints {
         Start {
             structure: &self.structure,
             rest,
-            may_halve: self.options.longest_step_s.is_none(),
             barrier_j,
         }
     }

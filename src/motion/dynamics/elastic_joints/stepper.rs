@@ -13,8 +13,8 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{
-    Course, LARGEST_ENERGY_ERROR, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO,
-    Stepper, Summit, Task, equal_step, open_hinge,
+    Course, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, Summit, Task,
+    equal_step, open_hinge,
 };
 use crate::dynamics::spread::GONE;
 use crate::dynamics::until::Until;
@@ -45,17 +45,11 @@ const HINGE_RATIO: f64 = 0.5;
 /// A joint that bears less than this fraction of the weight hardly presses: whether it slips then hardly matters.
 const PRESSED_RATIO: f64 = 0.01;
 
-/// At these fractions of the energy error that refuses a motion the steps are halved, if none were given: the error then grows four
-/// times slower.
-const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
-
 /// The common start of all motions of a group.
 #[derive(Clone, Copy)]
 pub(super) struct Start<'a> {
     pub structure: &'a ElasticStructure,
     pub rest: &'a Rest,
-    /// Whether steps may be halved where the energy balance needs it.
-    pub may_halve: bool,
     /// Energy above that at rest without which it does not overturn unless joints slip, where that is known; it takes time to find.
     pub barrier_j: &'a dyn Fn() -> Option<f64>,
 }
@@ -69,9 +63,6 @@ struct Lane<'a> {
     feet: Option<FeetApart<'a>>,
     apart_m: Vector2<f64>,
     quiet_s: f64,
-    longest_step_s: f64,
-    /// How often that was halved.
-    halved: usize,
     /// Time up to which it steps without pause.
     until_s: f64,
     /// Whether it is observed where it is.
@@ -123,18 +114,17 @@ impl<'a> Lane<'a> {
     fn new(task: Task<'a>, until: Until, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let joints = task.row.joints().len();
         let velocity = GroundVelocity::new(task.ground);
+        let start_s = task.ground.start_s();
         Self {
             until,
-            ground_m_s: velocity.at(0.0),
+            ground_m_s: velocity.at(start_s),
             velocity,
             feet: FeetApart::of(task.row, task.ground),
             apart_m: Vector2::zeros(),
             quiet_s: task.ground.end_s(),
-            longest_step_s: task.clock.longest_step_s,
-            halved: 0,
-            until_s: 0.0,
+            until_s: start_s,
             is_seen: false,
-            kicked_s: 0.0,
+            kicked_s: start_s,
             rest_j: None,
             rest_sway_kg_m: 0.0,
             still_j: 0.0,
@@ -143,11 +133,11 @@ impl<'a> Lane<'a> {
             returns: false,
             quiet: None,
             end_s: task.clock.end_s,
-            quiet_since_s: 0.0,
-            marks: Marks::new(task.clock),
+            quiet_since_s: start_s,
+            marks: Marks::new(task.clock, start_s),
             overturned: false,
             lost: None,
-            summit: Summit::new(0.0),
+            summit: Summit::new(0.0, start_s),
             elastic: ElasticSummary::default(),
             sliding: Sliding::none(joints),
             ties: Vec::new(),
@@ -158,7 +148,7 @@ impl<'a> Lane<'a> {
 
     /// Its next step.
     fn next(&mut self, damping_time_s: f64) -> Step<1> {
-        let step_s = equal_step(self.course.time, self.until_s, self.longest_step_s);
+        let step_s = equal_step(self.course.time, self.until_s, self.course.longest_step_s);
         let to_s = self.course.time + 0.5 * step_s;
         let (mut step, ground_m_s) = self.kick(to_s);
         step.drift_s = Lanes([step_s]);
@@ -339,7 +329,8 @@ impl<'a, const L: usize> Group<'a, L> {
         let bound = self.start.structure.ties().iter();
         for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
             let Some(known) = lane.ties.get_mut(tie) else {
-                lane.ties.push(TieSummary::at_rest(&bound.tie, &memory));
+                lane.ties
+                    .push(TieSummary::at_rest(&bound.tie, &memory, time));
                 continue;
             };
             let happened = known.note(&bound.tie, &memory, time).into_iter().flatten();
@@ -392,9 +383,7 @@ impl<'a, const L: usize> Group<'a, L> {
             course.moved = true;
         }
         let barrier_j = || *self.barrier_j.get_or_init(self.start.barrier_j);
-        if self.start.may_halve {
-            lane.mind_balance(barrier_j);
-        }
+        lane.mind_balance(barrier_j);
         lane.largest_j = lane.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
             lane.course.stop();
@@ -440,10 +429,9 @@ impl<'a> Lane<'a> {
 
     /// Halves the steps where the energy balance needs it, a few times at most.
     fn mind_balance(&mut self, barrier_j: impl FnOnce() -> Option<f64>) {
-        let Some(part) = HALVED_FROM.get(self.halved) else {
+        let Some(most) = self.course.halved_above() else {
             return;
         };
-        let most = part * LARGEST_ENERGY_ERROR;
         if self.course.energy_error(self.barrier_j.unwrap_or(0.0)) <= most {
             return;
         }
@@ -451,9 +439,7 @@ impl<'a> Lane<'a> {
             .barrier_j
             .get_or_insert_with(|| barrier_j().unwrap_or(0.0));
         if self.course.energy_error(barrier_j) > most {
-            self.halved += 1;
-            self.longest_step_s *= 0.5;
-            self.course.of_row.shortest_step_s = self.longest_step_s;
+            self.course.halve_steps();
         }
     }
 

@@ -207,13 +207,13 @@ impl<'a> LandingStepper<'a> {
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(task, Some(fallen), recorder),
-            kicked_s: 0.0,
+            kicked_s: ground.start_s(),
             placement: standing.placement.clone(),
             rest,
             auxiliary: program.clone(),
             program,
             closer: Closer::new(row),
-            ties: Ties::new(row, standing),
+            ties: Ties::new(row, standing, ground.start_s()),
             pieces: Vec::with_capacity(blocks),
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
@@ -234,8 +234,8 @@ impl<'a> LandingStepper<'a> {
             least_normal: f64::INFINITY,
             step_iterations: 0,
             crowd: Crowd::default(),
-            quiet_since_s: 0.0,
-            summit: Summit::new(0.0),
+            quiet_since_s: ground.start_s(),
+            summit: Summit::new(0.0, ground.start_s()),
             overturned: false,
         };
         stepper.stand_still();
@@ -431,7 +431,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let ground = self.velocity.at(to_s) - self.velocity.at(from_s.max(0.0));
+        let ground = self.velocity.at(to_s) - self.velocity.at(from_s);
         (
             -ground - Vector2::new(0.0, self.gravity * (to_s - from_s)),
             ground,

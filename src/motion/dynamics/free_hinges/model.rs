@@ -223,6 +223,7 @@ impl FreeHinges {
             settings.longest_step_s = settings.longest_step_s.max(shortest_s);
         }
         settings = settings.for_ties(row);
+        settings.may_halve = self.options.longest_step_s.is_none();
         settings.output_step_s = Some(request.output_step_s);
         settings.friction_coefficient = self.options.friction_coefficient;
         self.repeated.map_or(settings, |other| other(&settings))
@@ -272,7 +273,7 @@ impl Model for FreeHinges {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        request.check()?;
+        request.check(ground)?;
         let settings = self.settings(request);
         let initial_rad = request
             .initial
@@ -288,10 +289,10 @@ impl Model for FreeHinges {
         };
         let standing = self.rigid.standing();
         let summary = motion(task, &settings, standing, initial_rad.as_deref(), recorder)?;
-        match summary.row.as_ref().map_or(0.0, |row| row.energy_error) {
-            error if error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
-                error,
-                longest_step_s: settings.longest_step_s,
+        match &summary.row {
+            Some(row) if row.energy_error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
+                error: row.energy_error,
+                longest_step_s: settings.longest_step_s * 0.5_f64.powf(row.halvings.into()),
             }
             .into()),
             _ => Ok(summary),

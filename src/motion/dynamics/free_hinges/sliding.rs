@@ -47,7 +47,6 @@ pub(super) struct SlidingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
-    settings: &'a Settings,
     rest: Rest<'a>,
     right: RightSupport<'a>,
     /// Gaps and offsets of the joints where the row stood.
@@ -146,13 +145,12 @@ impl<'a> SlidingStepper<'a> {
             row,
             velocity: GroundVelocity::new(ground),
             gravity,
-            settings,
             course,
             velocities: vec![Vector3::zeros(); blocks],
             stuck: contacts.iter().map(|c| c.coordinates_m.z).collect(),
             lags: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
-            kicked_s: 0.0,
+            kicked_s: ground.start_s(),
             last_step: settings.longest_step_s,
             auxiliary: program.clone(),
             program,
@@ -164,14 +162,14 @@ impl<'a> SlidingStepper<'a> {
             stands,
             sliding: Sliding::none(joints),
             ground_work: 0.0,
-            summit: Summit::new(start_energy),
-            ties: Ties::new(row, standing),
+            summit: Summit::new(start_energy, ground.start_s()),
+            ties: Ties::new(row, standing, ground.start_s()),
             taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
             overturned: false,
             least_energy: f64::INFINITY,
-            quiet_since_s: 0.0,
+            quiet_since_s: ground.start_s(),
             friction_demand: 0.0,
             least_normal: f64::INFINITY,
             centres: placement.centres_m().to_vec(),
@@ -535,7 +533,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
-        let step = equal_step(self.course.time, until, self.settings.longest_step_s);
+        let step = equal_step(self.course.time, until, self.course.longest_step_s);
         let to_s = self.course.time + 0.5 * step;
         let (kick, ground) = self.kick(to_s);
         let momentum = self.momentum();
@@ -627,6 +625,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         } else {
             self.stands = self.touches_as_it_stood();
         }
+        self.course.mind_balance();
         for (tie, kind) in self.ties.happened(self.course.time) {
             self.tell_tie(tie, kind);
         }

@@ -28,8 +28,8 @@ pub(super) struct Ties<'a> {
 }
 
 impl<'a> Ties<'a> {
-    /// Of a row that stands there.
-    pub fn new(row: &'a Row, standing: &Stance) -> Self {
+    /// Of a row that stands there when its motion starts.
+    pub fn new(row: &'a Row, standing: &Stance, start_s: f64) -> Self {
         let lines = standing.lines(row).zip(&standing.ties);
         let ties = row
             .ties()
@@ -38,7 +38,7 @@ impl<'a> Ties<'a> {
             .map(|(tie, (line, memory))| Pulling {
                 tie,
                 line,
-                summary: TieSummary::at_rest(tie, memory),
+                summary: TieSummary::at_rest(tie, memory, start_s),
                 memory: *memory,
             });
         let mut ties = Self {

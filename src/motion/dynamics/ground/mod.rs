@@ -30,7 +30,7 @@ pub use pulse::{Pulse, PulseShape, WaveTrain};
 pub(in crate::dynamics) use velocity::FeetApart;
 pub use velocity::GroundVelocity;
 
-/// Ground acceleration from time zero on, zero after the last corner.
+/// Ground acceleration from [`GroundMotion::start_s`] on, zero after the last corner.
 ///
 /// It is that of the whole ground, or of that under the left foot of a structure whose right foot moves in another way.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,8 @@ impl GroundMotion {
         )
     }
 
-    /// Quiet until `start_s`, then the pieces given by end, origin and formula, then quiet for good.
+    /// Quiet from time zero until `start_s` (from `start_s` on if that is negative), then the pieces given by end, origin and formula, then
+    /// quiet for good.
     fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
         let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
         let all = [quiet(start_s)]
@@ -66,7 +67,7 @@ impl GroundMotion {
             .chain(moving)
             .chain([quiet(f64::INFINITY)]);
         let mut pieces = Vec::new();
-        let mut piece_start_s = 0.0;
+        let mut piece_start_s = start_s.min(0.0);
         for (end_s, origin_s, formula) in all {
             // A piece shorter than the spacing of floating-point times around it vanishes.
             if end_s > piece_start_s {
@@ -86,14 +87,55 @@ impl GroundMotion {
         }
     }
 
-    /// The same under the left foot, and another motion under the right one. Both start from the same rest. From the later of their ends
-    /// on the feet stay as far apart as they then are.
+    /// Motion of two feet: this one under the left foot, `right` under the right foot. Both start from the same rest at the earlier of their
+    /// starts. From the later of their ends on the distance between the feet stays constant.
     #[must_use]
     pub fn with_right_foot(self, right: Self) -> Self {
+        let start_s = self.start_s().min(right.start_s());
         Self {
-            right: Some(Arc::new(right)),
-            ..self
+            right: Some(Arc::new(right.quiet_from(start_s))),
+            ..self.quiet_from(start_s)
         }
+    }
+
+    /// Motion of two feet: this one under the left foot, and under the right foot the same motion later by a time in seconds, in -1e9 to 1e9.
+    /// A negative delay starts the right foot earlier: if its acceleration then begins before time zero, the motion of both feet
+    /// [starts](Self::start_s) at that negative time. The times of the left foot never change.
+    ///
+    /// # Errors
+    /// When the delay is out of range.
+    pub fn with_delayed_right_foot(self, delay_s: f64) -> Result<Self, GroundError> {
+        let right = if delay_s >= 0.0 {
+            self.late_by(delay_s)?
+        } else {
+            error::time_s("-delay_s", -delay_s)?;
+            self.earlier_by(-delay_s)
+        };
+        Ok(self.with_right_foot(right))
+    }
+
+    /// Time at which the motion begins, in seconds: zero, or negative where the right foot accelerates before time zero.
+    #[must_use]
+    pub fn start_s(&self) -> f64 {
+        self.pieces.first().map_or(0.0, |piece| piece.start_s)
+    }
+
+    /// The same motion after quiet ground from this time on, which is not later than its start.
+    fn quiet_from(mut self, start_s: f64) -> Self {
+        match self.pieces.first_mut() {
+            Some(first) if start_s < first.start_s && first.is_quiet() => first.start_s = start_s,
+            Some(first) if start_s < first.start_s => {
+                let quiet = Piece {
+                    start_s,
+                    end_s: first.start_s,
+                    origin_s: start_s,
+                    formula: Formula::constant(Vector2::zeros()),
+                };
+                self.pieces.insert(0, quiet);
+            }
+            _ => {}
+        }
+        self
     }
 
     /// The motion under the right foot, where it is another one.
@@ -125,21 +167,36 @@ impl GroundMotion {
     /// When the delay is out of range.
     pub fn late_by(&self, delay_s: f64) -> Result<Self, GroundError> {
         error::time_s("delay_s", delay_s)?;
-        let moving = self.pieces.iter().filter(|piece| !piece.stays_still());
-        let later = moving.map(|piece| {
-            let (end_s, origin_s) = (piece.end_s + delay_s, piece.origin_s + delay_s);
-            (end_s, origin_s, piece.formula)
-        });
         let right = self.right_foot().map(|right| right.late_by(delay_s));
         Ok(Self {
             stops: self.stops,
             right: right.transpose()?.map(Arc::new),
-            ..Self::join(delay_s, later)
+            ..self.moved_by(delay_s, self.start_s())
         })
     }
 
+    /// The motion of this foot, earlier by a time in seconds. It starts where its acceleration begins if that is before time zero.
+    fn earlier_by(&self, lead_s: f64) -> Self {
+        let begins = self.pieces.iter().find(|piece| !piece.is_quiet());
+        Self {
+            stops: self.stops,
+            ..self.moved_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
+        }
+    }
+
+    /// The pieces from this time on, with all their times changed by a delay.
+    fn moved_by(&self, delay_s: f64, from_s: f64) -> Self {
+        let pieces = self.pieces.iter();
+        let moving = pieces.filter(|piece| !piece.stays_still() && piece.start_s >= from_s);
+        let moved = moving.map(|piece| {
+            let (end_s, origin_s) = (piece.end_s + delay_s, piece.origin_s + delay_s);
+            (end_s, origin_s, piece.formula)
+        });
+        Self::join(from_s + delay_s, moved)
+    }
+
     /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m, at these times, which
-    /// ascend from zero on; zero where both move alike.
+    /// ascend from the start on; zero where both move alike.
     #[must_use]
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let Some(right) = self.right_foot() else {
@@ -149,7 +206,7 @@ impl GroundMotion {
         times_s.iter().map(|time_s| feet.at(*time_s)).collect()
     }
 
-    /// The pieces in order, without gaps, from zero to infinity.
+    /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.
     #[must_use]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces

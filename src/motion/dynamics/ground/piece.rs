@@ -109,6 +109,11 @@ impl Piece {
         self.end_s == f64::INFINITY
     }
 
+    /// Whether the acceleration is zero throughout.
+    pub(super) fn is_quiet(&self) -> bool {
+        self.ends_m_s2() == [Vector2::zeros(); 2]
+    }
+
     /// Longest step that resolves the shape of the piece.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {

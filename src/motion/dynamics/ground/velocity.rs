@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::GroundMotion;
 use crate::mechanics::blocks::Row;
 
-/// Velocity of the ground that starts from rest at time zero.
+/// Velocity of the ground, which starts from rest at [`GroundMotion::start_s`].
 #[derive(Clone, Debug)]
 pub struct GroundVelocity<'a> {
     ground: &'a GroundMotion,
@@ -38,7 +38,7 @@ impl<'a> GroundVelocity<'a> {
     }
 
     /// The velocity in m/s, of the left of two feet that move differently, horizontal and vertical (positive to the right and upwards), at a time that is not
-    /// negative.
+    /// before the start.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
         let pieces = self.ground.pieces();
@@ -47,7 +47,7 @@ impl<'a> GroundVelocity<'a> {
         self.at_starts_m_s[index] + pieces[index].velocity_gained_m_s(time_s)
     }
 
-    /// Displacements of the ground at these times, which ascend from zero on, in m from its position at time zero.
+    /// Displacements of the ground at these times, which ascend from the start on, in m from its position at the start.
     /// They follow by Simpson's rule over the parts between times and corners, which is exact for records and
     /// constant accelerations.
     #[must_use]
@@ -57,7 +57,7 @@ impl<'a> GroundVelocity<'a> {
     }
 }
 
-/// The way of the ground from time zero on.
+/// The way of the ground from its start on.
 #[derive(Clone, Debug)]
 struct Way<'a> {
     velocity: GroundVelocity<'a>,
@@ -70,9 +70,9 @@ struct Way<'a> {
 impl<'a> Way<'a> {
     fn new(velocity: GroundVelocity<'a>) -> Self {
         Self {
-            velocity,
             piece: 0,
-            time_s: 0.0,
+            time_s: velocity.ground.start_s(),
+            velocity,
             at_m: Vector2::zeros(),
         }
     }

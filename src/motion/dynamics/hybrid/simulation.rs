@@ -215,7 +215,7 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     ground: &'a GroundMotion,
     request: &Request,
 ) -> Result<Rocking<'a, C>, SimulationError> {
-    request.check()?;
+    request.check(ground)?;
     if let Some(initial) = request.initial {
         let limit_rad = chain.limit_towards_rad(initial.sway);
         if initial.rotation_rad >= limit_rad {

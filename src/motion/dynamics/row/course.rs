@@ -31,6 +31,8 @@ pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
 pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
 /// On the way down, a rise of less than this fraction of weight times size is no return.
 const LEAST_RETURN: f64 = 1e-3;
+/// A start within this fraction of the output step before a multiple of it counts as that multiple.
+const ALIGNED: f64 = 1e-6;
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
 pub(in crate::dynamics) const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 /// Energies below this fraction of weight times size are no motion: their balance is rounding.
@@ -39,11 +41,17 @@ const LEAST_ENERGY_RATIO: f64 = 1e-6;
 /// before, and its potential energy says nothing about that barrier.
 const SLIPPED_RATIO: f64 = 0.01;
 
+/// At these fractions of the energy error that refuses a motion the steps are halved, if none were given: the error then grows at least two
+/// times slower, four times with elastic joints.
+const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
+
 /// How long a motion is computed, and in which steps.
 #[derive(Clone, Copy)]
 pub(in crate::dynamics) struct Clock {
     /// Longest step in seconds.
     pub longest_step_s: f64,
+    /// Whether steps may be halved where the energy balance needs it.
+    pub may_halve: bool,
     /// Shortest step in seconds.
     pub shortest_step_s: f64,
     /// When to stop at the latest, in seconds.
@@ -52,15 +60,22 @@ pub(in crate::dynamics) struct Clock {
     pub output_step_s: Option<f64>,
 }
 
-/// The times at which samples are due and steps end.
+/// The times at which samples are due and steps end: the start, and multiples of the output step after it.
 pub(in crate::dynamics) struct Marks {
     clock: Clock,
+    start_s: f64,
+    /// The next multiple; before the start, the start is next.
     passed: f64,
 }
 
 impl Marks {
-    pub(in crate::dynamics) const fn new(clock: Clock) -> Self {
-        Self { clock, passed: 0.0 }
+    pub(in crate::dynamics) fn new(clock: Clock, start_s: f64) -> Self {
+        let steps = clock.output_step_s.map_or(0.0, |step_s| start_s / step_s);
+        Self {
+            clock,
+            start_s,
+            passed: (steps + ALIGNED).floor(),
+        }
     }
 
     /// The marks of a fall from this time on.
@@ -74,13 +89,21 @@ impl Marks {
         };
         Self {
             clock,
+            start_s: from_s,
             passed: (from_s / step_s).floor() + 1.0,
         }
     }
 
     fn mark_s(&self) -> f64 {
-        let output_step_s = self.clock.output_step_s;
-        output_step_s.map_or(f64::INFINITY, |step_s| self.passed * step_s)
+        let Some(step_s) = self.clock.output_step_s else {
+            return f64::INFINITY;
+        };
+        let mark_s = self.passed * step_s;
+        if mark_s < self.start_s + ALIGNED * step_s {
+            self.start_s
+        } else {
+            mark_s
+        }
     }
 
     /// Whether a sample is due.
@@ -132,6 +155,8 @@ pub(in crate::dynamics) struct Course<'a> {
     pub opened: Vec<Hinge>,
     pub summary: Summary,
     pub of_row: RowSummary,
+    /// Longest step from now on, in seconds.
+    pub longest_step_s: f64,
     task: Task<'a>,
     /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
     fallen: f64,
@@ -351,7 +376,7 @@ where
     S: Stepper<'a, Error: Display>,
 {
     let clock = stepper.course().task.clock;
-    let mut marks = Marks::new(clock);
+    let mut marks = Marks::new(clock, stepper.course().time);
     let mut sampled_s = None;
     let samples_are_made = clock.output_step_s.is_some() && stepper.course().is_followed();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
@@ -429,9 +454,9 @@ pub(in crate::dynamics) struct Summit {
 }
 
 impl Summit {
-    pub(in crate::dynamics) const fn new(height: f64) -> Self {
+    pub(in crate::dynamics) const fn new(height: f64, time: f64) -> Self {
         Self {
-            time: 0.0,
+            time,
             highest: height,
             lowest: height,
         }
@@ -507,8 +532,9 @@ impl<'a> Course<'a> {
         let Task { row, clock, .. } = task;
         let joints = row.joints().len();
         let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m();
+        let start_s = task.ground.start_s();
         Self {
-            time: 0.0,
+            time: start_s,
             potential: 0.0,
             kinetic: 0.0,
             sway: 0.0,
@@ -517,13 +543,14 @@ impl<'a> Course<'a> {
             energy_unit,
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
+            longest_step_s: clock.longest_step_s,
             task,
             fallen: fallen.unwrap_or(f64::NEG_INFINITY),
             peak_potential: 0.0,
             cycle: None,
             cycle_energy: None,
             rising: false,
-            highest_s: 0.0,
+            highest_s: start_s,
             recorder,
             stopped: false,
             falls: false,
@@ -533,8 +560,8 @@ impl<'a> Course<'a> {
             thrust: ThrustRecord::default(),
             summary: Summary {
                 outcome: Outcome::StillRocking,
-                outcome_time_s: 0.0,
-                end_s: 0.0,
+                outcome_time_s: start_s,
+                end_s: start_s,
                 impacts: 0,
                 peak_rotations_rad: vec![0.0; row.blocks().len()],
                 peak_over_critical: None,
@@ -563,6 +590,7 @@ impl<'a> Course<'a> {
                 most_iterations: 0,
                 relaxed: 0,
                 merged: 0,
+                halvings: 0,
                 longest_step: Elapsed(None),
             },
         }
@@ -707,6 +735,28 @@ impl<'a> Course<'a> {
         let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
         let defect_j = self.summary.energy_defect_ratio * self.energy_unit;
         defect_j / kinetic_j.max(barrier_j).max(least_j)
+    }
+
+    /// The energy error above which steps are halved next, if they may be.
+    pub(in crate::dynamics) fn halved_above(&self) -> Option<f64> {
+        let part = HALVED_FROM.get(self.of_row.halvings as usize)?;
+        (self.task.clock.may_halve).then_some(part * LARGEST_ENERGY_ERROR)
+    }
+
+    /// Halves the steps from now on.
+    pub(in crate::dynamics) fn halve_steps(&mut self) {
+        self.longest_step_s *= 0.5;
+        let of_row = &mut self.of_row;
+        of_row.halvings += 1;
+        of_row.shortest_step_s = of_row.shortest_step_s.min(self.longest_step_s);
+    }
+
+    /// Halves the steps where the energy balance needs it, a few times at most.
+    pub(in crate::dynamics) fn mind_balance(&mut self) {
+        let most = self.halved_above();
+        if most.is_some_and(|most| self.energy_error(self.task.energy_scale_j) > most) {
+            self.halve_steps();
+        }
     }
 
     /// Ends the motion here.

@@ -28,6 +28,7 @@
   const pressed = new Uint8Array(buffer(frames.pressed));
   const states = new Uint8Array(buffer(frames.states));
   const count = times.length;
+  const start = times[0];
   const end = times[count - 1];
   // The history ends before the fall that the page goes on to show.
   const historyEnd = data.end_s;
@@ -36,7 +37,7 @@
   const NO_THRUST = -32768;
 
   // ---- the state of the page ----
-  let time = 0;
+  let time = start;
   let playing = false;
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -562,11 +563,11 @@
     if (plots.length === 0) return;
     const { min, max } = plots[0].scales.x;
     const half = (0.5 * (max - min)) / factor;
-    const from = Math.max(0, Math.min(time - half, historyEnd - 2 * half));
+    const from = Math.max(start, Math.min(time - half, historyEnd - 2 * half));
     plots[0].setScale("x", { min: from, max: Math.min(historyEnd, from + 2 * half) });
   }
 
-  const showAll = () => plots[0]?.setScale("x", { min: 0, max: historyEnd });
+  const showAll = () => plots[0]?.setScale("x", { min: start, max: historyEnd });
 
   function curve(encoded) {
     const values = new Float32Array(buffer(encoded));
@@ -622,11 +623,12 @@
 
   // ---- time ----
   const slider = find("time");
+  slider.min = start;
   slider.max = end;
   slider.step = "any";
 
   function seek(to) {
-    time = Math.min(Math.max(to, 0), end);
+    time = Math.min(Math.max(to, start), end);
     slider.value = time;
     slider.setAttribute("aria-valuetext", `${time.toFixed(3)} s`);
     draw();
@@ -649,7 +651,7 @@
   }
 
   function play(on) {
-    if (on && time >= end) seek(0);
+    if (on && time >= end) seek(start);
     const starts = on && !playing;
     playing = on;
     last = null;
@@ -698,7 +700,7 @@
     " ": () => play(!playing),
     ArrowLeft: (event) => stepBy(event.shiftKey ? -10 : -1),
     ArrowRight: (event) => stepBy(event.shiftKey ? 10 : 1),
-    Home: () => seek(0),
+    Home: () => seek(start),
     End: () => seek(end),
     ArrowUp: () => exaggerate(exaggeration() + 1),
     ArrowDown: () => exaggerate(exaggeration() - 1),

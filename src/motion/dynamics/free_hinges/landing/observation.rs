@@ -185,7 +185,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     /// It ends at its landing, if there is one.
     fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
         self.step_iterations = 0;
-        let longest = equal_step(self.course.time, until, self.settings.longest_step_s);
+        let longest = equal_step(self.course.time, until, self.course.longest_step_s);
         self.touch_shut();
         self.closed.copy_from_slice(&self.touching);
         let from_s = self.course.time;
@@ -207,6 +207,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         } else if self.stands {
             self.report_uplift(from_s);
         }
+        self.course.mind_balance();
         for (tie, kind) in self.ties.happened(self.course.time) {
             self.tell_tie(tie, kind);
         }
