@@ -9,6 +9,7 @@ mod program;
 mod results;
 
 mod capacity;
+mod caveats;
 mod certain;
 mod certificate;
 mod check_record;

@@ -312,15 +312,18 @@ fn the_program_tells_what_follows() {
     let at = folder.path();
     fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
     let said = printed(at, &["run", "s.toml", "--out", "one", "--no-report"]);
-    let (_, samples) = said
-        .split_once("of 64 samples of [uncertain]:\n  ")
-        .unwrap();
-    // One sentence, over several lines.
-    let (first, _) = samples.split_once("\n  overturned: ").unwrap();
+    // The first line is the probability; one sentence, over several lines, before the report on the scenario itself.
+    let (first, rest) = said.split_once("\n  overturned: ").unwrap();
+    assert!(
+        first.starts_with("  overturns with a probability of "),
+        "{said}"
+    );
+    assert!(rest.contains("\nthe scenario itself:\n  "), "{said}");
     for words in [
-        "overturns with a probability of ",
+        " of 64 samples of [uncertain];\n",
         "the scenario itself ",
         "amplitude decides ",
+        " % (95 %: ",
         "not considered: ",
     ] {
         assert!(first.contains(words), "{first}");
@@ -404,7 +407,9 @@ fn maps_tell_the_probability_of_each_cell() {
     fs::write(at.join("s.toml"), &text).unwrap();
     let said = done(at, &["map", "s.toml", "--out", "r", "--threads", "2"]);
     assert!(
-        said.contains("of 64 samples of [uncertain]:\n  of 12 cells the probability of overturning is at least 5.0 % in "),
+        said.starts_with("  overturns with a probability of at least 5.0 % in ")
+            && said.contains(" of 12 cells, 50 % in ")
+            && said.contains(", from 64 samples of [uncertain];\n"),
         "{said}"
     );
     assert!(
@@ -552,6 +557,78 @@ fn maps_tell_the_probability_of_each_cell() {
     );
 }
 
+/// Where the lowest cell of a map, or the smallest factor of a threshold, already overturns, it is no edge but a bound.
+#[test]
+fn the_least_strength_that_was_tried_is_no_edge() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = format!(
+        "{COLUMN}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.5\n[simulation]\nduration_s = 20.0\n\
+         [map]\nduration_s = [0.1, 0.5]\namplitude_g = {{ from = 0.35, to = 0.5, count = 3 }}\n\
+         [uncertain]\nsamples = 32\n'column.width_m' = {{ from = 0.7, to = 0.9 }}\n"
+    );
+    fs::write(at.join("s.toml"), &text).unwrap();
+    let said = done(at, &["map", "s.toml", "--out", "r"]);
+    assert!(
+        said.contains("at duration_s 0.1000 by amplitude_g: 5.0 % nowhere")
+            && said.contains("at duration_s 0.5000 by amplitude_g: 5.0 % at or below 0.3500"),
+        "{said}"
+    );
+    let lines = Table::read(at.join("r/uncertain_map/probability.csv"));
+    let [none, bound] = [&lines.rows[0], &lines.rows[1]];
+    assert_eq!([&none["overturned_05"], &none["at_most_05"]], ["", "no"]);
+    assert_eq!(
+        [&bound["overturned_05"], &bound["at_most_05"]],
+        ["0.35", "yes"]
+    );
+    // A line of the picture needs a place inside the map.
+    let picture = fs::read_to_string(at.join("r/uncertain_map/map.svg")).unwrap();
+    assert!(!picture.contains("probability of 5 %"));
+
+    let said = printed(
+        at,
+        &[
+            "threshold",
+            "s.toml",
+            "--out",
+            "t",
+            "--from",
+            "0.9",
+            "--to",
+            "2",
+        ],
+    );
+    assert!(said.contains("(5 %: at or below 0.9000, 95 %: "), "{said}");
+    let table = Table::read(at.join("t/uncertain_threshold/samples.csv"));
+    let bounds = table.rows[1..]
+        .iter()
+        .filter(|row| &row["at_most"] == "yes");
+    let bounds = bounds.count();
+    let summary = json(&at.join("t/uncertain_threshold/uncertain.json"));
+    assert!((1..32).contains(&bounds));
+    assert_eq!(summary["at_smallest_factor"], bounds);
+    // What overturns at the smallest factor, above 1, may or may not overturn at 1.
+    let said = printed(
+        at,
+        &[
+            "threshold",
+            "s.toml",
+            "--out",
+            "u",
+            "--from",
+            "1.1",
+            "--to",
+            "2",
+        ],
+    );
+    assert!(
+        said.starts_with("  overturns with a probability that is not known up to the factor 1"),
+        "{said}"
+    );
+    let summary = json(&at.join("u/uncertain_threshold/uncertain.json"));
+    assert!(summary["overturned_up_to_factor_1"].is_null());
+}
+
 /// The first factor of a sample equals the threshold of its own scenario.
 #[test]
 fn thresholds_have_a_distribution() {
@@ -562,7 +639,8 @@ fn thresholds_have_a_distribution() {
     let arguments = [&["threshold", "s.toml", "--out", "all"][..], &strides].concat();
     let said = printed(at, &arguments);
     assert!(
-        said.contains("of 16 samples of [uncertain]:\n  first overturns at a factor of "),
+        said.starts_with("  overturns up to the factor 1 with a probability of ")
+            && said.contains(" of 16 samples;\n    half of the samples first overturn at "),
         "{said}"
     );
     let results = at.join("all/uncertain_threshold");
@@ -1106,14 +1184,16 @@ fn suites_tell_the_parts_of_fragility() {
     fs::write(at.join("s.toml"), text).unwrap();
     let said = done(at, &["suite", "s.toml", "--out", "r"]);
     assert!(
-        said.contains(
-            "of 24 samples of [uncertain]:\n  overturns with a probability of 5 % up to peak_g "
-        ),
+        said.starts_with("  overturns with a probability of 5 % at peak_g "),
         "{said}"
     );
     for words in [
-        ", of 50 % up to ",
-        "the scenario itself with 5 % up to ",
+        ", of 50 % at ",
+        ", over records and 24 samples of [uncertain];\n",
+        "the scenario itself with 5 % at ",
+        "\nthe scenario itself:\n  ",
+        "(the lognormal curve that fits all cases best;",
+        "fractiles (16, 50 and 84 %) of the intensities at which a record first overturns",
         "width decides ",
         "not considered: ",
     ] {

@@ -20,7 +20,7 @@ use super::figure::{FigureOption, PanelsOption};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::studies::compare;
 use super::study::Work;
-use super::uncertain::{Asked, Telling, words};
+use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
@@ -209,30 +209,38 @@ impl Job {
             figure: arguments.figure.get()?,
             quiet,
         };
-        let mut told = if samples.is_part(&self.scenarios)? {
-            Told {
-                words: String::new(),
-                summary: Value::Null,
-            }
-        } else {
-            self.run_itself(arguments, quiet)?
-        };
+        if samples.is_part(&self.scenarios)? {
+            let (words, summary) = (String::new(), Value::Null);
+            let mut told = Told { words, summary };
+            self.run_samples(samples, &mut told)?;
+            return Ok(told);
+        }
+        let mut told = self.run_itself(arguments, quiet)?;
         self.run_samples(samples, &mut told)?;
+        let mut heading = heading(&self.scenarios[0]);
+        if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
+            let _ = writeln!(heading, "  {ignored}");
+        }
+        told.words.insert_str(0, &heading);
         Ok(told)
     }
 
-    /// Runs the samples of `[uncertain]`, and adds their results.
+    /// Runs the samples of `[uncertain]`, and adds their results, of which the words come first.
     fn run_samples(&self, samples: Telling, told: &mut Told) -> Result<(), Failure> {
         let Some(place) = &self.place.results else {
             return Ok(());
         };
+        let mut likely = String::new();
         let several = self.scenarios.len() > 1;
         let mut models = Vec::new();
         for scenario in &self.scenarios {
             let name = scenario.motion().hinges().name();
             let place = if several { &place.within(name) } else { place };
             if let Some(results) = samples.tell(scenario, Asked::Histories, place)? {
-                told.words += &words(&results);
+                if several {
+                    let _ = writeln!(likely, "{}", scenario.motion().words());
+                }
+                likely += &results.words;
                 let summary = if several {
                     &mut told.summary[name]
                 } else {
@@ -244,8 +252,11 @@ impl Job {
         }
         let title = self.scenarios[0].title();
         if let Some(compared) = compare(title, &models, place, samples.figure)? {
-            let _ = writeln!(told.words, "{}", compared.words);
+            let _ = writeln!(likely, "{}", compared.words);
             told.summary["peaks"] = compared.summary;
+        }
+        if !likely.is_empty() {
+            told.words.insert_str(0, &(likely + ITSELF));
         }
         Ok(())
     }
@@ -253,10 +264,6 @@ impl Job {
     /// Runs the scenario itself.
     fn run_itself(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
         let (scenarios, place) = (&self.scenarios, &self.place);
-        let mut text = heading(&scenarios[0]);
-        if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
-            let _ = writeln!(text, "  {ignored}");
-        }
         let several = scenarios.len() > 1;
         if several && place.to_stdout {
             let message = "--rotations - is for one model: choose one by --hinges";
@@ -276,16 +283,11 @@ impl Job {
         let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
         let runs = runs.map_err(Failure::Input)?;
-        let told = if several {
-            self.run_all(&runs, quiet)?
-        } else {
-            let RunResults { words, summary, .. } = place.run(&runs[0], &scenarios[0], quiet)?;
-            Told { words, summary }
-        };
-        Ok(Told {
-            words: text + &told.words,
-            ..told
-        })
+        if several {
+            return self.run_all(&runs, quiet);
+        }
+        let RunResults { words, summary, .. } = place.run(&runs[0], &scenarios[0], quiet)?;
+        Ok(Told { words, summary })
     }
 
     /// Runs several models, each in a folder of its own, and draws them in one picture.

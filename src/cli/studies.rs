@@ -17,7 +17,7 @@ use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, Input};
 use super::study::{HingesOption, Options, say};
-use super::uncertain::{Asked, Telling, words};
+use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -173,41 +173,53 @@ pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
     if scenario.uncertain().is_some() {
         CellsOfSamples::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
     }
-    with_samples(
+    let place = options.place(&input, arguments.figure)?;
+    let results = with_samples(
         StudyKind::Map,
         Asked::Map(look),
         options,
         (&input, &scenario),
-        (look, arguments.figure),
+        (look, &place),
         quiet,
-    )
+    )?;
+    show_if_whole(results, &place, options.format(), quiet)
 }
 
-/// Computes a study of a scenario, and then that of its samples. A part of a scenario with samples is one of these.
+/// Computes a study of a scenario, and then that of its samples, whose words come first. A part of a scenario with samples is one of
+/// these. Returns the results, which are written; `None` of a part.
 fn with_samples(
     kind: StudyKind,
     asked: Asked,
     options: &Options,
     (input, scenario): (&Input<'_>, &Scenario),
-    (look, figure): (Look, FigureOption),
+    (look, place): (Look, &Destination),
     quiet: bool,
-) -> Result<(), Failure> {
+) -> Result<Option<Results>, Failure> {
     let samples = Telling {
         work: options.work(),
         figure: look.figure,
         quiet,
     };
+    let mut own = None;
     if scenario.uncertain().is_none() || !samples.work.is_part() {
-        options.study(kind, input, scenario, (look, figure), quiet)?;
+        own = options.compute(kind, input, scenario, (look, place), quiet)?;
     }
-    let place = options.place(input, figure)?;
-    let told = samples.tell(scenario, asked, &place)?;
-    if let Some(results) = told
-        && !quiet
-    {
-        say(words(&results).trim_end());
+    let likely = samples.tell(scenario, asked, place)?;
+    if let (Some(own), Some(likely)) = (&mut own, likely) {
+        own.words.insert_str(0, &(likely.words + ITSELF + "  "));
+        own.summary["uncertain"] = likely.summary;
     }
-    Ok(())
+    Ok(own)
+}
+
+/// Tells results that are written; a part has none.
+fn show_if_whole(
+    results: Option<Results>,
+    place: &Destination,
+    format: Format,
+    quiet: bool,
+) -> Result<(), Failure> {
+    results.map_or(Ok(()), |results| show(&results, place, format, quiet))
 }
 
 pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
@@ -221,41 +233,32 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
         }
     }
     let look = Look::of(arguments.figure.get()?);
-    if let [scenario] = &scenarios[..] {
-        return with_samples(
+    let place = options.place(&input, arguments.figure)?;
+    let compute = |scenario: &Scenario, place: &Destination| {
+        let asked = Asked::Suite;
+        with_samples(
             StudyKind::Suite,
-            Asked::Suite,
+            asked,
             options,
             (&input, scenario),
-            (look, arguments.figure),
+            (look, place),
             quiet,
-        );
-    }
-    let place = options.place(&input, arguments.figure)?;
-    let samples = Telling {
-        work: options.work(),
-        figure: look.figure,
-        quiet,
+        )
     };
+    if let [scenario] = &scenarios[..] {
+        return show_if_whole(compute(scenario, &place)?, &place, options.format(), quiet);
+    }
     let (mut models, mut summaries) = (Vec::new(), Map::new());
     for scenario in &scenarios {
         let name = scenario.motion().hinges().name();
         let place = place.within(name);
-        if scenario.uncertain().is_none() || !samples.work.is_part() {
-            let own = options.compute(StudyKind::Suite, &input, scenario, (look, &place), quiet)?;
-            if let Some(results) = own {
-                if !quiet {
-                    say(scenario.motion().words());
-                }
-                show(&results, &place, Format::Text, quiet)?;
-                models.push((scenario.motion().words(), results.peaks));
-                summaries.insert(name.to_owned(), results.summary);
+        if let Some(results) = compute(scenario, &place)? {
+            if !quiet {
+                say(scenario.motion().words());
             }
-        }
-        if let Some(results) = samples.tell(scenario, Asked::Suite, &place)?
-            && !quiet
-        {
-            say(words(&results).trim_end());
+            show(&results, &place, Format::Text, quiet)?;
+            models.push((scenario.motion().words(), results.peaks));
+            summaries.insert(name.to_owned(), results.summary);
         }
     }
     let compared = compare(scenarios[0].title(), &models, &place, look.figure)?;
@@ -302,13 +305,18 @@ pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failur
     let input = options.open()?;
     let scenario = input.read_as_built()?;
     let look = Look::of(arguments.figure.get()?);
-    options.study(
+    if !quiet {
+        super::warn(&scenario.unlikely());
+    }
+    let place = options.place(&input, arguments.figure)?;
+    let results = options.compute(
         StudyKind::Spectrum,
         &input,
         &scenario,
-        (look, arguments.figure),
+        (look, &place),
         quiet,
-    )
+    )?;
+    show_if_whole(results, &place, options.format(), quiet)
 }
 
 pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {

@@ -149,22 +149,6 @@ impl Options {
         Ok(figure.printed(input.results(self.out.as_deref())?))
     }
 
-    /// Computes the study of a scenario, or the part that was asked for, and tells the results once all rows are computed.
-    pub fn study(
-        &self,
-        kind: StudyKind,
-        input: &Input<'_>,
-        scenario: &Scenario,
-        (look, figure): (Look, FigureOption),
-        quiet: bool,
-    ) -> Result<(), Failure> {
-        let place = self.place(input, figure)?;
-        match self.compute(kind, input, scenario, (look, &place), quiet)? {
-            Some(results) => super::studies::show(&results, &place, self.format, quiet),
-            None => Ok(()),
-        }
-    }
-
     /// The format of the printed summary.
     pub const fn format(&self) -> Format {
         self.format

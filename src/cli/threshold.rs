@@ -14,7 +14,7 @@ use super::figure::FigureOption;
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Work, say};
-use super::uncertain::{Asked, Telling, words};
+use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
@@ -92,15 +92,22 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         } else {
             find(scenarios, place, &factors, arguments, quiet)?
         };
+        let mut likely = String::new();
+        let several = scenarios.len() > 1;
         for scenario in scenarios {
             let name = scenario.motion().hinges().name();
-            let several = scenarios.len() > 1;
             let place = if several { &place.within(name) } else { place };
             if let Some(told) = samples.tell(scenario, Asked::FirstEdges(factors), place)? {
-                results.words += &words(&told);
+                if several {
+                    likely += &format!("{}\n", scenario.motion().words());
+                }
+                likely += &told.words;
                 let summary = &mut results.summary["uncertain"];
                 *(if several { &mut summary[name] } else { summary }) = told.summary;
             }
+        }
+        if !likely.is_empty() {
+            results.words.insert_str(0, &(likely + ITSELF));
         }
         found.push(results);
     }

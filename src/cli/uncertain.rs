@@ -9,7 +9,7 @@ use archrock::studies::threshold::Factors;
 
 use super::Failure;
 use super::scenario_file::Destination;
-use super::study::{Work, say};
+use super::study::Work;
 
 /// How the samples are computed and reported.
 #[derive(Clone, Copy)]
@@ -48,7 +48,7 @@ impl Telling {
     }
 
     /// Computes the samples of a scenario that has `[uncertain]`, and writes their results into their own folder inside
-    /// `place`. Returns `None` if the scenario has no `[uncertain]`, or if only a part is computed.
+    /// `place`, which the words name. Returns `None` if the scenario has no `[uncertain]`, or if only a part is computed.
     pub fn tell(
         self,
         scenario: &Scenario,
@@ -82,23 +82,19 @@ impl Telling {
                     }
                 })
             })?;
-        let Some((results, part)) = done else {
+        let Some((mut results, part)) = done else {
             return Ok(None);
         };
         place.write(&results, true)?;
-        if !self.quiet {
-            say(&format!("results in {}", place.holds(&results)));
-        }
         part.map_or(Ok(()), PartFile::remove)?;
+        results.words = format!(
+            "  {}\n  results in {}\n",
+            results.words,
+            place.holds(&results)
+        );
         Ok(Some(results))
     }
 }
 
-/// The summary of the samples, which follows that of the scenario itself.
-pub fn words(results: &Results) -> String {
-    let samples = &results.summary["samples"];
-    format!(
-        "of {samples} samples of [uncertain]:\n  {}\n",
-        results.words
-    )
-}
+/// What precedes the report on the scenario itself, which follows that on its samples: they say how likely overturning is.
+pub const ITSELF: &str = "the scenario itself:\n";

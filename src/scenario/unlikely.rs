@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::{Form, Ground, PulseGround, Scaling, Scenario, Series, Structure};
 use crate::argument::{plain, short};
+use crate::dynamics::model::Model;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
 
@@ -33,6 +34,17 @@ impl Scenario {
     /// The unlikely values, a sentence each, with a suggestion what was meant.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
+        self.unlikely_with(|| starts_g(&*self.model().ok()?))
+    }
+
+    /// The unlikely values, as [`Scenario::unlikely`], of a scenario whose model of motion is at hand.
+    #[must_use]
+    pub fn unlikely_of(&self, model: &dyn Model) -> Vec<String> {
+        self.unlikely_with(|| starts_g(model))
+    }
+
+    /// The unlikely values; `starts_g` finds the least acceleration that starts the structure, in g.
+    fn unlikely_with(&self, starts_g: impl FnOnce() -> Option<f64>) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let mut unlikely = self.structure.unlikely();
         if !GRAVITY_M_S2.contains(&gravity_m_s2) {
@@ -49,7 +61,7 @@ impl Scenario {
                         .flat_map(|series| series.unlikely(gravity_m_s2)),
                 );
             }
-            Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse)),
+            Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, starts_g)),
             None => {}
         }
         if let Some(suite) = &self.suite {
@@ -70,7 +82,11 @@ impl Scenario {
         unlikely
     }
 
-    fn unlikely_pulse(&self, pulse: &PulseGround) -> Option<String> {
+    fn unlikely_pulse(
+        &self,
+        pulse: &PulseGround,
+        starts_g: impl FnOnce() -> Option<f64>,
+    ) -> Option<String> {
         let peak_g = pulse
             .amplitude_g
             .abs()
@@ -81,11 +97,11 @@ impl Scenario {
                 plain(peak_g)
             ));
         }
-        let model = self.model().ok()?;
-        let starts_g = Sway::ALL
-            .iter()
-            .filter_map(|sway| model.incipient_acceleration_g(*sway))
-            .reduce(f64::min)?;
+        // On springings that have moved the structure stands on three hinges, and a fraction of its own strength starts it.
+        if self.motion.supports().is_some() {
+            return None;
+        }
+        let starts_g = starts_g()?;
         let times = pulse.amplitude_g.abs() / starts_g;
         // What stands on hinges that ties hold is started by any push.
         (starts_g > 0.0 && times > PEAK_OVER_INCIPIENT).then(|| {
@@ -117,6 +133,13 @@ impl Scenario {
             )
         })
     }
+}
+
+/// The least acceleration that starts the structure of a model to either side, in g.
+fn starts_g(model: &dyn Model) -> Option<f64> {
+    let sides = Sway::ALL.iter();
+    let sides = sides.filter_map(|sway| model.incipient_acceleration_g(*sway));
+    sides.reduce(f64::min)
 }
 
 impl Structure {

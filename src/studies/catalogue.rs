@@ -222,10 +222,11 @@ pub fn merge(
         StudyKind::Suite => {
             let look = look(kind, None).map_err(StudyError::Scenario)?;
             let (header, rows) = part::merge(parts)?;
-            let heading = Heading::of_resolved(&header.scenario).ok_or_else(|| {
-                let message = "the scenario of the parts is damaged: compute them again";
-                StudyError::Scenario(message.to_owned())
-            })?;
+            let heading =
+                Heading::of_resolved(&header.scenario, header.warnings).ok_or_else(|| {
+                    let message = "the scenario of the parts is damaged: compute them again";
+                    StudyError::Scenario(message.to_owned())
+                })?;
             heading.tell(rows, look.figure)?
         }
         StudyKind::Uncertain => {

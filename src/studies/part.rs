@@ -121,6 +121,9 @@ pub struct Header {
     pub scenario: String,
     /// The other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
+    /// Warnings about the scenario: [`Study::warnings`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 impl Header {
@@ -135,6 +138,7 @@ impl Header {
             shard,
             scenario: study.scenario(),
             inputs: study.inputs(),
+            warnings: study.warnings(),
         }
     }
 

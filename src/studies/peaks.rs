@@ -6,7 +6,7 @@
 
 use serde_json::{Value, json};
 
-use super::ensemble::statistics::{quantile, swaps};
+use super::ensemble::statistics::{fractile, swaps};
 use super::results::Results;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
 use crate::output::table::{Column, column, csv};
@@ -172,7 +172,7 @@ pub fn tell(title: &str, models: &[OfModel<'_>], figure: Figure) -> Result<Resul
 
 fn of_model((name, peaks): OfModel<'_>) -> Value {
     let all = rotations_rad(peaks);
-    let at = |part| quantile(&all, part).filter(|rotation_rad| rotation_rad.is_finite());
+    let at = |part| fractile(&all, part).filter(|rotation_rad| rotation_rad.is_finite());
     json!({
         "model": name,
         "cases": all.len(),

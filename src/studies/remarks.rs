@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::ending::{Ending, Steps};
 use crate::dynamics::history::Outcome;
-use crate::scenario::Scenario;
+use crate::scenario::{Hinges, Scenario};
 
 /// A case of a study that failed or is uncertain, as results list it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -98,12 +98,37 @@ impl fmt::Display for Remark {
     }
 }
 
-/// The summary of a study as JSON: its scenario, the number of its cases, and the remarks on them.
+/// How far results of many cases with four links can be trusted: their line of thrust is not followed.
+const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, unless the thrust line stays inside the arch, which is not \
+                          checked here: check it with `archrock run`, and compare with --hinges free";
+
+/// How far the results of many cases can be trusted; `None` if the model of motion is not four links of an arch.
+pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
+    let four = scenario.motion().hinges() == Hinges::Four && scenario.structure().thrusts();
+    four.then_some(FOUR_LINKS)
+}
+
+/// The same caveat among the warnings of a study, if it is there.
+pub(crate) fn rough_guide_of(warnings: &[String]) -> Option<&'static str> {
+    let given = warnings.iter().any(|warning| warning == FOUR_LINKS);
+    given.then_some(FOUR_LINKS)
+}
+
+/// Warnings about the results of many cases: unlikely numbers of the scenario, and how far four links can be trusted.
+#[must_use]
+pub fn warnings(scenario: &Scenario) -> Vec<String> {
+    let mut warnings = scenario.unlikely();
+    warnings.extend(rough_guide(scenario).map(str::to_owned));
+    warnings
+}
+
+/// The summary of a study as JSON: its scenario, warnings, the number of its cases, and the remarks on them.
 pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> Value {
     let mut summary = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": scenario.to_json(),
+        "warnings": warnings(scenario),
         "cases": cases,
     });
     remarks.add_to(&mut summary);

@@ -72,6 +72,11 @@ pub trait Study: Sync {
         Vec::new()
     }
 
+    /// Warnings about the scenario that a merged study could not find again, because its files may have moved.
+    fn warnings(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Number of cases.
     fn count(&self) -> usize;
 

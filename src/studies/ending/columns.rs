@@ -70,3 +70,8 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
 pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
 }
+
+/// A statement that is true or not, as a cell of a table.
+pub(crate) const fn yes(is_true: bool) -> &'static str {
+    if is_true { "yes" } else { "no" }
+}

@@ -288,9 +288,18 @@ pub const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 pub struct Reached {
     /// The value of x.
     pub x: f64,
-    /// The values of y, between cells by the line through them; that of the lowest cell where it is reached there already, and
-    /// `None` where it is not reached.
+    /// The values of y, between cells by the line through them; that of the lowest cell if it is reached there already, and
+    /// `None` if it is not reached.
     pub y: [Option<f64>; 3],
+    /// Whether the lowest cell reaches it already, so that it may be reached below the map.
+    pub at_most: [bool; 3],
+}
+
+impl Reached {
+    /// The value of y at which a level is reached, if that is inside the map.
+    fn inside(&self, level: usize) -> Option<f64> {
+        self.y[level].filter(|_| !self.at_most[level])
+    }
 }
 
 /// Where the probability first reaches the levels on a column, whose cells go up.
@@ -314,9 +323,11 @@ fn reached(column: &[Likely], logarithmic: bool) -> Reached {
             below + part * (y - below)
         })
     };
+    let lowest = known.first().map_or(0.0, |[_, probability]| *probability);
     Reached {
         x: column.first().map_or(0.0, |cell| cell.at[0]),
         y: LEVELS.map(first),
+        at_most: LEVELS.map(|level| lowest >= level),
     }
 }
 

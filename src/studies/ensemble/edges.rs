@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::statistics::{Share, band};
+use super::statistics::{BAND, Share, fractile};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::bisection::{Width, try_bisect};
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 use crate::studies::ending::{Ending, Verdict};
 use crate::studies::results::{Look, Results};
-use crate::studies::threshold::{EDGE_WIDTH, Factors, check};
+use crate::studies::threshold::{EDGE_WIDTH, Factors, check, rounded};
 
 /// The factors to try, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +23,9 @@ pub struct FirstEdges {
 pub struct FirstEdge {
     /// The least factor that certainly overturns; `None` if none does.
     pub factor: Option<f64>,
+    /// Whether that is also the least factor tried, so that a smaller one may overturn too.
+    #[serde(default)]
+    pub at_most: bool,
     /// The greatest factor tried.
     pub tried_to: f64,
     /// The least factor below that for which overturning is uncertain, if there is one.
@@ -35,6 +38,54 @@ impl FirstEdge {
     pub fn strength(&self) -> f64 {
         self.factor.unwrap_or(f64::INFINITY)
     }
+
+    /// Whether it overturns up to a factor; `None` if no factor that was tried decides that.
+    fn overturns_up_to(&self, factor: f64) -> Option<bool> {
+        match self.factor {
+            Some(first) if first <= factor => Some(true),
+            Some(_) => (!self.at_most).then_some(false),
+            None => (factor <= self.tried_to).then_some(false),
+        }
+    }
+}
+
+/// A fractile of the strengths that first overturn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstStrength {
+    /// The strength; infinite if too few cases overturn.
+    pub strength: f64,
+    /// Whether the fractile may be lower, because cases overturn at the least strength tried already.
+    pub at_most: bool,
+}
+
+impl FirstStrength {
+    /// The fractile for a `part` of these cases; `None` if there are none.
+    pub(super) fn of<'e>(
+        edges: impl Iterator<Item = &'e FirstEdge> + Clone,
+        part: f64,
+    ) -> Option<Self> {
+        let sorted = |strength: fn(&FirstEdge) -> f64| {
+            let mut strengths: Vec<f64> = edges.clone().map(strength).collect();
+            strengths.sort_by(f64::total_cmp);
+            strengths
+        };
+        // Below a bound anything above 0 is possible, and 0 makes the fractiles 0 that depend on it.
+        let lowest = sorted(|edge| if edge.at_most { 0.0 } else { edge.strength() });
+        Some(Self {
+            strength: fractile(&sorted(FirstEdge::strength), part)?,
+            at_most: fractile(&lowest, part)? == 0.0,
+        })
+    }
+
+    /// In words, after `at`: `at 0.5028`, `at or below 0.2000`, or `beyond`.
+    pub(super) fn in_words(self, at: &str, beyond: &str) -> String {
+        let Self { strength, at_most } = self;
+        if !strength.is_finite() {
+            return beyond.to_owned();
+        }
+        let or_below = if at_most { "at or below" } else { "at" };
+        format!("{or_below} {at}{}", rounded(strength))
+    }
 }
 
 /// Where a structure first overturns, from strengths that are tried in ascending order. Bisection narrows the edge between two of
@@ -46,6 +97,7 @@ pub(super) fn first_edge(
 ) -> Result<FirstEdge, NoAnswer> {
     let mut edge = FirstEdge {
         factor: None,
+        at_most: false,
         tried_to: 0.0,
         uncertain_from: None,
     };
@@ -63,6 +115,7 @@ pub(super) fn first_edge(
                 let ends = try_bisect(edge.tried_to, strength, Width::Relative(width), overturns);
                 ends.map_err(NoAnswer::Failed)?.1
             } else {
+                edge.at_most = true;
                 strength
             });
             edge.tried_to = strength;
@@ -144,18 +197,22 @@ impl Told<'_, FirstEdge> {
         factors.iter().enumerate().filter_map(at).collect()
     }
 
-    /// The share of samples that overturn at this factor or below it.
+    /// The share of samples that overturn at this factor or below it; `None` if the factors that were tried do not decide that.
     pub(crate) fn share_up_to(&self, factor: f64) -> Option<Share> {
         let all = self.answered().count();
-        let overturned = self
+        let known: Option<Vec<bool>> = self
             .answered()
-            .filter(|(_, edge)| edge.strength() <= factor);
+            .map(|(_, edge)| edge.overturns_up_to(factor))
+            .collect();
+        let overturned = known?.into_iter().filter(|overturns| *overturns);
         Share::of(overturned.count(), all)
     }
 
-    /// The 5 % quantile, the median and the 95 % quantile of the factors; infinite if too few samples overturn.
-    pub(crate) fn band(&self) -> Option<[f64; 3]> {
-        band(self.answered().map(|(_, edge)| edge.strength()).collect())
+    /// The 5 % quantile, the median and the 95 % quantile of the factors.
+    pub(crate) fn band(&self) -> Option<[FirstStrength; 3]> {
+        let edges = self.answered().map(|(_, edge)| edge);
+        let [low, median, high] = BAND.map(|part| FirstStrength::of(edges.clone(), part));
+        Some([low?, median?, high?])
     }
 }
 

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use super::statistics::{Share, band};
+use super::statistics::{Share, band, quantile};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
 use crate::dynamics::model::Model;
@@ -239,7 +239,7 @@ impl Told<'_, Went> {
                     .iter()
                     .filter(|rotation| rotation.is_infinite())
                     .count(),
-                band_rad: band(rotations)?,
+                band_rad: band(rotations, quantile)?,
             })
         };
         (0..asked.times).filter_map(at).collect()

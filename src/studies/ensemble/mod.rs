@@ -197,7 +197,7 @@ impl<'a, A> Told<'a, A> {
     }
 
     /// The samples that have an answer.
-    pub(crate) fn answered(&self) -> impl Iterator<Item = (&'a [f64], &'a A)> {
+    pub(crate) fn answered(&self) -> impl Iterator<Item = (&'a [f64], &'a A)> + Clone {
         let samples = self.samples.iter();
         samples.filter_map(|row| Some((&*row.values, row.answer.as_ref().ok()?)))
     }

@@ -52,26 +52,60 @@ impl Share {
     }
 }
 
-/// The least value such that this part of all values, in 0 to 1, does not exceed it. The values ascend, and may be infinite. `None`
-/// if there are none.
+/// Quantile of ascending values for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n` (Hazen);
+/// between neighbours it is interpolated linearly. It is infinite if a neighbour is infinite, and `None` without values.
 #[must_use]
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
-    // A rounding error must not advance to the next value.
-    let rank = (part * ascending.len() as f64 - 1e-9).ceil().max(1.0);
+    between(ascending, part, |low, high, way| low + way * (high - low))
+}
+
+/// Fractile of ascending values of at least 0, as [`quantile`], but interpolated in the logarithm: strengths and peaks scatter by
+/// ratios. It is 0 if its lower neighbour is 0.
+#[must_use]
+pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
+    between(ascending, part, |low, high, way| {
+        if low > 0.0 {
+            low * libm::exp(way * libm::log(high / low))
+        } else {
+            low
+        }
+    })
+}
+
+/// Interpolates between the neighbours of a quantile.
+fn between(
+    ascending: &[f64],
+    part: f64,
+    interpolate: impl Fn(f64, f64, f64) -> f64,
+) -> Option<f64> {
+    let last = ascending.len().checked_sub(1)?;
+    let place = (part * ascending.len() as f64 - 0.5).clamp(0.0, last as f64);
+    // A rounding error must not reach for the next value, which may be infinite.
+    let below = (place + 1e-9).floor();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a rank, at least 1"
+        reason = "an index"
     )]
-    ascending.get(rank as usize - 1).copied()
+    let index = below as usize;
+    let (low, way) = (ascending[index], place - below);
+    if way <= 1e-9 || low.is_infinite() || ascending[index + 1] == low {
+        return Some(low);
+    }
+    let high = ascending[index + 1];
+    Some(if high.is_infinite() {
+        high
+    } else {
+        interpolate(low, high, way)
+    })
 }
 
 /// The quantiles of bands: 5 %, the median and 95 %.
 pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// The ends and the median of the band, for values in any order.
+/// The ends and the median of the band, for values in any order, by [`quantile`] or [`fractile`].
 #[must_use]
-pub fn band(mut values: Vec<f64>) -> Option<[f64; 3]> {
+pub fn band(mut values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Option<[f64; 3]> {
     values.sort_by(f64::total_cmp);
     let [low, median, high] = BAND.map(|part| quantile(&values, part));
     Some([low?, median?, high?])
@@ -185,16 +219,41 @@ mod tests {
     }
 
     #[test]
-    fn quantiles_are_values() {
+    fn quantiles_lie_between_values() {
         let values: Vec<f64> = (1..=20).map(f64::from).collect();
         let of = |part| quantile(&values, part).unwrap();
         assert_eq!(
-            [0.0, 0.05, 0.5, 0.95, 0.951, 1.0].map(of),
-            [1.0, 1.0, 10.0, 19.0, 20.0, 20.0]
+            [0.0, 0.025, 0.05, 0.5, 0.95, 0.975, 1.0].map(of),
+            [1.0, 1.0, 1.5, 10.5, 19.5, 20.0, 20.0]
         );
         assert_eq!(quantile(&[], 0.5), None);
-        let [low, median, high] = band(vec![f64::INFINITY, 1.0, 2.0]).unwrap();
+        let [low, median, high] = band(vec![f64::INFINITY, 1.0, 2.0], quantile).unwrap();
         assert_eq!([low, median, high], [1.0, 2.0, f64::INFINITY]);
+        // Between a value and infinity nothing is known, on either side.
+        assert_eq!(quantile(&[1.0, f64::INFINITY], 0.5), Some(f64::INFINITY));
+        assert_eq!(quantile(&[-f64::INFINITY, 1.0], 0.5), Some(-f64::INFINITY));
+    }
+
+    /// Eight intensities that overturn: the lower neighbour of the median is 0.342.
+    #[test]
+    fn fractiles_of_few_values_lie_between_them() {
+        let eight = [0.243, 0.281, 0.330, 0.342, 0.503, 0.559, 0.848, 0.859];
+        let of = |part| fractile(&eight, part).unwrap();
+        assert!((of(0.5) - (0.342_f64 * 0.503).sqrt()).abs() < 1e-12);
+        // 16 % of eight is the place 0.78 after the first.
+        let known = 0.243 * (0.281_f64 / 0.243).powf(0.78);
+        assert!((of(0.16) - known).abs() < 1e-12, "{}", of(0.16));
+        // Three values and their reciprocals have reciprocal fractiles.
+        for part in [0.16, 0.4, 0.5, 0.84] {
+            let product = fractile(&[0.5, 1.0, 8.0], part).unwrap()
+                * fractile(&[0.125, 1.0, 2.0], 1.0 - part).unwrap();
+            assert!((product - 1.0).abs() < 1e-12, "{part}");
+        }
+        // Beyond half of the values nothing is known of the median.
+        let half = [0.2, 0.3, f64::INFINITY, f64::INFINITY];
+        assert_eq!(fractile(&half, 0.5), Some(f64::INFINITY));
+        assert_eq!(fractile(&half, 0.375), Some(0.3));
+        assert_eq!(fractile(&[0.0, 1.0], 0.5), Some(0.0));
     }
 
     #[test]

@@ -3,17 +3,18 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::edges::{FirstEdge, ProbabilityAt};
+use super::edges::{FirstEdge, FirstStrength, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{AtLevel, Capacities, Capacity, Fragilities};
-use super::statistics::{Share, band, quantile};
+use super::statistics::{Share, band, fractile};
 use super::{NoAnswer, SampleRow, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::{Uncertain, UncertainKey, shown};
-use crate::studies::ending::columns::{self, UNCERTAIN};
+use crate::studies::ending::columns::{self, UNCERTAIN, yes};
 use crate::studies::peaks::Peak;
+use crate::studies::remarks::warnings;
 use crate::studies::results::Results;
 use crate::studies::threshold::rounded;
 
@@ -89,7 +90,7 @@ impl<'a> Decides<'a> {
         format!(";\n    {decided};\n    {NOT_CONSIDERED}")
     }
 
-    /// `friction coefficient decides 60 % of the first factor that overturns, thickness ratio 25 %`.
+    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`.
     fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
         const LEAST: f64 = 0.05;
         let mut of: Vec<_> = self.of.as_ref()?.iter().collect();
@@ -100,7 +101,9 @@ impl<'a> Decides<'a> {
             .filter(|(_, matters)| matters.first_order >= LEAST);
         let mut words = matter.map(|(key, matters)| {
             let name = spoken(&key.key, uncertain);
-            (name, percent(matters.first_order))
+            let [low, high] = matters.first_order_interval.map(percent);
+            let share = percent(matters.first_order);
+            (name, format!("{share} (95 %: {low} to {high})"))
         });
         let Some((first, share)) = words.next() else {
             return Some(format!(
@@ -202,6 +205,7 @@ pub(super) fn beginning<A>(told: &Told<'_, A>) -> Value {
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": told.scenario.to_json(),
+        "warnings": warnings(told.scenario),
         "samples": told.samples.len(),
         "answered": told.answered().count(),
         "invalid": told.without("invalid"),
@@ -271,7 +275,7 @@ pub(super) fn histories(
         .iter()
         .map(|(name, share)| ((*name).to_owned(), json!(share)));
     json["outcomes"] = Value::Object(shares.collect());
-    json["peak_rotation_rad"] = band_to_json(band(peaks));
+    json["peak_rotation_rad"] = band_to_json(band(peaks, fractile));
     json["followed_body"] = json!(asked.body);
     json["what_matters"] = Value::Object(
         decides
@@ -397,7 +401,7 @@ fn first_of_histories(told: &Told<'_, Went>, decides: &[Decides<'_>; 2]) -> Stri
     let [whether, far] = decides;
     let decides = if whether.of.is_some() { whether } else { far };
     format!(
-        "overturns with a probability of {};\n    the scenario itself {own}{}",
+        "overturns with a probability of {} of [uncertain];\n    the scenario itself {own}{}",
         share_in_words(&share),
         decides.ending(told.uncertain)
     )
@@ -413,7 +417,7 @@ fn far_in_words(told: &Told<'_, Went>) -> String {
         }
     };
     let peaks: Vec<f64> = told.answered().map(|(_, went)| went.peak_rad()).collect();
-    match band(peaks) {
+    match band(peaks, fractile) {
         Some([low, median, high]) => format!(
             "largest rotation: median {}; 5 to 95 %: {} to {}",
             number(median),
@@ -433,7 +437,15 @@ pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Result
     let decides = [Decides::new(told, names, false, strength)];
     let at_one = told.share_up_to(1.0);
     let mut json = beginning(told);
-    json["first_factor"] = band_to_json(told.band());
+    let band = told.band();
+    json["first_factor"] = band_to_json(band.map(|band| band.map(|one| one.strength)));
+    // The numbers of samples whose first factor is only known to be at most, or beyond, what was tried.
+    let count = |wanted: fn(&FirstEdge) -> bool| {
+        let edges = told.answered().map(|(_, edge)| edge);
+        edges.filter(|edge| wanted(edge)).count()
+    };
+    json["at_smallest_factor"] = json!(count(|edge| edge.at_most));
+    json["beyond_largest_factor"] = json!(count(|edge| edge.factor.is_none()));
     json["own_first_factor"] = json!(told.own.as_ref().ok().and_then(|edge| edge.factor));
     json["overturned_up_to_factor_1"] = json!(at_one);
     let (name, of) = decides[0].to_json();
@@ -450,6 +462,9 @@ pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Result
             line.answer.as_ref().ok().and_then(of)
         }));
     }
+    all.push(column("at_most", |line: &Line<'_, FirstEdge>| {
+        line.answer.as_ref().ok().map(|edge| yes(edge.at_most))
+    }));
     all.push(column("why_not", |line: &Line<'_, FirstEdge>| {
         line.answer.as_ref().err().map(NoAnswer::name)
     }));
@@ -492,34 +507,40 @@ fn probability_columns() -> Vec<Column<'static, ProbabilityAt>> {
 }
 
 fn first_of_edges(told: &Told<'_, FirstEdge>, decides: &Decides<'_>) -> String {
-    let (Some([low, median, high]), Some(at_one)) = (told.band(), told.share_up_to(1.0)) else {
+    let Some([low, median, high]) = told.band() else {
         return "no sample has an answer".to_owned();
     };
     let tried_to = told
         .answered()
         .map(|(_, edge)| edge.tried_to)
         .fold(0.0, f64::max);
-    let factor = |factor: f64| {
-        if factor.is_finite() {
-            rounded(factor)
-        } else {
-            format!("more than {}", rounded(tried_to))
-        }
-    };
+    let beyond = format!("beyond {}", rounded(tried_to));
+    let factor = |factor: FirstStrength| factor.in_words("", &beyond);
+    let probability = told.share_up_to(1.0).map_or(
+        "overturns with a probability that is not known up to the factor 1, which is outside the factors that were tried"
+            .to_owned(),
+        |at_one| {
+            format!(
+                "overturns up to the factor 1 with a probability of {}",
+                share_in_words(&at_one)
+            )
+        },
+    );
     let own = match told.own {
         Ok(edge) => match edge.factor {
-            Some(own) => format!("the scenario itself at {}", rounded(own)),
+            Some(own) => {
+                let at_most = if edge.at_most { "at or below" } else { "at" };
+                format!("the scenario itself {at_most} {}", rounded(own))
+            }
             None => "the scenario itself at none that was tried".to_owned(),
         },
         Err(_) => "the scenario itself has no answer".to_owned(),
     };
     format!(
-        "first overturns at a factor of {} (5 to 95 %: {} to {}), {own};\n    up to the factor 1 with a probability of \
-         {}{}",
+        "{probability};\n    half of the samples first overturn {} (5 %: {}, 95 %: {}), {own}{}",
         factor(median),
         factor(low),
         factor(high),
-        share_in_words(&at_one),
         decides.ending(told.uncertain)
     )
 }
@@ -531,32 +552,31 @@ fn first_of_capacities(
     fragilities: &Fragilities,
 ) -> String {
     let column = asked.measure().column();
-    let all: Vec<f64> = told
+    let all: Vec<&FirstEdge> = told
         .answered()
-        .flat_map(|(_, capacity)| capacity.0.iter().map(FirstEdge::strength))
+        .flat_map(|(_, capacity)| &capacity.0)
         .collect();
     let own = told.own.as_ref().ok();
-    let own = own.map_or_else(Vec::new, |own| {
-        own.0.iter().map(FirstEdge::strength).collect()
-    });
-    let up_to = |part: f64, of: &[f64]| {
-        let mut of = of.to_vec();
-        of.sort_by(f64::total_cmp);
-        let found = quantile(&of, part).filter(|at| at.is_finite());
-        found.map_or("beyond the levels".to_owned(), rounded)
+    let own: Vec<&FirstEdge> = own.iter().flat_map(|own| &own.0).collect();
+    let at = |part: f64, of: &[&FirstEdge], column: &str| {
+        let found = FirstStrength::of(of.iter().copied(), part);
+        let unknown = "nowhere up to the highest level";
+        found.map_or(unknown.to_owned(), |found| found.in_words(column, unknown))
     };
+    let column = format!("{} ", column);
     format!(
-        "overturns with a probability of 5 % up to {column} {}, of 50 % up to {} (dispersion {}), over records and samples;\n    \
-         the scenario itself with 5 % up to {}, with 50 % up to {}",
-        up_to(0.05, &all),
-        up_to(0.5, &all),
+        "overturns with a probability of 5 % {}, of 50 % {} (dispersion {}), over records and {} samples of [uncertain];\n    \
+         the scenario itself with 5 % {}, with 50 % {}",
+        at(0.05, &all, &column),
+        at(0.5, &all, ""),
         fragilities
             .both
             .of
             .dispersion
             .map_or("not known".to_owned(), rounded),
-        up_to(0.05, &own),
-        up_to(0.5, &own)
+        told.samples.len(),
+        at(0.05, &own, ""),
+        at(0.5, &own, "")
     )
 }
 
@@ -579,8 +599,8 @@ pub(super) fn capacities(
     // The median over the records for each sample; the largest level if half of the records do not overturn the sample.
     let most = asked.levels().last().copied().unwrap_or(1.0);
     let median = |capacity: &Capacity| {
-        let strengths = capacity.0.iter().map(FirstEdge::strength).collect();
-        band(strengths).map_or(most, |[_, median, _]| median.min(most))
+        let median = FirstStrength::of(capacity.0.iter(), 0.5);
+        median.map_or(most, |median| median.strength.min(most))
     };
     let names = ["median_intensity", "the median intensity that overturns"];
     let decides = [Decides::new(told, names, false, median)];
@@ -588,6 +608,9 @@ pub(super) fn capacities(
     let mut json = beginning(told);
     json["intensity"] = json!(column_name);
     json["fragility"] = fragilities.to_json();
+    let all_edges = || told.answered().flat_map(|(_, capacity)| &capacity.0);
+    let at_lowest = all_edges().filter(|edge| edge.at_most).count();
+    json["at_lowest_level"] = json!(at_lowest);
     let (name, of) = decides[0].to_json();
     json["what_matters"] = json!({ name: of });
     let reached = lines(told);
@@ -605,7 +628,7 @@ pub(super) fn capacities(
                 })
         })
         .collect();
-    let of_edges: [Column<'_, Reached<'_>>; 6] = [
+    let of_edges: [Column<'_, Reached<'_>>; 7] = [
         column("sample", |row: &Reached<'_>| row.sample),
         column("record", |row: &Reached<'_>| shown(row.record)),
         column(
@@ -617,6 +640,7 @@ pub(super) fn capacities(
         column("uncertain_from", |row: &Reached<'_>| {
             row.edge.uncertain_from
         }),
+        column("at_most", |row: &Reached<'_>| yes(row.edge.at_most)),
     ];
     let at_levels: [Column<'_, AtLevel>; 3] = [
         column(column_name, |at: &AtLevel| at.intensity),
@@ -658,7 +682,19 @@ pub(super) fn capacities(
         decides[0].ending(told.uncertain)
     )];
     words.extend(distributions);
-    words.push("in brackets: 95 % by bootstrap over records".to_owned());
+    words.push(
+        "median and dispersion are those of the fractiles (16, 50 and 84 %) of the intensities at which a record first overturns;\n    \
+         record to record: of the scenario itself; uncertain data: of the median over the records of each sample; both: of all samples;\n    \
+         in brackets: 95 % by bootstrap over records"
+            .to_owned(),
+    );
+    words.extend((at_lowest > 0).then(|| {
+        format!(
+            "{at_lowest} of {} records and samples overturn at the lowest level already, which counts as their intensity: the \
+             fractiles may be lower",
+            all_edges().count()
+        )
+    }));
     words.extend(without_answer(told));
     Ok(Results {
         files: vec![

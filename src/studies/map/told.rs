@@ -168,6 +168,7 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
             "{model}: no boundary of overturning without impact, which only four links have"
         ));
     }
+    lines.extend(remarks::rough_guide(map.scenario()).map(str::to_owned));
     lines.extend(remarks.uncertain_in_words(SUMMARY));
     lines.extend(remarks.failed_in_words(SUMMARY));
     lines.join("\n  ")

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::Scales;
 use super::feet::FeetApart;
 use super::verdict::Evidence;
-use super::words::first_peak_rad;
+use super::words::{first_peak_rad, warnings};
 use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary, TieSummary};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
@@ -27,7 +27,8 @@ use crate::scenario::{Ground, Scenario};
 /// diagonal of a column), `energy_defect_over_largest` to the larger of the barrier, if that is known, and the largest
 /// kinetic energy. If joints slip: `slips_m` at the end and `largest_slips_m` for every joint, `friction_j` dissipated, and, with
 /// free hinges, what did not converge. `impacts` is null with elastic joints, because their contact lasts. `spread` is left out if the
-/// run was not repeated; if a repetition failed, it holds the reason as `failed`.
+/// run was not repeated; if a repetition failed, it holds the reason as `failed`. `warnings` are sentences about unlikely numbers of the
+/// scenario and about what limits the trust in its history.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -48,6 +49,7 @@ pub fn summary(
         varied: &[],
     };
     object.put("verdict", json!(evidence.verdict().name()));
+    object.put("warnings", json!(warnings(scenario, model, history)));
     object.ending(history)?;
     object.put("impacts", json!(history.known_impacts()));
     let peaks = columns(&model.bodies(), "peak_rotation", "rad");

@@ -576,6 +576,27 @@ fn cut_short(scenario: &Scenario, history: &Summary) -> String {
     String::new()
 }
 
+/// Warnings about a run: unlikely numbers of its scenario, and what limits the trust in its history.
+#[must_use]
+pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
+    let mut warnings = scenario.unlikely_of(model);
+    let thrust = history.thrust.as_ref();
+    let rough = thrust.filter(|thrust| thrust.largest_excess.value > EXCESS_LEVELS[1]);
+    let trust = rough
+        .filter(|_| model.as_mechanisms().is_some())
+        .and_then(|thrust| trust(thrust, scenario.structure(), &[]));
+    let caveats = [
+        trust,
+        needs(scenario, history),
+        Some(cut_short(scenario, history)),
+    ];
+    // Words of the report, whose lines are indented.
+    let caveats = caveats.into_iter().flatten();
+    let caveats = caveats.map(|caveat| caveat.split_whitespace().collect::<Vec<_>>().join(" "));
+    warnings.extend(caveats.filter(|caveat| !caveat.is_empty()));
+    warnings
+}
+
 /// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` if it did not rock.
 fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Option<String> {
     let [_, near] = thrust.shares_within()?;

@@ -32,6 +32,7 @@ impl OverturningSpectrum<'_> {
                 ("spectrum.csv", csv(columns(), rows)?),
             ],
             words: words(self, rows, &remarks),
+            summary,
             ..Results::default()
         })
     }
@@ -110,6 +111,9 @@ fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remark
     }
     if let Some(words) = remarks.failed_in_words(SUMMARY) {
         text += &format!("; {words}");
+    }
+    if let Some(caveat) = remarks::rough_guide(spectrum.scenario) {
+        text += &format!("\n  {caveat}");
     }
     text
 }

@@ -9,7 +9,7 @@ use super::{CaseRow, SuiteFragility};
 use crate::dynamics::history::Outcome;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
-use crate::studies::ensemble::statistics::quantile;
+use crate::studies::ensemble::statistics;
 use crate::studies::peaks::Peak;
 
 /// Number of records whose curves have looks and names of their own.
@@ -159,8 +159,9 @@ pub struct Fractiles {
     pub peaks: [Option<f64>; 3],
 }
 
-/// How far a case went.
+/// How far a case went, if its history is complete.
 fn peak(case: &CaseRow) -> Option<f64> {
+    case.known_verdict()?;
     let peak = case.result.as_ref().ok()?.peak;
     peak.over_critical().or(peak.rad())
 }
@@ -182,7 +183,8 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
             };
             let mut peaks: Vec<f64> = cases.iter().filter_map(beyond).collect();
             peaks.sort_by(f64::total_cmp);
-            let fractile = |part| quantile(&peaks, part).filter(|peak| peak.is_finite());
+            let fractile =
+                |part| statistics::fractile(&peaks, part).filter(|peak| peak.is_finite());
             Fractiles {
                 intensity,
                 cases: peaks.len(),
@@ -205,7 +207,7 @@ pub(super) fn by_record(cases: &[CaseRow]) -> Vec<Peak> {
             records.push(&case.record);
             records.len() - 1
         });
-        let Ok(ending) = &case.result else {
+        let (Ok(ending), Some(_)) = (&case.result, case.known_verdict()) else {
             continue;
         };
         let rotation_rad = if goes_over(case) {
@@ -256,7 +258,9 @@ pub struct PeakUpTo {
 pub fn peaks(results: &SuiteFragility) -> Vec<PeakUpTo> {
     let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
     let cases = results.cases.iter().filter(counts);
-    let cases: Vec<&CaseRow> = cases.filter(|case| case.result.is_ok()).collect();
+    let cases: Vec<&CaseRow> = cases
+        .filter(|case| case.known_verdict().is_some())
+        .collect();
     let survived = cases.iter().filter(|case| !goes_over(case));
     let mut peaks: Vec<f64> = survived.filter_map(|case| peak(case)).collect();
     peaks.sort_by(f64::total_cmp);

@@ -14,6 +14,7 @@ use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use self::strength::Strength;
 pub use self::told::Heading;
 use super::ending::{Ending, Verdict, check_finite};
+use super::remarks::warnings;
 use super::runner::Study;
 use super::survival::Survival;
 use crate::bisection::{Width, try_bisect};
@@ -50,6 +51,12 @@ impl CaseRow {
             Measure::Scale => self.scale,
             Measure::PeakG => self.peak_g,
         }
+    }
+
+    /// The level from which a case overturns that is the first of its record: its edge by bisection, if it has one.
+    #[must_use]
+    pub fn overturns_from(&self, measure: Measure) -> f64 {
+        self.edge.unwrap_or_else(|| self.level(measure))
     }
 
     /// Whether it overturned, as far as this is known; `None` if there is no history.
@@ -146,6 +153,10 @@ impl Study for RecordSuite<'_> {
         self.scenario.to_toml()
     }
 
+    fn warnings(&self) -> Vec<String> {
+        warnings(self.scenario)
+    }
+
     fn inputs(&self) -> Vec<String> {
         let records = self.suite.records.iter();
         records
@@ -176,7 +187,7 @@ impl Study for RecordSuite<'_> {
         };
         let cases: Vec<Case> = indices.iter().map(case).collect();
         let results = Ending::of_all(&*self.model, &cases);
-        let overturn: Vec<Option<bool>> = results.iter().map(overturns).collect();
+        let overturn: Vec<Option<bool>> = results.iter().map(overturns_certainly).collect();
         let edge = |case: usize| {
             let index = indices[case];
             let below = (index % self.levels.len()).checked_sub(1)?;
@@ -192,10 +203,10 @@ impl Study for RecordSuite<'_> {
     }
 }
 
-/// Whether a history certainly overturns, if there is one.
-fn overturns(result: &Result<Ending, String>) -> Option<bool> {
-    let ending = result.as_ref().ok()?;
-    Some(ending.verdict() == Verdict::Overturns)
+/// Whether a history certainly overturns, if there is one that is complete.
+fn overturns_certainly(result: &Result<Ending, String>) -> Option<bool> {
+    let verdict = result.as_ref().ok()?.verdict();
+    (verdict != Verdict::Incomplete).then_some(verdict == Verdict::Overturns)
 }
 
 /// How closely an edge is enclosed, as a part of it: far closer than records agree.
@@ -219,7 +230,7 @@ impl RecordSuite<'_> {
             let ground = shake.motion(request.gravity_m_s2);
             let ground = self.scenario.under_both_feet(ground);
             let ending = Ending::of(&*self.model, &ground, &request);
-            ending.map(|ending| ending.verdict() == Verdict::Overturns)
+            overturns_certainly(&ending).ok_or(())
         };
         let below = self.levels[below];
         if !survives_below && overturns(below).ok()? {
@@ -403,7 +414,8 @@ impl SuiteFragility {
         self.levels.iter().any(|level| level.uncertain > 0)
     }
 
-    /// The intensities at which each record first overturns, and is survived again; mirrored records only if their results differ.
+    /// The intensities from which each record overturns, and at which it is survived again; mirrored records only if their results
+    /// differ. The first intensity that overturns is found by bisection, the others are levels of the suite.
     #[must_use]
     pub fn survivals(&self) -> Vec<RecordSurvival<'_>> {
         let shakes = self
@@ -415,7 +427,13 @@ impl SuiteFragility {
                 .iter()
                 .map(|case| (case.level(self.measure), case.known_verdict()))
                 .collect();
-            let survival = Survival::of_levels(&levels);
+            let mut survival = Survival::of_levels(&levels);
+            let mut overturned = cases
+                .iter()
+                .filter(|case| case.verdict() == Some(Verdict::Overturns));
+            survival.overturns_from = overturned
+                .next()
+                .map(|first| first.overturns_from(self.measure));
             let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
             let same =
                 |other: &RecordSurvival<'_>| other.record == record && other.survival == survival;

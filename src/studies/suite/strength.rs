@@ -11,6 +11,7 @@ use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::intensity::Intensity;
 use crate::scenario::{Series, Spectral};
 use crate::studies::ending::Verdict;
+use crate::studies::ensemble::statistics::{bootstrap, interval};
 
 /// How strong a record is as it is in its file, in the measures that its peak does not tell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,7 +53,7 @@ pub struct Capacity<'a> {
     pub mirrored: bool,
     /// The factor on the record; `None` if no level overturns.
     pub scale: Option<f64>,
-    /// Whether the lowest level overturns already, so that the capacity may be less.
+    /// Whether the capacity may be less: the lowest level overturns already, or the level below has no complete history.
     pub at_most: bool,
     /// The intensity as the suite measures it, and in all [`MEASURES`], at that factor.
     pub level: Option<f64>,
@@ -79,8 +80,12 @@ pub struct Efficiency {
     pub median: f64,
     /// The standard deviation of their logarithms.
     pub dispersion: f64,
-    /// The same of the factor on the record that it stands for: of measures that grow with its square half of that.
+    /// Dispersion of the factor on the record: that of the measure, halved if the measure grows with the square of the factor.
     pub dispersion_of_factor: f64,
+    /// Ends of the 95 % interval of `dispersion_of_factor`, by bootstrap over the records; `None` if draws have too few capacities.
+    pub dispersion_of_factor_interval: Option<[f64; 2]>,
+    /// Part of the bootstrap draws in which no other measure has a smaller dispersion of the factor.
+    pub best_share: f64,
 }
 
 impl SuiteFragility {
@@ -100,7 +105,7 @@ impl SuiteFragility {
             .iter()
             .position(|case| case.verdict() == Some(Verdict::Overturns));
         let own = levels[first.unwrap_or(0)];
-        let level = first.map(|_| own.edge.unwrap_or(own.level(self.measure)));
+        let level = first.map(|_| own.overturns_from(self.measure));
         let scale = level.map(|level| own.scale * level / own.level(self.measure));
         // What the peak is multiplied by, all others are too.
         let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
@@ -111,7 +116,12 @@ impl SuiteFragility {
             record: &own.record,
             mirrored: own.mirrored,
             scale,
-            at_most: first == Some(0),
+            at_most: first.is_some_and(|first| {
+                let below = first
+                    .checked_sub(1)
+                    .map(|below| levels[below].known_verdict());
+                below.flatten().is_none()
+            }),
             level,
             in_measures: [
                 peak_g,
@@ -126,32 +136,71 @@ impl SuiteFragility {
 /// Fewest capacities that tell a dispersion.
 const LEAST_CAPACITIES: usize = 3;
 
-/// How well each measure tells what overturns, the best first. What does not overturn is left out; empty if fewer than
-/// three records do.
-#[must_use]
-pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
-    let of = |measure: usize| {
-        let found = capacities
-            .iter()
-            .filter_map(|capacity| capacity.in_measures[measure]);
+/// Distribution of the capacities in a measure.
+struct Scatter {
+    capacities: usize,
+    median: f64,
+    dispersion: f64,
+}
+
+impl Scatter {
+    /// `None` with fewer than three capacities.
+    fn of<'a>(capacities: impl Iterator<Item = &'a Capacity<'a>>, measure: usize) -> Option<Self> {
+        let found = capacities.filter_map(|capacity| capacity.in_measures[measure]);
         let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(f64::ln).collect();
-        if logarithms.len() < LEAST_CAPACITIES {
-            return None;
-        }
         let count = logarithms.len() as f64;
         let mean = logarithms.iter().sum::<f64>() / count;
         let squares: f64 = logarithms.iter().map(|value| (value - mean).powi(2)).sum();
-        let dispersion = (squares / (count - 1.0)).sqrt();
-        let (_, _, power) = MEASURES[measure];
-        Some(Efficiency {
-            measure,
+        (logarithms.len() >= LEAST_CAPACITIES).then(|| Self {
             capacities: logarithms.len(),
             median: mean.exp(),
-            dispersion,
-            dispersion_of_factor: dispersion / power,
+            dispersion: (squares / (count - 1.0)).sqrt(),
+        })
+    }
+
+    fn dispersion_of_factor(&self, measure: usize) -> f64 {
+        let (_, _, power) = MEASURES[measure];
+        self.dispersion / power
+    }
+}
+
+/// How well each measure tells what overturns, the best first, with intervals by bootstrap over the records. What does not overturn is
+/// left out; empty if fewer than three capacities are known.
+#[must_use]
+pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
+    // A record and its mirror image are not independent.
+    let records: Vec<&[Capacity<'_>]> = capacities
+        .chunk_by(|a, b| a.record == b.record)
+        .filter(|own| own.iter().any(|capacity| capacity.scale.is_some()))
+        .collect();
+    let measures = 0..MEASURES.len();
+    let drawn: Vec<Vec<Option<f64>>> = bootstrap(records.len())
+        .map(|drawn| {
+            let of = |measure| {
+                let capacities = drawn.iter().flat_map(|record| records[*record]);
+                Some(Scatter::of(capacities, measure)?.dispersion_of_factor(measure))
+            };
+            measures.clone().map(of).collect()
+        })
+        .collect();
+    let least = |draw: &[Option<f64>]| draw.iter().flatten().copied().reduce(f64::min);
+    let of = |measure: usize| {
+        let scatter = Scatter::of(capacities.iter(), measure)?;
+        let own: Option<Vec<f64>> = drawn.iter().map(|draw| draw[measure]).collect();
+        let best = drawn
+            .iter()
+            .filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
+        Some(Efficiency {
+            measure,
+            capacities: scatter.capacities,
+            median: scatter.median,
+            dispersion: scatter.dispersion,
+            dispersion_of_factor: scatter.dispersion_of_factor(measure),
+            dispersion_of_factor_interval: own.and_then(interval),
+            best_share: best.count() as f64 / drawn.len() as f64,
         })
     };
-    let mut all: Vec<Efficiency> = (0..MEASURES.len()).filter_map(of).collect();
+    let mut all: Vec<Efficiency> = measures.clone().filter_map(of).collect();
     all.sort_by(|a, b| a.dispersion_of_factor.total_cmp(&b.dispersion_of_factor));
     all
 }

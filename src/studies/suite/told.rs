@@ -10,11 +10,12 @@ use crate::argument::plain;
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, finite, pretty};
 use crate::scenario::{Measure, Scenario, Spacing, Spectral, Suite, shown};
-use crate::studies::ending::columns::{self, FAILED, number};
+use crate::studies::ending::columns::{self, FAILED, number, yes};
 use crate::studies::ending::{Ending, Verdict};
-use crate::studies::remarks::{Remarks, counts, in_words};
+use crate::studies::remarks::{Remarks, counts, in_words, rough_guide_of, warnings};
 use crate::studies::results::Results;
 use crate::studies::survival;
+use crate::studies::threshold::rounded;
 
 const FRAGILITY: &str = "fragility.json";
 
@@ -26,6 +27,7 @@ pub struct Heading {
     /// The measure of the intensities.
     pub measure: Measure,
     pub(super) spacing: Spacing,
+    warnings: Vec<String>,
 }
 
 impl Heading {
@@ -36,12 +38,13 @@ impl Heading {
             scenario: scenario.to_json(),
             measure: suite.measure,
             spacing: suite.levels.spacing(),
+            warnings: warnings(scenario),
         }
     }
 
-    /// The heading from the text of a scenario with every default filled in; `None` if it has no suite.
+    /// The heading from the text of a scenario with every default filled in, and the warnings about it; `None` if it has no suite.
     #[must_use]
-    pub fn of_resolved(scenario: &str) -> Option<Self> {
+    pub fn of_resolved(scenario: &str, warnings: Vec<String>) -> Option<Self> {
         let scenario: Value = toml::from_str(scenario).ok()?;
         let suite = scenario.get("suite")?;
         let (measure, levels) = Measure::ALL
@@ -57,6 +60,7 @@ impl Heading {
             scenario,
             measure,
             spacing,
+            warnings,
         })
     }
 
@@ -66,6 +70,7 @@ impl Heading {
     /// When a value is not finite.
     pub fn tell(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
         let results = SuiteFragility::new(self.measure, rows);
+        let summary = to_json(self, &results)?;
         Ok(Results {
             peaks: ida::by_record(&results.cases),
             files: vec![
@@ -101,10 +106,11 @@ impl Heading {
                     csv(efficiency_columns(), &efficiencies(&results.capacities()))?,
                 ),
                 ("fragility.csv", csv(self.level_columns(), &results.levels)?),
-                (FRAGILITY, pretty(&to_json(self, &results)?).into_bytes()),
+                (FRAGILITY, pretty(&summary).into_bytes()),
                 ("suite.csv", csv(self.case_columns(), &results.cases)?),
             ],
             words: words(self, &results),
+            summary,
             ..Results::default()
         })
     }
@@ -198,10 +204,7 @@ impl Heading {
                     cells.extend(capacity.in_measures.map(Cell::from));
                 },
             ),
-            column(
-                "at_most",
-                |capacity: &Capacity<'_>| if capacity.at_most { "yes" } else { "no" },
-            ),
+            column("at_most", |capacity: &Capacity<'_>| yes(capacity.at_most)),
         ]
     }
 
@@ -249,6 +252,13 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
         column("dispersion_of_factor", |of: &Efficiency| {
             of.dispersion_of_factor
         }),
+        column("dispersion_of_factor_low", |of: &Efficiency| {
+            of.dispersion_of_factor_interval.map(|[low, _]| low)
+        }),
+        column("dispersion_of_factor_high", |of: &Efficiency| {
+            of.dispersion_of_factor_interval.map(|[_, high]| high)
+        }),
+        column("best_share", |of: &Efficiency| of.best_share),
     ]
 }
 
@@ -279,6 +289,7 @@ fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputE
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": heading.scenario,
+        "warnings": heading.warnings,
         "intensity": results.measure.column(),
     });
     let curve = curve_to_json(&results.fit)?;
@@ -308,6 +319,8 @@ fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputE
             "median": of.median,
             "dispersion": of.dispersion,
             "dispersion_of_factor": of.dispersion_of_factor,
+            "dispersion_of_factor_interval": of.dispersion_of_factor_interval,
+            "best_share": of.best_share,
         })
     });
     json["intensity_measures"] = measures.collect();
@@ -433,7 +446,7 @@ fn words(heading: &Heading, results: &SuiteFragility) -> String {
     let column = results.measure.column();
     let curves = curves_in_words(results).into_iter();
     lines.extend(curves.map(|CurveInWords { taken, curve }| match curve {
-        Ok(curve) => format!("fragility over {column}{taken}: {curve}"),
+        Ok(curve) => format!("fragility over {column}{taken}: {curve}\n    ({FIT})"),
         Err(reason) => format!("no fragility curve{taken}: {reason}"),
     }));
     lines.extend(measures_in_words(heading, results));
@@ -442,6 +455,8 @@ fn words(heading: &Heading, results: &SuiteFragility) -> String {
         let words = survival::in_words(&record.survival, unit(results.measure));
         lines.push(format!("{}{mirrored}: {words}", record.record));
     }
+    lines.push(searched(results));
+    lines.extend(rough_guide_of(&heading.warnings).map(str::to_owned));
     if results.cases.iter().any(CaseRow::still_rocking) {
         lines.push("those still rocking at the end count as not overturned".to_owned());
     }
@@ -464,14 +479,33 @@ fn words(heading: &Heading, results: &SuiteFragility) -> String {
     lines.join("\n  ")
 }
 
+/// Definition of the fitted curve, whose median is not that of the capacities.
+const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";
+
+/// The levels that were tried, and between which overturning was not searched for.
+fn searched(results: &SuiteFragility) -> String {
+    let ends = [results.levels.first(), results.levels.last()];
+    let [from, to] = ends.map(|level| rounded(level.map_or(0.0, |level| level.intensity)));
+    let unit = unit(results.measure);
+    format!(
+        "tried: {} levels from {from} to {to}{unit}; where a record first overturns is bisected between two of them, and lower ranges that \
+         overturn, below the first level or between levels, were not searched for",
+        results.levels.len()
+    )
+}
+
 /// Which measure of intensity tells best what overturns.
 fn measures_in_words(heading: &Heading, results: &SuiteFragility) -> Option<String> {
     let capacities = results.capacities();
     let all = efficiencies(&capacities);
     let (best, others) = all.split_first()?;
     let of = |one: &Efficiency| {
+        let interval = one.dispersion_of_factor_interval;
+        let interval = interval.map_or(String::new(), |[low, high]| {
+            format!(" ({low:.2} to {high:.2})")
+        });
         format!(
-            "{} {:.2}",
+            "{} {:.2}{interval}",
             heading.measure_in_words(one.measure),
             one.dispersion_of_factor
         )
@@ -485,9 +519,11 @@ fn measures_in_words(heading: &Heading, results: &SuiteFragility) -> Option<Stri
         ),
     };
     Some(format!(
-        "most efficient measure of intensity: {}; {} (dispersion of the factor on a record that overturns){left_out}",
+        "most efficient measure of intensity: {}; {}\n    (dispersion of the factor on a record that overturns, 95 % by bootstrap over \
+         records; the first is the best in {:.0} % of the draws){left_out}",
         of(best),
-        others.join(", ")
+        others.join(", "),
+        100.0 * best.best_share
     ))
 }
 

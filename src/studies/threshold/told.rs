@@ -15,7 +15,7 @@ use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::columns::FAILED;
 use crate::studies::ending::{Ending, Verdict};
 use crate::studies::kind::GROUND_FALLS;
-use crate::studies::remarks::Remarks;
+use crate::studies::remarks::{self, Remarks};
 use crate::studies::results::Results;
 use crate::studies::survival::{self, Survival};
 
@@ -64,7 +64,7 @@ pub fn tell(
     ];
     Ok(Results {
         files: FILES.into_iter().zip(contents).collect(),
-        words: words(scenario, ground, thresholds),
+        words: words(scenarios, ground, thresholds),
         summary: json,
         ..Results::default()
     })
@@ -183,11 +183,21 @@ fn to_json(
             model
         })
         .collect();
+    let mut warnings: Vec<String> = Vec::new();
+    for warning in scenarios
+        .iter()
+        .flat_map(|scenario| remarks::warnings(scenario))
+    {
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
     Ok(json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "peak_acceleration_g": peak_g,
         "factors": { "from": factors.first(), "to": factors.last(), "stride": factors.stride() },
+        "warnings": warnings,
         "models": models,
     }))
 }
@@ -238,7 +248,8 @@ fn sample_to_json(sample: &FactorSample) -> Value {
 }
 
 /// The results in words: one line for a record, one line per range for a pulse.
-fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -> String {
+fn words(scenarios: &[&Scenario], ground: &GroundMotion, thresholds: &[Threshold]) -> String {
+    let scenario = scenarios[0];
     let mut text = String::new();
     let peak_g = peak_g(scenario, ground);
     for threshold in thresholds {
@@ -261,6 +272,12 @@ fn words(scenario: &Scenario, ground: &GroundMotion, thresholds: &[Threshold]) -
         }
         doubts(&mut text, threshold);
         text += &hangs_on(threshold, peak_g);
+    }
+    if let Some(caveat) = scenarios
+        .iter()
+        .find_map(|scenario| remarks::rough_guide(scenario))
+    {
+        let _ = writeln!(text, "  {caveat}");
     }
     let end_s = scenario.simulation().duration_s;
     if ground.end_s() > end_s {

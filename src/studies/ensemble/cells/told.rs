@@ -6,8 +6,9 @@ use super::{Came, CellsOfSamples, LEVELS, Likely, OTHERS, Reached, Told};
 use crate::output::svg::{Axes, Drawing, Figure, Key, Sign, Stroke, color};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{OutputError, pretty};
+use crate::studies::ending::columns::yes;
 use crate::studies::ensemble::picture;
-use crate::studies::ensemble::statistics::{Share, band};
+use crate::studies::ensemble::statistics::{Share, band, quantile};
 use crate::studies::ensemble::told::{
     Decides, SUMMARY, band_to_json, beginning, percent, without_answer,
 };
@@ -98,7 +99,7 @@ pub(super) fn tell(
     json["cells"] = json!(found.likely.len());
     json["histories_without_outcome"] =
         json!({ "invalid": counted("invalid"), "failed": counted("failed") });
-    json["part_that_overturns"] = band_to_json(band(parts));
+    json["part_that_overturns"] = band_to_json(band(parts, quantile));
     let (name, of) = decides[0].to_json();
     json["what_matters"] = json!({ name: of });
     Ok(Results {
@@ -162,6 +163,9 @@ fn line_columns<'s>(study: &'s CellsOfSamples<'_>) -> Vec<Column<'s, Reached>> {
         column("overturned_05", |reached: &Reached| reached.y[0]),
         column("overturned_50", |reached: &Reached| reached.y[1]),
         column("overturned_95", |reached: &Reached| reached.y[2]),
+        column("at_most_05", |reached: &Reached| yes(reached.at_most[0])),
+        column("at_most_50", |reached: &Reached| yes(reached.at_most[1])),
+        column("at_most_95", |reached: &Reached| yes(reached.at_most[2])),
     ]
 }
 
@@ -185,10 +189,10 @@ fn draw(title: &str, study: &CellsOfSamples<'_>, found: &Found, look: Look) -> D
                 // A line ends where the probability is not reached, or reached below the map.
                 for piece in found
                     .reached
-                    .chunk_by(|a, b| [a, b].iter().all(|reached| reached.y[level].is_some()))
+                    .chunk_by(|a, b| [a, b].iter().all(|reached| reached.inside(level).is_some()))
                 {
                     let points = piece.iter().filter_map(|reached| {
-                        let y = reached.y[level]?;
+                        let y = reached.inside(level)?;
                         Some(axes.place(factors[0] * reached.x, factors[1] * y))
                     });
                     drawing.curve(name, points, stroke);
@@ -207,7 +211,7 @@ impl Found {
     fn is_reached(&self, level: usize) -> bool {
         self.reached
             .iter()
-            .any(|reached| reached.y[level].is_some())
+            .any(|reached| reached.inside(level).is_some())
     }
 }
 
@@ -256,7 +260,7 @@ fn words(
             .filter(|cell| cell.probability().is_some_and(|found| found >= level))
             .count()
     };
-    let cells = LEVELS.map(|level| format!("{} in {}", percent(level), at_least(level)));
+    let [few, half, most] = LEVELS.map(|level| (percent(level), at_least(level)));
     let own = match told.own {
         Ok(share) => format!(
             "the scenario itself overturns in {}, and in {} that it survives the probability is at least 5 %",
@@ -266,8 +270,14 @@ fn words(
         Err(_) => "the scenario itself has no outcome".to_owned(),
     };
     let mut lines = vec![format!(
-        "of {all} cells the probability of overturning is at least {};\n    {own}{}",
-        cells.join(", "),
+        "overturns with a probability of at least {} in {} of {all} cells, {} in {}, {} in {}, from {} samples of [uncertain];\n    {own}{}",
+        few.0,
+        few.1,
+        half.0,
+        half.1,
+        most.0,
+        most.1,
+        told.samples.len(),
         decides.ending(told.uncertain)
     )];
     lines.extend(columns_in_words(study, found));
@@ -301,7 +311,9 @@ fn columns_in_words(study: &CellsOfSamples<'_>, found: &Found) -> Vec<String> {
     chosen.dedup();
     let column = |index: usize| {
         let reached = found.reached.get(index)?;
-        let levels = LEVELS.iter().zip(reached.y).map(|(level, y)| match y {
+        let levels = LEVELS.iter().zip(reached.y).zip(reached.at_most);
+        let levels = levels.map(|((level, y), at_most)| match y {
+            Some(y) if at_most => format!("{} at or below {}", percent(*level), rounded(y)),
             Some(y) => format!("{} from {}", percent(*level), rounded(y)),
             None => format!("{} nowhere", percent(*level)),
         });
