@@ -66,6 +66,7 @@ mod settled;
 mod settling;
 mod shapes;
 mod sliding;
+mod sliding_impacts;
 mod span;
 mod spectrum;
 mod suite;

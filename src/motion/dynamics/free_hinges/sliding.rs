@@ -5,7 +5,9 @@
 //! drift. The next step makes up for what gaps and offsets are off zero by, and for the curvature of the motion, known from the
 //! velocity before. No other correction is needed to keep the row together.
 //!
-//! Steps do not end at landings: an impact happens within a step, and its time is known to within one.
+//! Steps do not end at landings: the time of an impact is known to within a step. The step in which a corner lands leaves it the rate
+//! that closes the rest of its gap; the next step takes that rate as well. So an impact is reported one step later, with the energy of
+//! both steps.
 
 use std::mem;
 
@@ -42,6 +44,33 @@ const LOADED: f64 = 1e-6;
 const CONVERGED: f64 = 1e-9;
 /// Bounds of friction that are wrong by more than this fraction of the largest one are an error.
 const LARGEST_BOUND_ERROR: f64 = 0.05;
+
+/// An impact that began in the last step: its energy is complete after the next one.
+struct Landing {
+    /// Corners that landed, joint by joint.
+    corners: Vec<[bool; 2]>,
+    /// Modes of the joints before.
+    modes_before: Vec<Mode>,
+    shut: Vec<Hinge>,
+    /// Kinetic energy before, in J.
+    energy_before_j: f64,
+    taken: Taken,
+}
+
+/// Energy taken by the impulses at joints, in J.
+#[derive(Clone, Copy, Default)]
+struct Taken {
+    total_j: f64,
+    /// The part of it that friction took.
+    friction_j: f64,
+}
+
+impl Taken {
+    fn add(&mut self, other: Self) {
+        self.total_j += other.total_j;
+        self.friction_j += other.friction_j;
+    }
+}
 
 pub(super) struct SlidingStepper<'a> {
     row: &'a Row,
@@ -85,6 +114,8 @@ pub(super) struct SlidingStepper<'a> {
     summit: Summit,
     /// Energy that friction took outside impacts.
     held_back: f64,
+    /// The impact of the last step, if there was one.
+    landing: Option<Landing>,
     overturned: bool,
     /// The least energy so far, without the work of the ground.
     least_energy: f64,
@@ -167,6 +198,7 @@ impl<'a> SlidingStepper<'a> {
             taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
+            landing: None,
             overturned: false,
             least_energy: f64::INFINITY,
             quiet_since_s: ground.start_s(),
@@ -285,31 +317,125 @@ impl<'a> SlidingStepper<'a> {
         of_row.least_normal_n = of_row.least_normal_n.min(self.least_normal);
     }
 
-    /// Whether a corner lands in the step that was solved; notes the joints that shut and that open.
-    fn find_landings(&mut self) -> bool {
-        let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
-        shut.clear();
-        opened.clear();
-        let mut landed = false;
-        for (joint, mode) in self.program.modes().iter().enumerate() {
-            let before = &self.modes_before[joint];
-            let gaps = &self.contacts[joint].coordinates_m;
+    /// The impact that begins in the step that was solved, if a corner lands, without its energy.
+    fn find_landing(&self, step: f64) -> Option<Landing> {
+        let (before, after) = (&self.modes_before, self.program.modes());
+        let lands = |joint: usize| {
+            let (gaps, rates) = (
+                &self.contacts[joint].coordinates_m,
+                &self.rates_before[joint],
+            );
             let least = APART_RATIO * self.faces[joint].thickness_m;
-            let lands =
-                (0..2).any(|end| mode.pressed[end] && !before.pressed[end] && gaps[end] > least);
-            landed |= lands;
+            [0, 1].map(|end| {
+                // A corner that reached its face just as the last step ended lands in this one.
+                let was_apart = gaps[end] > least || -rates[end] * step > least;
+                after[joint].pressed[end] && !before[joint].pressed[end] && was_apart
+            })
+        };
+        let joints = 0..self.faces.len();
+        if joints.clone().all(|joint| lands(joint) == [false; 2]) {
+            return None;
+        }
+        let corners: Vec<_> = joints.map(lands).collect();
+        let mut shut = Vec::new();
+        for (joint, landed) in corners.iter().enumerate() {
+            let (before, after) = (before[joint].pressed, after[joint].pressed);
             // A joint that was parted and lands on one corner has not shut.
-            let shuts = lands && (mode.pressed == [true; 2] || before.pressed != [false; 2]);
-            if shuts {
-                let edge = only(before.pressed.map(|pressed| !pressed));
+            if *landed != [false; 2] && (after == [true; 2] || before != [false; 2]) {
+                let edge = only(before.map(|pressed| !pressed));
                 shut.push(Hinge::Joint { joint, edge });
             }
-            if (shuts || before.pressed == [true; 2]) && mode.pressed != [true; 2] {
-                let edge = only(mode.pressed);
+        }
+        Some(Landing {
+            corners,
+            modes_before: before.clone(),
+            shut,
+            energy_before_j: 0.0,
+            taken: Taken::default(),
+        })
+    }
+
+    /// Joints that open at an impact that shuts these and changes the modes: they shut in it, or were shut before, and are open after.
+    fn opened(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
+        let mut opened = Vec::new();
+        for (joint, (before, after)) in before.iter().zip(after).enumerate() {
+            let shuts = shut
+                .iter()
+                .any(|hinge| matches!(hinge, Hinge::Joint { joint: shuts, .. } if *shuts == joint));
+            if (shuts || before.pressed == [true; 2]) && after.pressed != [true; 2] {
+                let edge = only(after.pressed);
                 opened.push(Hinge::Joint { joint, edge });
             }
         }
-        landed
+        opened
+    }
+
+    /// Energy taken in the step that was solved, in which the right support moves at this velocity on average: at the corners that
+    /// landed in the step before, and by everything else.
+    ///
+    /// The work of an impulse is its product with the mean of the rates before and after. Its sum over the steps of an impact does not
+    /// depend on how these share the impulse.
+    fn taken(&self, mean_m_s: Vector2<f64>) -> [Taken; 2] {
+        let landed_before = self.landing.as_ref().map(|landing| &landing.corners);
+        let mut parts = [Taken::default(); 2];
+        for (joint, impulse) in self.program.impulses().iter().enumerate() {
+            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5
+                + self.carried(joint, mean_m_s);
+            let by_row = impulse.component_mul(&mean);
+            let late = landed_before.map_or([false; 2], |corners| corners[joint]);
+            for end in 0..2 {
+                parts[usize::from(!late[end])].total_j -= by_row[end];
+            }
+            let part = &mut parts[usize::from(late == [false; 2])];
+            part.total_j -= by_row.z;
+            let slips = |modes: &[Mode]| modes[joint].along != Along::Stick;
+            if slips(&self.modes_before) || slips(self.program.modes()) {
+                // Below the tolerance of the rates its sign is rounding.
+                part.friction_j += (-by_row.z).max(0.0);
+            }
+        }
+        parts
+    }
+
+    /// Energy that friction took in the step that was solved, at the rates at its end.
+    fn held_back_j(&self) -> f64 {
+        let mut held_back_j = 0.0;
+        for (joint, impulse) in self.program.impulses().iter().enumerate() {
+            if let Along::Slip(_) = self.program.modes()[joint].along {
+                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
+                // Below the tolerance of the rates its sign is rounding.
+                held_back_j += (-impulse.z * rate).max(0.0);
+            }
+        }
+        held_back_j
+    }
+
+    /// Files and reports the impact of the last step, if there was one, with the energy that it took since then. The blocks are still
+    /// in the places of that step, and have the rates after this one; `alone` if no corner lands in this one.
+    fn end_landing(&mut self, late: Taken, alone: bool) {
+        let Some(mut landing) = self.landing.take() else {
+            return;
+        };
+        self.course.took_late(late.total_j);
+        landing.taken.add(late);
+        let Taken {
+            total_j,
+            friction_j,
+        } = landing.taken;
+        self.course.of_row.energy_taken_j += total_j - friction_j;
+        if !self.course.is_followed() {
+            return;
+        }
+        let after = if alone {
+            self.program.modes()
+        } else {
+            &self.modes_before
+        };
+        self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
+        self.course.shut = landing.shut;
+        let sticks = |mode: &Mode| mode.along == Along::Stick;
+        let moves = !(self.touches_as_it_stood() && self.program.modes().iter().all(sticks));
+        self.tell_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
     }
 
     fn drift(&mut self, step: f64) {
@@ -523,6 +649,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn completed(&mut self) -> &mut Course<'a> {
+        self.end_landing(Taken::default(), true);
         self.sliding.offsets_m.copy_from_slice(&self.stuck);
         self.course.of_row.sliding = Some(self.sliding.clone());
         let of_row = &mut self.course.of_row;
@@ -580,28 +707,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         of_row.most_iterations = of_row.most_iterations.max(passes);
         self.judge(solution.bound_error)?;
 
-        let (mut taken, mut rubbed) = (0.0, 0.0);
-        for (joint, impulse) in self.program.impulses().iter().enumerate() {
-            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5;
-            taken -= impulse.dot(&mean);
-            // Friction at a joint that sticks does no work, except in an impact.
-            if let Along::Slip(_) = self.program.modes()[joint].along {
-                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
-                // Below the tolerance of the rates its sign is rounding.
-                rubbed += (-impulse.z * rate).max(0.0);
-            }
-        }
+        let mean_m_s = self.right.mean_m_s();
         if self.right.moves() {
-            let (last, mean_m_s) = (self.faces.len() - 1, self.right.mean_m_s());
+            let last = self.faces.len() - 1;
             let carried_j = self.program.impulses()[last].dot(&self.carried(last, mean_m_s));
-            taken -= carried_j;
             self.right.works(-carried_j);
             let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
             self.right.works(-pulled.dot(&mean_m_s));
         }
-        taken -= rubbed;
-        self.course.of_row.energy_taken_j += taken;
-        self.sliding.friction_j += rubbed;
         for (block, velocity) in self.velocities.iter_mut().enumerate() {
             *velocity = self.program.velocity(block);
         }
@@ -609,17 +722,25 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.note_forces(to_s - self.kicked_s);
         self.kicked_s = to_s;
         self.last_step = step;
-        let landed = self.find_landings();
-        // Energy that friction takes in an impact holds nothing back.
-        self.held_back += if landed { 0.0 } else { rubbed };
-        self.drift(step);
-        if landed {
-            self.course.summary.impacts += 1;
-            let sticks = |mode: &Mode| mode.along == Along::Stick;
-            let moves = !(self.touches_as_it_stood() && self.program.modes().iter().all(sticks));
-            let before_j = self.kinetic() + taken + rubbed;
-            self.tell_impact(moves, [before_j, taken + rubbed], Some(rubbed));
+        let landing = self.find_landing(step);
+        let [mut late, taken] = self.taken(mean_m_s);
+        self.sliding.friction_j += late.friction_j + taken.friction_j;
+        if landing.is_none() {
+            late.add(taken);
+            // Energy that friction takes in an impact holds nothing back.
+            self.held_back += self.held_back_j();
         }
+        self.end_landing(late, landing.is_none());
+        if let Some(landing) = landing {
+            self.landing = Some(Landing {
+                energy_before_j: self.kinetic() + taken.total_j,
+                taken,
+                ..landing
+            });
+            self.course.summary.impacts += 1;
+            self.course.await_impact();
+        }
+        self.drift(step);
         if let Some((from_s, energy_j)) = stood {
             self.report_uplift(from_s, energy_j);
         } else {

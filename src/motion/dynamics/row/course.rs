@@ -175,6 +175,8 @@ pub(in crate::dynamics) struct Course<'a> {
     /// The motion of the ground from the last sample on.
     pieces: &'a [Piece],
     phase: usize,
+    /// Later events, while an impact is awaited.
+    later: Option<Vec<Event>>,
     thrust: ThrustRecord,
 }
 
@@ -557,6 +559,7 @@ impl<'a> Course<'a> {
             sample: Sample::at_rest(0.0),
             pieces: task.ground.pieces(),
             phase: 0,
+            later: None,
             thrust: ThrustRecord::default(),
             summary: Summary {
                 outcome: Outcome::StillRocking,
@@ -817,14 +820,49 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Passes on an event that begins a phase.
+    /// Passes on an event that begins a phase. Events after an awaited impact wait until that is told.
     fn tell(&mut self, event: &Event) {
         if self.falls {
             return;
         }
-        self.phase += 1;
+        let later = match &mut self.later {
+            Some(later) if event.impact.is_none() => {
+                self.phase += 1;
+                later.push(event.clone());
+                return;
+            }
+            later => later.take(),
+        };
+        if later.is_none() {
+            self.phase += 1;
+        }
         if let Some(recorder) = &mut self.recorder {
-            self.stopped |= recorder.event(event).is_break();
+            for event in [event].into_iter().chain(later.iter().flatten()) {
+                self.stopped |= recorder.event(event).is_break();
+            }
+        }
+    }
+
+    /// Begins the phase of an impact that is told after the next step, when its energy is known.
+    pub(in crate::dynamics) fn await_impact(&mut self) {
+        if self.is_followed() && !self.falls {
+            self.phase += 1;
+            self.later = Some(Vec::new());
+        }
+    }
+
+    /// Takes energy that an impact at this time took in the step after it, in J, from the energy of the half cycle that began with it.
+    pub(in crate::dynamics) fn took_late(&mut self, taken_j: f64) {
+        if self.cycle.is_none_or(|cycle| cycle.start_s != self.time) {
+            return;
+        }
+        let Some(energy) = &mut self.cycle_energy else {
+            return;
+        };
+        let before = mem::replace(energy, *energy - taken_j);
+        let ended = self.of_row.half_cycles.last_mut();
+        if let Some(ratio) = ended.and_then(|cycle| cycle.energy_ratio.as_mut()) {
+            *ratio *= *energy / before;
         }
     }
 
