@@ -89,9 +89,10 @@ fn campaign(cases: usize) -> Counts {
             let overturns = |outcome| matches!(outcome, Outcome::Overturned(_));
             failed[0] |= certain && overturns(own.outcome) != overturns(other.outcome);
             let others = other.half_cycles();
-            for (cycle, own) in cycles.iter().take(same).enumerate() {
-                let off = others
-                    .get(cycle)
+            for (cycle, own) in spread.half_cycles.iter().take(same).enumerate() {
+                let own = own.own;
+                let off = own
+                    .counterpart(&others)
                     .map_or(1.0, |other| (other.peak_rad / own.peak_rad - 1.0).abs());
                 failed[1 + usize::from(cycle > 0)] |= off > SAME;
             }

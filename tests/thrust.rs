@@ -259,8 +259,10 @@ fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
     for normal in [0.2, 0.1, 0.01, 0.0, -0.01, -0.1, -3.0] {
         let demand = of(normal, 0.03);
         assert!(demand.excess_ratio.is_finite() && demand.excess_ratio > before);
-        assert!(demand.friction.is_finite());
         before = demand.excess_ratio;
+        // A section with less than a hundredth of the weight does not count.
+        let needed = if normal >= 0.1 { 0.3 / normal } else { 0.0 };
+        assert!((demand.friction - needed).abs() < 1e-14, "{normal}");
     }
 }
 

@@ -301,7 +301,7 @@ impl Job {
             let _ = write!(text, "{}\n{}", run.name(), told.words);
             summaries.insert(name.to_owned(), told.summary);
             curves.push(told.curves);
-            histories.push(told.history);
+            histories.push((told.history, told.varied));
         }
         if let Some(mut folder) = folder {
             let picture = overlay(runs, &curves);

@@ -161,7 +161,15 @@ fn find(
         let variations = scenario.variations();
         let variations = variations.map_err(|error| Failure::Work(error.to_string()))?;
         let watch = |_| ControlFlow::Continue(());
-        threshold.varied = vary(threshold, &variations, ground, &request, &runner, watch)?;
+        threshold.varied = vary(
+            threshold,
+            &variations,
+            factors,
+            ground,
+            &request,
+            &runner,
+            watch,
+        )?;
     }
 
     let of_models: Vec<&Scenario> = scenarios.iter().collect();

@@ -88,6 +88,17 @@ pub fn pretty(value: &Value) -> String {
     shown_lines(&format!("{value:#}\n"))
 }
 
+/// The two ends of a range with this number of decimals, or with as many as it takes to distinguish them.
+pub(crate) fn range_ends([from, to]: [f64; 2], decimals: usize) -> [String; 2] {
+    // More decimals than any two different numbers of this program need.
+    const MOST: usize = 15;
+    let with = |decimals: usize| [from, to].map(|end| format!("{end:.decimals$}"));
+    (decimals..MOST)
+        .map(with)
+        .find(|[low, high]| low != high || from == to)
+        .unwrap_or_else(|| with(MOST))
+}
+
 /// Refuses values that are not finite. Tables check their own cells.
 pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
     if values.iter().all(|value| value.is_finite()) {

@@ -172,7 +172,7 @@ impl TieSample {
 /// What a tie did in a history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieSummary {
-    /// What it pulled with most, in N.
+    /// The largest force with which it pulled, in N; of a tie that breaks, also where it broke.
     pub peak_force_n: f64,
     /// When, in s.
     pub peak_force_time_s: f64,
@@ -383,6 +383,9 @@ impl Impact {
     }
 }
 
+/// Half cycles that peak below this fraction of the largest peak are not reported.
+const LEAST_PEAK_RATIO: f64 = 1e-3;
+
 /// Summary of a history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
@@ -447,10 +450,15 @@ impl Summary {
         matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
     }
 
-    /// Half cycles of a row of blocks; empty for other structures.
+    /// Half cycles of a row of blocks that peak at a thousandth of the largest peak or more; empty for other structures. Smaller ones
+    /// are vibration and rattling, of which a motion has any number.
     #[must_use]
-    pub fn half_cycles(&self) -> &[HalfCycle] {
-        self.row.as_ref().map_or(&[], |row| &row.half_cycles)
+    pub fn half_cycles(&self) -> Vec<HalfCycle> {
+        let all = self.row.as_ref().map_or(&[][..], |row| &row.half_cycles);
+        let peaks_rad = all.iter().map(|cycle| cycle.peak_rad);
+        let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
+        let counts = |cycle: &&HalfCycle| cycle.peak_rad >= least_rad;
+        all.iter().filter(counts).copied().collect()
     }
 }
 
@@ -466,7 +474,7 @@ pub struct Cost {
 /// Additional summary of a row of blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowSummary {
-    /// Half cycles.
+    /// All half cycles, however small; [`Summary::half_cycles`] omits those that are no rocking.
     pub half_cycles: Vec<HalfCycle>,
     /// Slip; `None` where joints do not slip.
     pub sliding: Option<Sliding>,
@@ -520,8 +528,32 @@ pub struct HalfCycle {
     pub duration_s: f64,
     /// Largest rotation of a block, in radians.
     pub peak_rad: f64,
+    /// When that was first reached, in seconds.
+    pub peak_time_s: f64,
     /// Energy at its end over that at its beginning; unknown for the first and the last one.
     pub energy_ratio: Option<f64>,
+}
+
+impl HalfCycle {
+    /// When it ended, in seconds.
+    #[must_use]
+    pub fn end_s(&self) -> f64 {
+        self.start_s + self.duration_s
+    }
+
+    /// The half cycle of another motion that corresponds to this one: to the same side, at least partly at the same time, and with
+    /// the nearest peak in time; `None` if there is none.
+    #[must_use]
+    pub fn counterpart<'a>(&self, others: &'a [Self]) -> Option<&'a Self> {
+        let coincides = |other: &&Self| {
+            other.sway == self.sway
+                && other.start_s <= self.end_s()
+                && self.start_s <= other.end_s()
+        };
+        let apart_s = |other: &&Self| (other.peak_time_s - self.peak_time_s).abs();
+        let others = others.iter().filter(coincides);
+        others.min_by(|one, other| apart_s(one).total_cmp(&apart_s(other)))
+    }
 }
 
 /// The slip in a motion.
@@ -556,7 +588,7 @@ impl Sliding {
 /// Additional summary of a motion with elastic joints; energies are totals from the beginning to the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticSummary {
-    /// The largest compressive stress.
+    /// The largest elastic compressive stress; damping adds to it, and the strength caps both together.
     pub largest_stress: Stress,
     /// Elastic energy at the end, in J.
     pub elastic_j: f64,

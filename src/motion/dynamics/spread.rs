@@ -20,7 +20,7 @@ pub const SAME_PEAK_RATIO: f64 = 0.01;
 /// The repetitions must agree to this fraction of that, because still other ways to compute the motion may differ by more.
 const AGREEMENT: f64 = 0.5;
 
-/// Half cycles after the last one that peaks above this fraction of the largest peak are not compared.
+/// Half cycles that peak below this fraction of the largest peak are not compared.
 const LEAST_PEAK_RATIO: f64 = 1e-2;
 
 /// A motion beside its repetitions: only what they agree on can be relied on.
@@ -33,15 +33,31 @@ pub struct Spread {
     pub repeated: Vec<&'static str>,
     /// Outcomes of the motion itself, then of the repetitions.
     pub outcomes: Vec<Outcome>,
-    /// The half cycles that all of them have, up to the last that peaks above a hundredth of the largest peak of the motion
-    /// itself.
-    pub half_cycles: Vec<PeakSpread>,
-    /// Number of half cycles, from the first on, that are the same: to one side, with the same peaks.
+    /// The half cycles of the motion itself that peak at a hundredth of its largest peak or more.
+    pub half_cycles: Vec<HalfCycleSpread>,
+    /// Number of these, from the first on, that are certain.
     pub same_until_half_cycle: usize,
-    /// When the first half cycle that differs begins, in seconds; `None` where all are the same.
+    /// When the first of these that differs begins, in seconds; `None` where none differs.
     pub parts_at_s: Option<f64>,
     /// The largest rotation of a block; `None` if one of the motions overturns.
     pub largest: Option<PeakSpread>,
+}
+
+/// A half cycle of a motion beside its counterparts in the repetitions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HalfCycleSpread {
+    /// The half cycle of the motion itself.
+    pub own: HalfCycle,
+    /// Its peak in all motions; `None` if a repetition has no [counterpart](HalfCycle::counterpart) of it.
+    pub peak: Option<PeakSpread>,
+}
+
+impl HalfCycleSpread {
+    /// Whether its peak is certain.
+    #[must_use]
+    pub fn is_same(&self) -> bool {
+        self.peak.is_some_and(|peak| peak.is_same())
+    }
 }
 
 /// A largest rotation of a block, in radians.
@@ -79,37 +95,25 @@ impl Spread {
         let runs: Vec<&Summary> = std::iter::once(own)
             .chain(repetitions.iter().map(|(_, summary)| summary))
             .collect();
-        let cycles: Vec<_> = runs.iter().map(|summary| summary.half_cycles()).collect();
-        let largest_rad = cycles[0]
-            .iter()
-            .map(|cycle| cycle.peak_rad)
-            .fold(0.0, f64::max);
-        let counts = |cycle: &HalfCycle| cycle.peak_rad > LEAST_PEAK_RATIO * largest_rad;
-        let last = cycles[0].iter().rposition(counts);
-        let compared = last.map_or(0, |last| last + 1);
-        let in_all = cycles
-            .iter()
-            .map(|cycles| cycles.len())
-            .min()
-            .unwrap_or(0)
-            .min(compared);
-        let mut half_cycles = Vec::new();
-        let mut same = 0;
-        for index in 0..in_all {
-            let peaks_rad: Vec<f64> = cycles.iter().map(|cycles| cycles[index].peak_rad).collect();
-            let peak = PeakSpread::of(&peaks_rad);
-            let side = cycles[0][index].sway;
-            let to_one_side = cycles.iter().all(|cycles| cycles[index].sway == side);
-            if same == index && to_one_side && peak.is_same() {
-                same += 1;
+        let mut cycles = own.half_cycles();
+        let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
+        let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
+        cycles.retain(|cycle| cycle.peak_rad >= least_rad);
+        let beside = |own: HalfCycle| {
+            let others = repetitions.iter().map(|(_, other)| {
+                let others = other.row.as_ref().map(|row| &row.half_cycles[..]);
+                Some(own.counterpart(others?)?.peak_rad)
+            });
+            let peaks_rad: Option<Vec<f64>> =
+                std::iter::once(Some(own.peak_rad)).chain(others).collect();
+            HalfCycleSpread {
+                own,
+                peak: peaks_rad.map(|peaks_rad| PeakSpread::of(&peaks_rad)),
             }
-            half_cycles.push(peak);
-        }
-        let starts_s = cycles
-            .iter()
-            .filter(|_| same < compared)
-            .filter_map(|cycles| Some(cycles.get(same)?.start_s))
-            .reduce(f64::min);
+        };
+        let half_cycles: Vec<_> = cycles.into_iter().map(beside).collect();
+        let differs = |cycle: &HalfCycleSpread| !cycle.is_same();
+        let parts = half_cycles.iter().position(differs);
         let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
         let largest_rad: Vec<f64> = runs
             .iter()
@@ -118,9 +122,9 @@ impl Spread {
         Self {
             repeated: repetitions.iter().map(|(name, _)| *name).collect(),
             outcomes: runs.iter().map(|summary| summary.outcome).collect(),
+            same_until_half_cycle: parts.unwrap_or(half_cycles.len()),
+            parts_at_s: parts.map(|parts| half_cycles[parts].own.start_s),
             half_cycles,
-            same_until_half_cycle: same,
-            parts_at_s: starts_s,
             largest: runs
                 .iter()
                 .all(stands)

@@ -44,9 +44,13 @@ pub struct Demand {
     /// How far the line of thrust leaves the structure, over the thickness: the largest value of
     /// its sections, zero if it stays inside.
     pub excess_ratio: f64,
-    /// Friction coefficient needed to prevent sliding, the largest over the sections.
+    /// Friction coefficient needed to prevent sliding, the largest over the sections that bear at least [`LEAST_LOAD`].
     pub friction: f64,
 }
+
+/// Sections with a normal force below this fraction of the weight of the structure do not count in the friction that it needs: an almost
+/// unloaded one can show any ratio, and whether it slips hardly matters.
+pub const LEAST_LOAD: f64 = 0.01;
 
 /// A mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
 pub trait Mechanism {

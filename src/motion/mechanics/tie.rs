@@ -407,9 +407,15 @@ impl<R: Real> TieMemory<R> {
         let pulls_n = ((stretch_m - self.yielded_m) * tie.stiffness_n_m).max(zero);
         let force_n = pulls_n.min(R::of(tie.yield_force_n));
         let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
+        let breaks_m = R::of(tie.breaks_at_strain * tie.slack_length_m());
+        // A tie that breaks within the step pulls hardest where it breaks.
+        let hardest_n = ((stretch_m.min(breaks_m) - self.yielded_m) * tie.stiffness_n_m)
+            .max(zero)
+            .min(R::of(tie.yield_force_n));
+        self.peak_n = self.peak_n.max(hardest_n * self.intact);
         self.yielded_m += more_m * self.intact;
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
-        let left_m = R::of(tie.breaks_at_strain * tie.slack_length_m()) - stretch_m;
+        let left_m = breaks_m - stretch_m;
         let intact = left_m.positive(self.intact, zero);
         // What was in it as it broke, and the trapezoid of its work in that step, at whose end it pulls no more.
         let last_j = self.force_n * (stretch_m - self.stretch_m) * 0.5;
@@ -417,7 +423,6 @@ impl<R: Real> TieMemory<R> {
         self.taken_j += yielded_j * intact + lost_j;
         self.stretch_m = stretch_m;
         self.force_n = force_n * intact;
-        self.peak_n = self.peak_n.max(self.force_n);
         self.intact = intact;
     }
 

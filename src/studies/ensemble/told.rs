@@ -16,7 +16,7 @@ use crate::studies::ending::columns::{self, UNCERTAIN, yes};
 use crate::studies::peaks::Peak;
 use crate::studies::remarks::warnings;
 use crate::studies::results::Results;
-use crate::studies::threshold::rounded;
+use crate::studies::threshold::{rounded, rounded_range};
 
 pub(super) const SUMMARY: &str = "uncertain.json";
 
@@ -663,7 +663,10 @@ pub(super) fn capacities(
     }));
     let rounded_or = |number: Option<f64>| number.map_or("not known".to_owned(), rounded);
     let interval = |ends: Option<[f64; 2]>| match ends {
-        Some([low, high]) => format!(" ({} to {})", rounded(low), rounded(high)),
+        Some(ends) => {
+            let [low, high] = rounded_range(ends);
+            format!(" ({low} to {high})")
+        }
         None => String::new(),
     };
     let distributions = fragilities.all().map(|(name, estimated)| {

@@ -5,15 +5,16 @@ use std::fmt::Write as _;
 use super::Run;
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::spread::Verdict;
+use crate::dynamics::variation::Varied;
 use crate::scenario::Hinges;
 
 /// A table of the runs of one structure with different models of motion and their results, followed by the conclusion.
 #[must_use]
-pub fn compared(runs: &[Run<'_>], histories: &[Summary]) -> String {
+pub fn compared(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
     let rows: Vec<[String; 3]> = runs
         .iter()
         .zip(histories)
-        .map(|(run, history)| {
+        .map(|(run, (history, _))| {
             let peak = match history.outcome {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
@@ -46,27 +47,49 @@ fn ends(history: &Summary) -> String {
     }
 }
 
-/// The model with the fewest assumptions, and how the others differ from its answer.
-fn believed(runs: &[Run<'_>], histories: &[Summary]) -> String {
+/// The model with the fewest assumptions, whether its outcome depends on its joints, and how the others differ from its answer.
+fn believed(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
     let trust = |run: &Run<'_>| match run.scenario.motion().hinges() {
         Hinges::Four => 0,
         Hinges::Free => 1,
         Hinges::Elastic => 2,
     };
     let all = runs.iter().zip(histories);
-    let Some((best, own)) = all.clone().max_by_key(|(run, _)| trust(run)) else {
+    let Some((best, (own, varied))) = all.clone().max_by_key(|(run, _)| trust(run)) else {
         return String::new();
     };
-    let why = match best.scenario.motion().hinges() {
-        Hinges::Elastic => "joints of stone give way, by as much as the stiffness says",
-        Hinges::Free => "hinges open at any joint",
-        Hinges::Four => "it is the only one",
+    let is_elastic = best.scenario.motion().hinges() == Hinges::Elastic;
+    if own.outcome == Outcome::Incomplete {
+        return format!(
+            "  {}: no verdict, so there is nothing to compare\n",
+            best.name()
+        );
+    }
+    let mut text = match otherwise(own, varied) {
+        Some(otherwise) => format!(
+            "  {}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {} as given, and {otherwise}\n",
+            best.name(),
+            happens(own)
+        ),
+        None if is_elastic && !all_agree(own, varied) => format!(
+            "  {} assume least, but how far the outcome depends on joint stiffness is not known\n",
+            best.name()
+        ),
+        None => {
+            let why = match best.scenario.motion().hinges() {
+                Hinges::Elastic => "the outcome is the same with the other stiffnesses and contact",
+                Hinges::Free => "hinges open at any joint",
+                Hinges::Four => "it is the only one",
+            };
+            format!("  believe {}: {why}\n", best.name())
+        }
     };
-    let mut text = format!("  believe {}: {why}\n", best.name());
-    for (run, other) in all.filter(|(run, _)| trust(run) != trust(best)) {
+    for (run, (other, _)) in all.filter(|(run, _)| trust(run) != trust(best)) {
         let [own_verdict, other_verdict] = [own, other].map(|one| Verdict::from(one.outcome));
         let (own_rad, other_rad) = (own.largest_rotation_rad(), other.largest_rotation_rad());
-        let _ = if own_verdict != other_verdict {
+        let _ = if other_verdict == Verdict::Incomplete {
+            Ok(())
+        } else if own_verdict != other_verdict {
             writeln!(text, "  {}: ANOTHER OUTCOME", run.name())
         } else if own_verdict == Verdict::Overturns {
             let late_s = other.outcome_time_s - own.outcome_time_s;
@@ -87,4 +110,36 @@ fn believed(runs: &[Run<'_>], histories: &[Summary]) -> String {
         };
     }
     text
+}
+
+/// With which other properties a motion ends otherwise, and how; `None` if with none.
+pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
+    let (opposite, otherwise) = match Verdict::from(own.outcome) {
+        Verdict::Overturns => (Verdict::Survives, "survives"),
+        Verdict::Survives => (Verdict::Overturns, "overturns"),
+        Verdict::Incomplete | Verdict::Uncertain => return None,
+    };
+    let others = varied.iter().filter_map(|Varied { name, result }| {
+        let other = Verdict::from(result.as_ref().ok()?.outcome);
+        (other == opposite).then_some(name.as_str())
+    });
+    let others: Vec<&str> = others.collect();
+    (!others.is_empty()).then(|| format!("{otherwise} with {}", others.join(" and with ")))
+}
+
+/// Whether the motion was computed with other properties, and ends alike with all of them.
+fn all_agree(own: &Summary, varied: &[Varied]) -> bool {
+    let own = Verdict::from(own.outcome);
+    let agrees = |Varied { result, .. }: &Varied| {
+        let other = result.as_ref().map(|other| Verdict::from(other.outcome));
+        other.is_ok_and(|other| other == own)
+    };
+    !varied.is_empty() && varied.iter().all(agrees)
+}
+
+const fn happens(history: &Summary) -> &'static str {
+    match history.outcome {
+        Outcome::Overturned(_) => "overturns",
+        _ => "survives",
+    }
 }

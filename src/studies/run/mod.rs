@@ -43,7 +43,7 @@ use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
 use crate::dynamics::spread::Repetitions;
-use crate::dynamics::variation::{Variation, Variations};
+use crate::dynamics::variation::{Variation, Variations, Varied};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::table::{Column, TableWriter};
@@ -133,6 +133,8 @@ pub struct RunResults {
     pub curves: Curves,
     /// The summary of the motion.
     pub history: Summary,
+    /// The motions with other properties that are as likely.
+    pub varied: Vec<Varied>,
 }
 
 /// Why a run has no results.
@@ -285,6 +287,7 @@ impl<'a> Run<'a> {
             summary,
             curves: shown.curves,
             history,
+            varied,
         })
     }
 

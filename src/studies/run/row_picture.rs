@@ -224,8 +224,9 @@ fn doing(summary: &Summary) -> States {
             None
         }
     };
-    let cycles = summary.half_cycles().iter();
-    let changes = cycles
+    let row = summary.row.iter();
+    let changes = row
+        .flat_map(|row| &row.half_cycles)
         .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))
         .chain(end.map(|state| (summary.outcome_time_s, state)));
     States {

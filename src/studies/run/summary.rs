@@ -222,12 +222,13 @@ impl Object {
         self.number("peak_potential_over_barrier", over_barrier)?;
         self.incipient(model);
         let mut half_cycles = Vec::new();
-        for cycle in &row.half_cycles {
+        for cycle in history.half_cycles() {
             let mut object = Self::default();
             object.put("sway", json!(cycle.sway.name()));
             object.number("start_s", cycle.start_s)?;
             object.number("duration_s", cycle.duration_s)?;
             object.number("peak_rad", cycle.peak_rad)?;
+            object.number("peak_time_s", cycle.peak_time_s)?;
             object.number("energy_ratio", cycle.energy_ratio)?;
             half_cycles.push(Value::Object(object.0));
         }
@@ -323,7 +324,8 @@ fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
     };
     let mut half_cycles = Vec::new();
     for cycle in &spread.half_cycles {
-        half_cycles.push(json!({ "peak_rad": peak(cycle)? }));
+        let peak_rad = cycle.peak.as_ref().map(peak).transpose()?;
+        half_cycles.push(json!({ "peak_time_s": cycle.own.peak_time_s, "peak_rad": peak_rad }));
     }
     let names = std::iter::once("own").chain(spread.repeated.iter().copied());
     let names = names.map(|name| name.replace(' ', "_"));

@@ -1,5 +1,6 @@
 //! The verdict of a run in one line: what happened, how sure that is, and on what it depends.
 
+use super::comparison::otherwise;
 use super::words::{in_percent, needs};
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::spread::{Spread, SpreadError, Verdict};
@@ -136,26 +137,10 @@ impl Evidence<'_> {
 
     /// On what the outcome depends: friction that stone may not have, and properties that change the ending.
     fn doubts(&self) -> Vec<String> {
-        let own = Verdict::from(self.history.outcome);
-        if own == Verdict::Incomplete {
+        if self.history.outcome == Outcome::Incomplete {
             return Vec::new();
         }
-        let mut doubts = Vec::new();
-        if let Some(needed) = needs(self.scenario, self.history) {
-            doubts.push(needed);
-        }
-        let others = self.varied.iter().filter_map(|Varied { name, result }| {
-            let other = Verdict::from(result.as_ref().ok()?.outcome);
-            (other != own).then_some(name.as_str())
-        });
-        let others: Vec<&str> = others.collect();
-        if !others.is_empty() {
-            let otherwise = match own {
-                Verdict::Overturns => "survives",
-                _ => "overturns",
-            };
-            doubts.push(format!("{otherwise} with {}", others.join(" and with ")));
-        }
-        doubts
+        let needed = needs(self.scenario, self.history).into_iter();
+        needed.chain(otherwise(self.history, self.varied)).collect()
     }
 }

@@ -7,17 +7,17 @@ use super::feet::FeetApart;
 use super::verdict::Evidence;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
-    ElasticSummary, Event, HalfCycle, Impact, Outcome, RowSummary, Sliding, Stress, Summary,
-    TieSummary,
+    ElasticSummary, Event, Impact, Outcome, RowSummary, Sliding, Stress, Summary, TieSummary,
 };
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::spread::{SAME_PEAK_RATIO, Spread, Verdict};
+use crate::dynamics::spread::{HalfCycleSpread, PeakSpread, SAME_PEAK_RATIO, Spread, Verdict};
 use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
 use crate::dynamics::variation::Varied;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
+use crate::output::range_ends;
 use crate::scenario::{Hinges, Scenario, Series, Structure};
 
 /// The heading of the words for the runs of a scenario: its title, and the records that shake it, one line each.
@@ -83,7 +83,7 @@ pub(super) fn words(
     text += &variations(history, varied);
     let compared = beside.contains(&Hinges::Elastic);
     if scenario.motion().hinges() == Hinges::Free && !compared {
-        text += "  with joints that give way it falls under weaker ground motion: compare with --hinges elastic\n";
+        text += "  rigid joints, while those of stone give way: compare with --hinges elastic\n";
     }
     text += &computed(scenario, model, history);
     text
@@ -210,7 +210,7 @@ fn variations(own: &Summary, varied: &[Varied]) -> String {
     text
 }
 
-/// How a motion ended, and its first peak.
+/// How a motion ended, and its largest rotation.
 fn ended(history: &Summary) -> String {
     let ends = match history.outcome {
         Outcome::Overturned(sway) => {
@@ -222,15 +222,18 @@ fn ended(history: &Summary) -> String {
         Outcome::Incomplete => "has no verdict, because the run ends too early",
         Outcome::Rest | Outcome::StillRocking => "survives",
     };
-    match first_peak_rad(history) {
-        Some(peak_rad) => format!("{ends}, first peak {peak_rad:.6} rad"),
-        None => ends.to_owned(),
+    match history.largest_rotation_rad() {
+        peak_rad if peak_rad > STRAIGHT_RAD => {
+            format!("{ends}, largest rotation {peak_rad:.6} rad")
+        }
+        _ => ends.to_owned(),
     }
 }
 
 /// Peak of the first half cycle that rocks.
 pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
-    let mut peaks = history.half_cycles().iter().map(|cycle| cycle.peak_rad);
+    let cycles = history.half_cycles().into_iter();
+    let mut peaks = cycles.map(|cycle| cycle.peak_rad);
     peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
 }
 
@@ -294,14 +297,16 @@ fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     if history.outcome == Outcome::NeverMoved {
         return text;
     }
-    let rocking = row
-        .half_cycles
-        .iter()
-        .filter(|cycle| cycle.peak_rad > STRAIGHT_RAD);
-    let cycles: Vec<_> = rocking.take(FIRST).map(cycle).collect();
+    let cycles = history.half_cycles();
+    let cycles: Vec<_> = largest(&cycles, |cycle| cycle.peak_rad)
+        .map(|cycle| {
+            let (side, peak_rad) = (cycle.sway.name(), cycle.peak_rad);
+            format!("{side} {peak_rad:.6} (at {:.4} s)", cycle.peak_time_s)
+        })
+        .collect();
     if !cycles.is_empty() {
         let cycles = cycles.join(", ");
-        let _ = writeln!(text, "  peaks of the first half cycles in rad: {cycles}");
+        let _ = writeln!(text, "  largest half cycles in rad: {cycles}");
     }
     let peak = history.largest_rotation_rad();
     if peak <= STRAIGHT_RAD {
@@ -341,11 +346,14 @@ fn of_elastic_joints(scenario: &Scenario, elastic: &ElasticSummary) -> String {
         time_s,
     } = elastic.largest_stress;
     let mut text = format!(
-        "  largest compressive stress {:.3} MPa, at joint {joint} (at {time_s:.4} s)",
+        "  largest elastic compressive stress {:.3} MPa, at joint {joint} (at {time_s:.4} s)",
         1e-6 * stress_pa
     );
     if let Some(strength_mpa) = scenario.motion().compressive_strength_mpa() {
-        let _ = write!(text, "; the strength is {strength_mpa:?} MPa");
+        let _ = write!(
+            text,
+            "; the strength is {strength_mpa:?} MPa, which caps it together with the stress of damping"
+        );
     }
     let _ = writeln!(
         text,
@@ -392,7 +400,18 @@ fn of_ties(ties: &[TieSummary]) -> String {
 }
 
 /// Number of half cycles that are described.
-const FIRST: usize = 3;
+const DESCRIBED: usize = 3;
+
+/// The half cycles with the largest peaks that are not zero in print, in order of time.
+fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> impl Iterator<Item = &T> {
+    let mut rocking: Vec<usize> = (0..cycles.len())
+        .filter(|index| peak_rad(&cycles[*index]) > STRAIGHT_RAD)
+        .collect();
+    rocking.sort_by(|a, b| peak_rad(&cycles[*b]).total_cmp(&peak_rad(&cycles[*a])));
+    rocking.truncate(DESCRIBED);
+    rocking.sort_unstable();
+    rocking.into_iter().map(|index| &cycles[index])
+}
 
 /// A block that rotates by no more than this slides straight on: in print, the rotation is zero.
 const STRAIGHT_RAD: f64 = 5e-7;
@@ -451,51 +470,47 @@ fn outcome(history: &Summary) -> String {
 
 /// The acceleration that starts the structure to either side, compared with that of the ground.
 fn incipient(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
-    let sides = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
-    let least_g = sides
-        .iter()
-        .flatten()
-        .copied()
-        .fold(f64::INFINITY, f64::min);
-    let (reaches, uneven) = (reaches(scenario, history, least_g), "the smaller one");
+    let sides = [Sway::Right, Sway::Left];
+    let incipient_g = sides.map(|sway| model.incipient_acceleration_g(sway));
     let incipient = match scenario.motion().friction_coefficient() {
         None => "incipient acceleration A_L",
         Some(_) => "incipient acceleration with friction",
     };
-    match sides {
-        [Some(right), Some(left)] if (right - left).abs() > 1e-9 * right => format!(
-            "  {incipient} {right:.4} g to the right, {left:.4} g to the left; the ground {}\n",
-            reaches.replacen("times as much", &format!("times {uneven}"), 1)
-        ),
-        [None, None] => {
-            format!("  {incipient} none, no push starts it; the ground {reaches}\n")
-        }
-        _ => format!("  {incipient} {least_g:.4} g; the ground {reaches}\n"),
-    }
-}
-
-/// The peak of the ground acceleration, compared with what starts the structure.
-fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
     let ground = scenario.ground_motion();
-    let peaks_g = ground.peaks_m_s2(history.end_s) / scenario.gravity_m_s2();
-    let whole_g = ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2();
+    let of_gravity = |acceleration_m_s2: f64| acceleration_m_s2 / scenario.gravity_m_s2();
+    let peaks_g = ground.peaks_m_s2(history.end_s).map(of_gravity);
+    let whole_g = of_gravity(ground.peaks_m_s2(f64::INFINITY).x);
     // A record may continue after the motion ends.
     let until = match history.outcome {
         _ if peaks_g.x >= whole_g => "",
         Outcome::Overturned(_) => " until it overturned",
         _ => " until the end of the run",
     };
+    let (starts, compared) = match incipient_g {
+        [Some(right), Some(left)] if (right - left).abs() <= 1e-9 * right => {
+            (format!("{right:.4} g"), times(peaks_g.x, right))
+        }
+        [None, None] => ("none, no push starts it".to_owned(), String::new()),
+        _ => {
+            let named = sides.iter().zip(incipient_g).map(|(sway, starts_g)| {
+                let to = sway.name();
+                starts_g.map_or(format!("none to the {to}"), |starts_g| {
+                    format!("{starts_g:.4} g to the {to}")
+                })
+            });
+            let pushes_g = ground.pushes_m_s2(history.end_s).map(of_gravity);
+            let pushes = sides.iter().zip(pushes_g.into_iter().zip(incipient_g));
+            let pushes = pushes.filter(|(_, (push_g, _))| *push_g > 0.0);
+            let pushes = pushes.map(|(sway, (push_g, starts_g))| {
+                let times = starts_g.map_or(String::new(), |starts_g| times(push_g, starts_g));
+                format!(", pushes to the {} with {push_g:.4} g{times}", sway.name())
+            });
+            let named = named.collect::<Vec<_>>().join(", ");
+            (named, pushes.collect())
+        }
+    };
     let mut reaches = if peaks_g.x > 0.0 {
-        let times = peaks_g.x / incipient_g;
-        // What stands on hinges that ties hold is started by any push.
-        let times = times
-            .is_finite()
-            .then(|| format!(", {times:.2} times as much"));
-        format!(
-            "reaches {:.4} g{until}{}",
-            peaks_g.x,
-            times.unwrap_or_default()
-        )
+        format!("reaches {:.4} g{until}{compared}", peaks_g.x)
     } else {
         "stays still".to_owned()
     };
@@ -506,7 +521,17 @@ fn reaches(scenario: &Scenario, history: &Summary, incipient_g: f64) -> String {
             peaks_g.y
         );
     }
-    reaches
+    format!("  {incipient} {starts}; the ground {reaches}\n")
+}
+
+/// How many times as strong a push is as the one that starts the structure. Any push starts a structure on hinges that ties hold.
+fn times(push_g: f64, incipient_g: f64) -> String {
+    let times = push_g / incipient_g;
+    if times.is_finite() {
+        format!(", {times:.2} times as much")
+    } else {
+        String::new()
+    }
 }
 
 /// How far the right foot goes from the left one.
@@ -730,10 +755,6 @@ fn joints(hinges: &[Hinge]) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-fn cycle(cycle: &HalfCycle) -> String {
-    format!("{} {:.6}", cycle.sway.name(), cycle.peak_rad)
-}
-
 /// Which results the repetitions confirm.
 fn sure(spread: &Spread) -> String {
     let repeated = spread.repeated.join("; ");
@@ -747,48 +768,64 @@ fn sure(spread: &Spread) -> String {
         let others = others.join(" and ");
         format!("  repeated ({repeated}): ANOTHER OUTCOME, {others}")
     };
-    let mut peaks = spread.half_cycles.iter();
-    if peaks.all(|peak| peak.max_rad <= STRAIGHT_RAD) {
+    let percent = 100.0 * SAME_PEAK_RATIO;
+    let described = largest(&spread.half_cycles, |cycle| cycle.own.peak_rad);
+    let (same, differ): (Vec<_>, Vec<_>) = described.partition(|cycle| cycle.is_same());
+    let count = same.len() + differ.len();
+    if count == 0 {
         text.push('\n');
         return text;
     }
-    let percent = 100.0 * SAME_PEAK_RATIO;
-    let same = spread.same_until_half_cycle;
-    let _ = match (same, spread.parts_at_s) {
-        (0, None) => Ok(()),
-        (1, None) => write!(text, ", peak of the only half cycle within {percent} %"),
-        (_, None) => write!(text, ", peaks of all {same} half cycles within {percent} %"),
-        (0, Some(_)) => write!(text, "; the first half cycles differ already"),
-        (1, Some(time_s)) => write!(
+    let (one, of) = (same.len() == 1, count == 1);
+    let _ = match (same.len(), differ.len()) {
+        (0, _) => Ok(()),
+        (_, 0) if of => write!(text, ", peak of the largest half cycle within {percent} %"),
+        (all, 0) => write!(
             text,
-            ", peak of the first half cycle within {percent} %;\n    from {time_s:.4} s on they differ"
+            ", peaks of the {all} largest half cycles within {percent} %"
         ),
-        (_, Some(time_s)) => write!(
+        (some, _) => write!(
             text,
-            ", peaks of the first {same} half cycles within {percent} %;\n    from {time_s:.4} s on they differ"
+            ", peak{} of {some} of the {count} largest half cycles within {percent} %",
+            if one { "" } else { "s" }
         ),
     };
-    if let Some(peak) = spread.half_cycles.get(same) {
-        let (min_rad, max_rad) = (peak.min_rad, peak.max_rad);
-        let _ = write!(
-            text,
-            ": half cycle {} peaks at {min_rad:.6} to {max_rad:.6} rad",
-            same + 1
-        );
+    if let Some(time_s) = spread.parts_at_s {
+        let which = if differ.is_empty() {
+            "smaller ones differ"
+        } else {
+            "they differ"
+        };
+        let _ = write!(text, ";\n    from {time_s:.4} s on {which}");
+    }
+    let differ: Vec<String> = differ
+        .iter()
+        .map(|cycle: &&HalfCycleSpread| {
+            let (side, time_s) = (cycle.own.sway.name(), cycle.own.peak_time_s);
+            match cycle.peak {
+                Some(peak) => format!("{side} {} rad (at {time_s:.4} s)", ends(&peak)),
+                None => format!("{side} only in some (at {time_s:.4} s)"),
+            }
+        })
+        .collect();
+    if !differ.is_empty() {
+        let _ = write!(text, ":\n    {}", differ.join(", "));
     }
     if let Some(largest) = spread.largest {
-        let (min_rad, max_rad) = (largest.min_rad, largest.max_rad);
         let _ = if largest.is_same() {
             write!(text, "\n    largest rotation within {percent} %")
         } else {
-            write!(
-                text,
-                "\n    LARGEST ROTATION {min_rad:.6} to {max_rad:.6} rad"
-            )
+            write!(text, "\n    LARGEST ROTATION {} rad", ends(&largest))
         };
     }
     text.push('\n');
     text
+}
+
+/// The least and the largest of a peak in all motions.
+fn ends(peak: &PeakSpread) -> String {
+    let [min, max] = range_ends([peak.min_rad, peak.max_rad], 6);
+    format!("{min} to {max}")
 }
 
 fn ending(outcome: Outcome) -> String {

@@ -9,8 +9,8 @@ pub mod picture;
 mod told;
 mod varied;
 
-pub(super) use told::rounded;
 pub use told::{FILES, check, outcome, tell};
+pub(super) use told::{rounded, rounded_range};
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;

@@ -10,7 +10,7 @@ use super::{
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
 use crate::output::table::{column, csv};
-use crate::output::{Figure, OutputError, finite, pretty};
+use crate::output::{Figure, OutputError, finite, pretty, range_ends};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::columns::FAILED;
 use crate::studies::ending::{Ending, Verdict};
@@ -89,6 +89,21 @@ pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
 /// A factor or an acceleration with four digits, about as many as are certain for an edge.
 #[must_use]
 pub fn rounded(value: f64) -> String {
+    let decimals = decimals(value);
+    format!("{value:.decimals$}")
+}
+
+/// Both ends of a range with four digits, or with as many as it takes to distinguish them.
+#[must_use]
+pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
+    match ends.map(rounded) {
+        [from, to] if from != to => [from, to],
+        _ => range_ends(ends, decimals(ends[1])),
+    }
+}
+
+/// Decimals of four digits.
+fn decimals(value: f64) -> usize {
     let before_point = if value > 0.0 {
         value.log10().floor() + 1.0
     } else {
@@ -99,8 +114,8 @@ pub fn rounded(value: f64) -> String {
         clippy::cast_sign_loss,
         reason = "a small whole number, not negative"
     )]
-    let digits = (4.0 - before_point).max(0.0) as usize;
-    format!("{value:.digits$}")
+    let decimals = (4.0 - before_point).max(0.0) as usize;
+    decimals
 }
 
 /// The samples, model by model, with ascending factors.
@@ -317,10 +332,7 @@ fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
                     rounded(*factor)
                 )
             }
-            Ok(None) => writeln!(
-                text,
-                "  with {name}: no threshold within a tenth to ten times that"
-            ),
+            Ok(None) => writeln!(text, "  with {name}: does not overturn at any factor tried"),
             Err(reason) => writeln!(text, "  with {name}: {reason}"),
         };
     }
@@ -357,13 +369,16 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     // A line for each band, with the range that follows it.
     let mut lines: Vec<String> = Vec::new();
     for (verdict, range) in &threshold.ranges {
-        let to = at(range.to);
+        let factors = [range.from, range.to];
+        let factor = rounded_range(factors);
+        let accelerations_g = rounded_range(factors.map(|factor| factor * peak_g));
+        let [begins, to] =
+            [0, 1].map(|end| format!("{} ({} g)", factor[end], accelerations_g[end]));
         let (ends, beyond) = match range.to_end {
             RangeEnd::Sampled => ("up to the largest factor".to_owned(), ""),
             RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
             RangeEnd::Edge => (format!("to {to}"), ""),
         };
-        let begins = at(range.from);
         match (verdict, lines.last_mut()) {
             (Verdict::Overturns, _) => {
                 lines.push(format!("overturns from factor {begins} {ends}{beyond}"));

@@ -42,8 +42,6 @@ const SLOWER: f64 = 4.0;
 const SIDE_RATIO: f64 = 0.1;
 /// A joint that presses on less than this fraction of its length is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
-/// A joint that bears less than this fraction of the weight hardly presses: whether it slips then hardly matters.
-const PRESSED_RATIO: f64 = 0.01;
 
 /// The common start of all motions of a group.
 #[derive(Clone, Copy)]
@@ -484,8 +482,6 @@ impl<'a> Lane<'a> {
 /// One motion alone, which may be recorded.
 pub(super) struct ElasticStepper<'a> {
     group: Group<'a, 1>,
-    /// A joint that bears less hardly presses.
-    pressed_n: f64,
 }
 
 impl<'a> ElasticStepper<'a> {
@@ -495,10 +491,9 @@ impl<'a> ElasticStepper<'a> {
         until: Until,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let pressed_n = PRESSED_RATIO * task.row.mass_kg() * task.gravity_m_s2;
         let mut group = Group::new(task.row, start, task.gravity_m_s2);
         group.begin(0, task, until, recorder);
-        Self { group, pressed_n }
+        Self { group }
     }
 
     fn lane(&self) -> &Lane<'a> {
@@ -601,7 +596,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         let joints = self.group.start.structure.joints().len();
         for joint in 0..joints {
             let pressure = self.pressure(joint);
-            if pressure.normal_n > self.pressed_n {
+            if pressure.normal_n >= self.course().least_load_n() {
                 let needed = pressure.shear_n.abs() / pressure.normal_n;
                 sample.demand.friction = sample.demand.friction.max(needed);
             }

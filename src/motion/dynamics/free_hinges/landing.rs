@@ -52,8 +52,6 @@ const LANDING_ROUNDS: usize = 8;
 const LANDING_TOLERANCE: f64 = 1e-6;
 /// A row has overturned when it is lower than at rest by this fraction of weight times size.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
-/// Joints with less than this fraction of the largest normal force are not pressed.
-const LOADED: f64 = 1e-6;
 
 /// Blocks that moved as one in the last drift.
 #[derive(Clone, Copy, Debug)]
@@ -696,15 +694,10 @@ impl<'a> LandingStepper<'a> {
         }
         self.program.joint_impulses(&mut self.shares);
         let (mut least, mut demand) = (f64::INFINITY, 0.0_f64);
-        for [_, normal] in &self.shares {
-            least = least.min(*normal);
-        }
-        let most = self
-            .shares
-            .iter()
-            .fold(0.0_f64, |most, [_, n]| most.max(*n));
+        let loaded = self.course.least_load_n() * (to_s - from_s);
         for [tangential, normal] in &self.shares {
-            if *normal > LOADED * most {
+            least = least.min(*normal);
+            if *normal >= loaded {
                 demand = demand.max(tangential.abs() / normal);
             }
         }

@@ -38,8 +38,6 @@ const RATE_TOLERANCE: f64 = 1e-9;
 const DRAWN: f64 = 1e-6;
 /// Corners land if they were farther apart than this fraction of the thickness of their joint.
 const APART_RATIO: f64 = 1e-9;
-/// Joints with less than this fraction of the largest normal force are not pressed.
-const LOADED: f64 = 1e-6;
 /// Bounds of friction that are wrong by less than this fraction of the largest one have converged.
 const CONVERGED: f64 = 1e-9;
 /// Bounds of friction that are wrong by more than this fraction of the largest one are an error.
@@ -306,10 +304,10 @@ impl<'a> SlidingStepper<'a> {
     fn note_forces(&mut self, time_s: f64) {
         let impulses = self.program.impulses().iter();
         let normals = impulses.clone().map(|impulse| impulse.x + impulse.y);
-        let least = normals.clone().fold(f64::INFINITY, f64::min);
-        let most = normals.fold(0.0, f64::max);
+        let least = normals.fold(f64::INFINITY, f64::min);
+        let loaded = self.course.least_load_n() * time_s;
         self.friction_demand = impulses
-            .filter(|impulse| impulse.x + impulse.y > LOADED * most)
+            .filter(|impulse| impulse.x + impulse.y >= loaded)
             .map(|impulse| impulse.z.abs() / (impulse.x + impulse.y))
             .fold(0.0, f64::max);
         self.least_normal = least / time_s;

@@ -216,13 +216,27 @@ impl GroundMotion {
     /// monotone, so they are at ends of pieces, or at that time.
     #[must_use]
     pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
-        let pieces = self.pieces.iter().filter(|piece| piece.start_s < until_s);
-        pieces
-            .filter(|piece| !piece.stays_still())
-            .flat_map(|piece| {
-                [piece.start_s, piece.end_s.min(until_s)].map(|t| piece.at(t).0.abs())
+        self.ends_until_m_s2(until_s)
+            .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
+    }
+
+    /// Largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left and to
+    /// the right.
+    #[must_use]
+    pub fn pushes_m_s2(&self, until_s: f64) -> [f64; 2] {
+        self.ends_until_m_s2(until_s)
+            .fold([0.0; 2], |[right, left], at: Vector2<f64>| {
+                [f64::max(right, -at.x), f64::max(left, at.x)]
             })
-            .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at))
+    }
+
+    /// The accelerations at the ends of the pieces that begin before a time, and at that time.
+    fn ends_until_m_s2(&self, until_s: f64) -> impl Iterator<Item = Vector2<f64>> {
+        let pieces = self.pieces.iter();
+        let moving = pieces.filter(move |piece| piece.start_s < until_s && !piece.stays_still());
+        moving.flat_map(move |piece| {
+            [piece.start_s, piece.end_s.min(until_s)].map(|time_s| piece.at(time_s).0)
+        })
     }
 
     /// End of the ground motion, in seconds: the acceleration is zero from here on, under both feet.

@@ -15,7 +15,7 @@ use crate::dynamics::history::{
 use crate::dynamics::model::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::chain::{Demand, Hinge};
+use crate::mechanics::chain::{Demand, Hinge, LEAST_LOAD};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
@@ -630,6 +630,11 @@ impl<'a> Course<'a> {
         REST_TIME_RATIO * (self.task.row.size_m() / self.task.gravity_m_s2).sqrt()
     }
 
+    /// Normal force below which a joint does not count in the friction that is needed, in N.
+    pub(in crate::dynamics) fn least_load_n(&self) -> f64 {
+        LEAST_LOAD * self.energy_unit / self.task.row.size_m()
+    }
+
     /// Whether a row that has hardly moved since then rests.
     pub(in crate::dynamics) fn is_quiet(&self, since_s: f64) -> bool {
         self.time - since_s > self.rest_time_s()
@@ -692,12 +697,15 @@ impl<'a> Course<'a> {
                     start_s: self.time,
                     duration_s: 0.0,
                     peak_rad: 0.0,
+                    peak_time_s: self.time,
                     energy_ratio: None,
                 });
             }
         }
-        if let Some(cycle) = &mut self.cycle {
-            cycle.peak_rad = cycle.peak_rad.max(largest);
+        if let Some(cycle) = &mut self.cycle
+            && largest > cycle.peak_rad
+        {
+            (cycle.peak_rad, cycle.peak_time_s) = (largest, self.time);
         }
     }
 

@@ -17,7 +17,8 @@ use nalgebra::Vector2;
 use super::limit::Incipient;
 use super::mechanism::HingeSites;
 use super::resultant::{Extremum, SectionResultant, climb};
-use crate::mechanics::chain::Demand;
+use crate::bisection::{Width, bisect};
+use crate::mechanics::chain::{Demand, LEAST_LOAD};
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::MassMoments;
@@ -31,10 +32,6 @@ const TOP_ACCURACY_RAD: f64 = 1e-6;
 /// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A normal force below this fraction of the structure's weight, tension included, counts as this much in a
-/// [`Demand`]. The demand then stays finite and keeps growing with the moment (the tension).
-const MIN_NORMAL: f64 = 0.01;
-
 impl Demand {
     /// No excess, no friction.
     pub const NONE: Self = Self {
@@ -46,9 +43,9 @@ impl Demand {
     /// structure, in the unit of the resultants.
     ///
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, for the moment `M` about the axis and the
-    /// components `N` and `V`. Where `N < 0.01 weight` a line is hardly ever inside: there the
-    /// excess is `(|M| - N t / 2) / (0.01 weight t)` and the friction `|V| / (0.01 weight)`, which
-    /// continue the others and are always finite.
+    /// components `N` and `V`. Where `N < 0.01 weight` ([`LEAST_LOAD`]) a line is hardly ever inside: there the
+    /// excess is `(|M| - N t / 2) / (0.01 weight t)`, which continues the other, is always finite and keeps growing with the
+    /// tension; no friction is needed there.
     #[must_use]
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::NONE, |demand, section| {
@@ -59,11 +56,16 @@ impl Demand {
     /// The demand of a resultant on its section; a negative excess is the distance inside.
     fn of_section(section: &SectionResultant, weight: f64) -> Self {
         let thickness = section.thickness;
-        let normal = section.normal.max(MIN_NORMAL * weight);
+        let least = LEAST_LOAD * weight;
+        let normal = section.normal.max(least);
         let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
         Self {
             excess_ratio: beyond / (normal * thickness),
-            friction: section.tangential.abs() / normal,
+            friction: if section.normal >= least {
+                section.tangential.abs() / normal
+            } else {
+                0.0
+            },
         }
     }
 
@@ -296,12 +298,31 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
         let floor = demand.excess_ratio.max(ROUNDING);
         let excess_ratio = top_near(i, &samples, floor, at, |d| d.excess_ratio);
         let friction = top_near(i, &samples, demand.friction, at, |d| d.friction);
+        let edge = samples
+            .get(i + 1)
+            .map(|next| load_edge(&samples[i], next, at));
+        demand.friction = demand.friction.max(edge.unwrap_or(0.0));
         demand = demand.max(Demand {
             excess_ratio: excess_ratio.unwrap_or(0.0),
             friction: friction.unwrap_or(0.0),
         });
     }
     demand
+}
+
+/// The friction at the section between two samples where the load becomes too small to count; zero if both count, or neither.
+fn load_edge(
+    (from_rad, from): &(f64, Demand),
+    (to_rad, to): &(f64, Demand),
+    at: &impl Fn(f64) -> Demand,
+) -> f64 {
+    let [counts, counts_after] = [from, to].map(|demand| demand.friction > 0.0);
+    if counts == counts_after {
+        return 0.0;
+    }
+    let changed = |angle_rad: f64| (at(angle_rad).friction > 0.0) == counts_after;
+    let (before, after) = bisect(*from_rad, *to_rad, Width::Rounding, changed);
+    at(if counts { before } else { after }).friction
 }
 
 /// The maximum of a quantity between the neighbours of a sample, if it may be above `floor`.

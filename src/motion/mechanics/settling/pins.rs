@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::{Condition, ROUNDING};
 use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::chain::LEAST_LOAD;
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -21,9 +22,6 @@ const MOST_STEPS: usize = 30;
 const BALANCED: f64 = 1e-12;
 /// How much stiffer than bodies are pins that must not part, where it is seen whether an equilibrium is stable.
 const STIFFER: f64 = 1e6;
-
-/// Joints with less than this part of the weight on them are not pressed.
-const LOADED: f64 = 1e-6;
 
 const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
 
@@ -251,7 +249,7 @@ impl Pins {
             };
             let normal = turned(along) * row.handedness();
             let pressed = force.linear.dot(&normal);
-            if pressed > LOADED {
+            if pressed >= LEAST_LOAD {
                 friction = friction.max((force.linear.dot(&along) / pressed).abs());
             }
             corners.push(match hinge.map(|index| self.hinges[index].edge) {
