@@ -104,7 +104,10 @@ fn an_impact_without_slip_takes_what_housner_says_at_every_step() {
             assert_eq!((impact.closed.len(), impact.opened.len()), (1, 1));
         }
         let cycles = summary.half_cycles();
-        let ratios: Vec<f64> = cycles.iter().filter_map(|cycle| cycle.energy_ratio).collect();
+        let ratios: Vec<f64> = cycles
+            .iter()
+            .filter_map(|cycle| cycle.energy_ratio)
+            .collect();
         assert!(ratios.len() >= 6, "{ratios:?}");
         for (ratio, (_, impact)) in ratios.iter().zip(&rows[1..]) {
             let miss = ratio - kept;
