@@ -1217,6 +1217,117 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
     assert!((at - 0.558_230_9).abs() < 1e-6);
 }
 
+/// Shallow arches whose crown loses its thrust as a springing moves inwards: there the capacity is the push of the first motion. It is the same
+/// whatever the radius, and was once lost to rounding.
+#[test]
+fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
+    for (embrace_deg, thickness, voussoirs, due_g) in [
+        (140.0, 0.18, 36, 0.004_489),
+        (140.0, 0.18, 20, 0.004_492),
+        (90.0, 0.15, 36, 0.007_099),
+        (120.0, 0.2, 20, 0.016_469),
+    ] {
+        let ring = Ring::new(thickness, f64::to_radians(embrace_deg)).unwrap();
+        for radius_m in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
+            let row = Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap();
+            let way = |part: f64| right([-1.0, 0.0])(radius_m * part);
+            let Reached::Falls(at) = Follower::new(&row)
+                .and_then(|mut scout| scout.move_supports(way, 0.0, 1.7))
+                .unwrap()
+            else {
+                panic!("it stands");
+            };
+            let mut follower = Follower::new(&row).unwrap();
+            follower.move_supports(way, 0.0, at).unwrap();
+            let state = follower.state().unwrap();
+            assert!(state.right_reaction.linear.x.abs() < 1e-9);
+            for sway in [Sway::Right, Sway::Left] {
+                let first_g = follower.first_motion_g(sway).unwrap().unwrap();
+                let capacity_g = follower.capacity_g(sway, 0.0).unwrap().unwrap();
+                assert!((first_g - due_g).abs() < 1e-6, "{first_g}");
+                assert!(
+                    (capacity_g - first_g).abs() < 1e-8,
+                    "{radius_m} m: {first_g} {capacity_g}"
+                );
+            }
+        }
+    }
+}
+
+/// A snap may take the middle one of three pins to the other side of the line between the outer ones than that on which it was built. Numbers
+/// of every stage are found, and no capacity is below the push of the first motion.
+#[test]
+fn pins_may_change_sides() {
+    let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.18\nembrace_deg = 100.0\nvoussoirs = 20\n";
+    let scenario = parsed(text);
+    let down = Way {
+        springing: Springing::Right,
+        angle_deg: 90.0,
+    };
+    let found = spread(&scenario, &[down]).unwrap();
+    let [path] = &found.paths[..] else {
+        panic!("one way");
+    };
+    assert_eq!(path.lost, None);
+    assert_eq!(path.stages.len(), 21);
+    for stage in &path.stages {
+        assert_eq!(stage.not_found, []);
+        for (first_g, capacity_g) in stage.first_motion_g.iter().zip(stage.capacity_g) {
+            assert!(first_g.unwrap() <= capacity_g.unwrap());
+        }
+    }
+}
+
+/// Under a push of several g this flat arch leaves one springing and leans on the other, which is not followed: that capacity is left out with its
+/// reason, and everything else remains.
+#[test]
+fn a_push_that_is_not_found_is_left_out_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.15\nembrace_deg = 74.3\nvoussoirs = 7\n[free_hinges]\n";
+    std::fs::write(folder.path().join("flat.toml"), text).unwrap();
+    let words = printed(
+        folder.path(),
+        &[
+            "--quiet",
+            "spread",
+            "flat.toml",
+            "--angle",
+            "67",
+            "--angle",
+            "0",
+        ],
+    );
+    assert!(
+        words.contains("at 67 degrees: falls at 0.358811 m"),
+        "{words}"
+    );
+    assert!(words.contains("outwards: falls at"), "{words}");
+    let told = json(&folder.path().join("results/flat/spread.json"));
+    let stages = told["paths"][0]["stages"].as_array().unwrap();
+    let mut missing = 0;
+    for stage in stages {
+        for side in ["right", "left"] {
+            assert!(stage["first_motion_g"][side].is_number());
+            let mut reasons = stage["not_found"].as_array().unwrap().iter();
+            let reason = reasons.find(|reason| reason["side"] == side);
+            assert_eq!(reason.is_some(), stage["capacity_g"][side].is_null());
+            if let Some(reason) = reason {
+                missing += 1;
+                assert_eq!(reason["push"], "capacity");
+                let text = reason["reason"].as_str().unwrap();
+                assert!(text.contains("parts: blocks that do not touch"), "{text}");
+                // One side alone is not the weaker one.
+                let row = format!("  {:<11.6}", stage["movement_m"].as_f64().unwrap());
+                let mut shown = words.lines().filter(|line| line.starts_with(&row));
+                assert!(shown.all(|line| line.ends_with("           -")), "{words}");
+            }
+        }
+    }
+    assert!(missing > 0);
+    assert!(words.contains("capacity to the"), "{words}");
+    assert!(words.contains("stages, first at"), "{words}");
+}
+
 #[test]
 fn what_has_no_two_springings_has_no_spread() {
     let folder = tempfile::tempdir().unwrap();

@@ -77,6 +77,13 @@ pub(super) fn check(
             }
             None => Ok(()),
         },
-        Err(error) => wrong(format!("cannot be followed: {error}")),
+        Err(error) => {
+            let place = error.at().map_or_else(String::new, |part| {
+                format!(" beyond {:.2} % of this movement", 1e2 * part)
+            });
+            wrong(format!(
+                "cannot be followed{place}: {error}; give another movement or other joints"
+            ))
+        }
     }
 }

@@ -170,6 +170,15 @@ impl Placement {
         self.gaps_m[joint] == [0.0; 2]
     }
 
+    /// The first joint that is open at both edges.
+    #[must_use]
+    pub fn parted_joint(&self) -> Option<usize> {
+        let gaps_m = &self.gaps_m;
+        gaps_m
+            .iter()
+            .position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
+    }
+
     /// Number of corners that do not touch.
     #[must_use]
     pub fn open_corners(&self) -> usize {

@@ -204,13 +204,32 @@ pub enum SettlingError {
     )]
     Ties,
     /// No hinges were found on which it stands.
-    #[error(
-        "the hinges of the row were not found where they give way, {at:.3e} of the way on: choose another way or other joints"
-    )]
+    #[error("its hinges give way, and no others were found on which it rests")]
     Lost {
         /// Where along the way.
         at: f64,
     },
+    /// It rests with a joint that is open at both edges.
+    #[error(
+        "its hinges give way, and joint {joint} (from 0 at the left springing) parts: blocks that do not touch are not followed"
+    )]
+    Parted {
+        /// Where along the way.
+        at: f64,
+        /// Which joint, from 0 on the left support.
+        joint: usize,
+    },
+}
+
+impl SettlingError {
+    /// Where along the way the row was lost; `None` where that is not known.
+    #[must_use]
+    pub const fn at(&self) -> Option<f64> {
+        match self {
+            Self::Lost { at } | Self::Parted { at, .. } => Some(*at),
+            Self::OneSupport | Self::Stability(_) | Self::Contact(_) | Self::Ties => None,
+        }
+    }
 }
 
 /// A row that follows slow changes.
@@ -222,6 +241,8 @@ pub struct Follower<'a> {
     condition: Condition,
     stance: Stance,
     snaps: Vec<Snap>,
+    /// By how much its hinges may fail to hold it: forces over the weight and openings in radians below this are rounding.
+    slack: f64,
 }
 
 impl<'a> Follower<'a> {
@@ -246,6 +267,7 @@ impl<'a> Follower<'a> {
             },
             stance: Stance::undeformed(row),
             snaps: Vec::new(),
+            slack: ROUNDING,
         })
     }
 
@@ -373,8 +395,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Pushes the row to a side until it falls; the pushes, in units of gravity, of its first motion and at its fall. The row itself
-    /// stays where it is. `None` where no push moves it.
+    /// The pushes to a side, in units of gravity, of its first motion and at its fall; `None` where no push moves it, or none makes it fall.
     ///
     /// # Errors
     /// When the row is lost where it gives way.
@@ -382,14 +403,28 @@ impl<'a> Follower<'a> {
         let Some(first_g) = self.first_motion_g(sway)? else {
             return Ok(None);
         };
+        let capacity_g = self.capacity_g(sway, first_g)?;
+        Ok(capacity_g.map(|capacity_g| [first_g, capacity_g]))
+    }
+
+    /// Pushes the row to a side until it falls, and returns that push in units of gravity; `None` where none was met. `first_g` is the push
+    /// of its first motion. The row itself stays where it is.
+    ///
+    /// # Errors
+    /// When the row is lost where it gives way.
+    pub fn capacity_g(&self, sway: Sway, first_g: f64) -> Result<Option<f64>, SettlingError> {
         // Undeformed, its joints hold it until they are four; then only ties can.
         let is_built = self.hinges.is_none();
         if is_built && self.row.ties().is_empty() {
-            return Ok(Some([first_g; 2]));
+            return Ok(Some(first_g));
         }
         let from_g = if is_built { first_g } else { 0.0 };
+        // At the end of a way it lacks all the slack, with a force that a push may not even change: where the thrust vanishes, the force at
+        // the crown. The slack is counted from there, so that the last digit of that force does not make it fall.
+        let lacks = self.state().map_or(0.0, |state| -state.margin().min(0.0));
         let mut pushed = Self {
             snaps: Vec::new(),
+            slack: ROUNDING + lacks,
             ..self.clone()
         };
         let condition = self.condition;
@@ -399,7 +434,8 @@ impl<'a> Follower<'a> {
         };
         let reached = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
         Ok(match reached {
-            Reached::Falls(capacity_g) => Some([first_g, capacity_g]),
+            // Two computations of one push differ by rounding.
+            Reached::Falls(capacity_g) => Some(capacity_g.max(first_g)),
             Reached::End => None,
         })
     }
@@ -444,7 +480,8 @@ impl<'a> Follower<'a> {
 
     /// The row in a condition in which the present hinges hold it; `None` where they do not.
     fn holds(&self, condition: &Condition) -> Option<State> {
-        self.state_in(condition).filter(State::holds)
+        let state = self.state_in(condition)?;
+        state.holds(self.slack).then_some(state)
     }
 
     /// Places the row on its hinges in a condition in which they hold it.
@@ -471,7 +508,7 @@ impl<'a> Follower<'a> {
         let mut pins = self.hinges.clone()?;
         for _ in 0..MOST_EXCHANGES {
             let state = pins.state(self.row, condition, &self.stance)?;
-            let wrong = state.beyond(-ROUNDING);
+            let wrong = state.beyond(-self.slack);
             if wrong.is_empty() {
                 return Some((pins, state));
             }
@@ -489,11 +526,12 @@ impl<'a> Follower<'a> {
     ) -> Result<Option<f64>, SettlingError> {
         let before = self.hinges.clone();
         let last = way(at);
+        let mut parted = None;
         for nudge in NUDGES {
             let beyond = at + nudge * unit;
             let condition = way(beyond);
             let state = self.state_in(&condition);
-            let causes = state.map_or_else(Vec::new, |state| state.beyond(-ROUNDING));
+            let causes = state.map_or_else(Vec::new, |state| state.beyond(-self.slack));
             let snap = |after: Option<&Pins>| Snap {
                 at,
                 before: before.as_ref().map(|hinges| hinges.hinges().to_vec()),
@@ -516,10 +554,11 @@ impl<'a> Follower<'a> {
                     return Ok(None);
                 }
                 let Some(hinges) = Pins::of(self.row, &stance.placement) else {
+                    parted = stance.placement.parted_joint();
                     continue;
                 };
                 let state = hinges.state(self.row, &condition, &stance);
-                if let Some(state) = state.filter(State::holds) {
+                if let Some(state) = state.filter(|state| state.holds(self.slack)) {
                     self.snaps.push(snap(Some(&hinges)));
                     self.hinges = Some(hinges);
                     self.stance = stance;
@@ -528,6 +567,9 @@ impl<'a> Follower<'a> {
                 }
             }
         }
-        Err(SettlingError::Lost { at })
+        Err(match parted {
+            Some(joint) => SettlingError::Parted { at, joint },
+            None => SettlingError::Lost { at },
+        })
     }
 }

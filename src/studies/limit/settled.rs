@@ -29,12 +29,17 @@ pub(super) fn limit(
     let starts = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
     let starts_g = [starts(Sway::Right)?, starts(Sway::Left)?];
     let onsets = SIDES.map(|sway| mechanism(row, &follower, sway));
-    let [right, left] = SIDES.map(|sway| follower.pushes_g(sway));
-    let falls_g = [right?, left?].map(|pushes| pushes.map(|[_, falls_g]| falls_g));
+    let falls = [0, 1].map(|side| match starts_g[side] {
+        Some(start_g) => follower.capacity_g(SIDES[side], start_g),
+        None => Ok(None),
+    });
     let hinges = follower.hinges().map_or(&[][..], Pins::hinges);
 
     let mut json = starts_json(row, starts_g, &onsets, scenario.gravity_m_s2());
-    json["capacity_g"] = json!({ "right": falls_g[0], "left": falls_g[1] });
+    let [right, left] = [0, 1].map(|side| falls[side].as_ref().ok());
+    json["capacity_g"] = json!({ "right": right, "left": left });
+    let [right, left] = [0, 1].map(|side| falls[side].as_ref().err().map(ToString::to_string));
+    json["capacity_not_found"] = json!({ "right": right, "left": left });
     json["hinges"] = hinges
         .iter()
         .map(|hinge| json!({ "joint": hinge.joint, "edge": hinge.edge.name() }))
@@ -50,8 +55,8 @@ pub(super) fn limit(
         json["ties"] = json!({ "forces_at_rest_n": forces_n });
     }
     text.push('\n');
-    for (((sway, start_g), onset), falls_g) in
-        SIDES.into_iter().zip(starts_g).zip(&onsets).zip(falls_g)
+    for (((sway, start_g), onset), falls) in
+        SIDES.into_iter().zip(starts_g).zip(&onsets).zip(&falls)
     {
         let side = sway.name();
         let Some(start_g) = start_g else {
@@ -67,12 +72,13 @@ pub(super) fn limit(
         } else {
             let _ = writeln!(text, "any push to the {side} moves it");
         }
-        let _ = match falls_g {
-            Some(falls_g) => writeln!(
+        let _ = match falls {
+            Ok(Some(falls_g)) => writeln!(
                 text,
                 "capacity to the {side}, where it falls: {falls_g:.8} g\n"
             ),
-            None => writeln!(text, "no push to the {side} was found at which it falls\n"),
+            Ok(None) => writeln!(text, "no push to the {side} was found at which it falls\n"),
+            Err(reason) => writeln!(text, "capacity to the {side} not found: {reason}\n"),
         };
     }
     if let Some(coefficient) = scenario.motion().friction_coefficient() {

@@ -17,6 +17,8 @@ use crate::scenario::Scenario;
 
 /// Equal parts of a way at which its states are told.
 const STEPS: u32 = 20;
+/// Both sides, right first.
+const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
 /// No way is longer than so many clear spans.
 const LONGEST: f64 = 1.0;
 
@@ -98,17 +100,34 @@ pub struct Stage {
     pub poses: Vec<Pose>,
     /// By how much the crown is lower than undeformed, in metres.
     pub crown_drop_m: f64,
-    /// Pushes in units of gravity, to the right and to the left; `None` where none moves the arch.
-    pub pushes: [Option<Pushes>; 2],
+    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way, to the right and to the left; `None` where none
+    /// does. With three hinges open it is small, and says nothing of safety.
+    pub first_motion_g: [Option<f64>; 2],
+    /// The horizontal ground acceleration that makes the arch fall, likewise.
+    pub capacity_g: [Option<f64>; 2],
+    /// Pushes that are `None` because they were not found.
+    pub not_found: Vec<NotFound>,
 }
 
-/// Two pushes to a side, as horizontal ground accelerations in units of gravity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pushes {
-    /// The one that makes hinges give way: with three of them open it is small, and says nothing of safety.
-    pub first_motion_g: f64,
-    /// The one that makes the arch fall.
-    pub capacity_g: f64,
+named! {
+    /// One of the two pushes to a side.
+    pub enum Push {
+        /// The one that makes hinges give way.
+        FirstMotion = "first motion",
+        /// The one that makes the arch fall.
+        Capacity = "capacity",
+    }
+}
+
+/// A push that was not found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotFound {
+    /// Which push.
+    pub push: Push,
+    /// To which side.
+    pub sway: Sway,
+    /// Why.
+    pub reason: SettlingError,
 }
 
 /// What an arch does while a springing moves one way.
@@ -120,8 +139,10 @@ pub struct Path {
     pub stages: Vec<Stage>,
     /// Where hinges gave way to others, in metres; the last one may be its fall.
     pub snaps: Vec<Snap>,
-    /// Where it falls, in metres; `None`: not within the clear span.
+    /// Where it falls, in metres; `None`: not within the clear span, or not known.
     pub falls_at_m: Option<f64>,
+    /// Why it was not followed beyond its last stage, if it neither fell nor came to the end of its way.
+    pub lost: Option<SettlingError>,
 }
 
 /// An arch on springings that move.
@@ -149,7 +170,7 @@ pub enum NoSpread {
 /// Moves a springing of the arch of a scenario along each of these ways, from where it was built or `[supports]` has it.
 ///
 /// # Errors
-/// When it is no row of blocks between two supports, does not stand, or is lost on the way.
+/// When it is no row of blocks between two supports, or does not stand. Ways on which it is lost end there.
 pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread> {
     let row = scenario.structure().row()?;
     let joints = row.joints();
@@ -176,18 +197,28 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
     start.move_supports(|part| settled.times(part), 0.0, 1.0)?;
     let before = start.snaps().len();
     let mut scout = start.clone();
-    let falls_at_m = match scout.move_supports(movements, 0.0, longest_m)? {
-        Reached::Falls(at_m) => Some(at_m),
-        Reached::End => None,
+    let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
+        Ok(Reached::Falls(at_m)) => (at_m, Some(at_m), None),
+        Ok(Reached::End) => (longest_m, None, None),
+        // Where that is not known, the stages below end before it.
+        Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
     };
-    let end_m = falls_at_m.unwrap_or(longest_m);
     let mut follower = start;
-    let mut stages = vec![stage(&follower, 0.0)?];
+    let mut stages = vec![stage(&follower, 0.0)];
     let mut here_m = 0.0;
     for step in 1..=STEPS {
         let next_m = end_m * f64::from(step) / f64::from(STEPS);
-        let reached = follower.move_supports(movements, here_m, next_m)?;
-        stages.push(stage(&follower, next_m)?);
+        if next_m <= here_m {
+            break;
+        }
+        let reached = match follower.move_supports(movements, here_m, next_m) {
+            Ok(reached) => reached,
+            Err(error) => {
+                lost = lost.or(Some(error));
+                break;
+            }
+        };
+        stages.push(stage(&follower, next_m));
         // Rounding may let it fall just before its end.
         if reached != Reached::End {
             break;
@@ -199,10 +230,11 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
         stages,
         snaps: scout.snaps()[before..].to_vec(),
         falls_at_m,
+        lost,
     })
 }
 
-fn stage(follower: &Follower<'_>, movement_m: f64) -> Result<Stage, SettlingError> {
+fn stage(follower: &Follower<'_>, movement_m: f64) -> Stage {
     let row = follower.row();
     let (place, crown_m) = row.crown();
     #[expect(
@@ -212,20 +244,31 @@ fn stage(follower: &Follower<'_>, movement_m: f64) -> Result<Stage, SettlingErro
     )]
     let block = place as usize;
     let poses = follower.placement().poses();
-    let pushes = |sway| -> Result<Option<Pushes>, SettlingError> {
-        let pushes_g = follower.pushes_g(sway)?;
-        Ok(pushes_g.map(|[first_motion_g, capacity_g]| Pushes {
-            first_motion_g,
-            capacity_g,
-        }))
+    let mut not_found = Vec::new();
+    let mut found = |push, sway, result: Result<Option<f64>, SettlingError>| {
+        result.unwrap_or_else(|reason| {
+            not_found.push(NotFound { push, sway, reason });
+            None
+        })
     };
-    Ok(Stage {
+    let pushes = SIDES.map(|sway| {
+        let first_g = follower.first_motion_g(sway).map_err(SettlingError::from);
+        let first_g = found(Push::FirstMotion, sway, first_g);
+        let capacity_g = match first_g {
+            Some(first_g) => found(Push::Capacity, sway, follower.capacity_g(sway, first_g)),
+            None => None,
+        };
+        [first_g, capacity_g]
+    });
+    Stage {
         movement_m,
         state: follower.state(),
         poses: poses.to_vec(),
         crown_drop_m: (crown_m - poses[block].of(crown_m)).y,
-        pushes: [pushes(Sway::Right)?, pushes(Sway::Left)?],
-    })
+        first_motion_g: pushes.map(|[first_g, _]| first_g),
+        capacity_g: pushes.map(|[_, capacity_g]| capacity_g),
+        not_found,
+    }
 }
 
 impl Stage {
@@ -242,8 +285,21 @@ impl Stage {
         self.state.as_ref().map_or(&[], State::hinges)
     }
 
-    /// The lesser of a push to the right and one to the left; `None` where none moves the arch.
-    fn least(&self, push_g: impl Fn(&Pushes) -> f64) -> Option<f64> {
-        self.pushes.iter().flatten().map(push_g).reduce(f64::min)
+    /// A push to the right and to the left.
+    fn sides(&self, push: Push) -> [Option<f64>; 2] {
+        match push {
+            Push::FirstMotion => self.first_motion_g,
+            Push::Capacity => self.capacity_g,
+        }
+    }
+
+    /// The lesser of a push to the right and one to the left; `None` where none moves the arch, or one of them was not found.
+    fn least(&self, push: Push) -> Option<f64> {
+        // Without its first motion a capacity is not sought.
+        let mut missing = self.not_found.iter();
+        if missing.any(|missing| missing.push == push || missing.push == Push::FirstMotion) {
+            return None;
+        }
+        self.sides(push).into_iter().flatten().reduce(f64::min)
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Path, Pushes, SpreadPaths, Stage};
+use super::{Path, Push, SpreadPaths, Stage};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 use crate::output::elevation::{BUILT, HINGE, Place, STONE, TIE, draw_carried};
@@ -47,11 +47,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Sc
 
 /// Capacity and first motion against the movement, to the weaker side; returns where the plot ends.
 fn draw_pushes(drawing: &mut Drawing, figure: Figure, top: f64, spread: &SpreadPaths) -> f64 {
-    type Push = fn(&Pushes) -> f64;
-    let kinds: [(&str, Push, bool); 2] = [
-        ("capacity", |pushes| pushes.capacity_g, false),
-        ("first motion", |pushes| pushes.first_motion_g, true),
-    ];
+    let kinds = [(Push::Capacity, false), (Push::FirstMotion, true)];
     let strokes = || spread.paths.iter().zip(CURVES.into_iter().cycle());
     let style = |stroke: Stroke, thin: bool| {
         if thin {
@@ -62,8 +58,13 @@ fn draw_pushes(drawing: &mut Drawing, figure: Figure, top: f64, spread: &SpreadP
     };
     let mut curves = Vec::new();
     for (path, stroke) in strokes() {
-        for (kind, push, thin) in kinds {
-            let name = format!("{kind}, {} {}", path.way.springing.name(), path.way.words());
+        for (push, thin) in kinds {
+            let name = format!(
+                "{}, {} {}",
+                push.name(),
+                path.way.springing.name(),
+                path.way.words()
+            );
             let points = path.stages.iter();
             let points: Vec<(f64, f64)> = points
                 .filter_map(|stage| Some((stage.movement_m, stage.least(push)?)))
@@ -189,9 +190,13 @@ impl<'a> Cell<'a> {
             }
         }
         let words = self.path.way.words();
-        let text = match self.path.falls_at_m {
-            Some(at_m) => format!("{words} {at_m:.3} m: falls"),
-            None => format!("{words} {:.3} m: stands", self.stage.movement_m),
+        let text = match (self.path.falls_at_m, &self.path.lost) {
+            (Some(at_m), _) => format!("{words} {at_m:.3} m: falls"),
+            (None, Some(_)) => format!(
+                "{words} {:.3} m: not followed further",
+                self.stage.movement_m
+            ),
+            (None, None) => format!("{words} {:.3} m: stands", self.stage.movement_m),
         };
         let below = foot + Vector2::new(0.0, 22.0);
         drawing.label(below, Anchor::Middle, 0.0, &text);

@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::picture::draw;
-use super::{Path, Pushes, SpreadPaths, Stage};
+use super::{NotFound, Path, Push, SIDES, SpreadPaths, Stage};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::{Hinge, Snap};
+use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::svg::Figure;
 use crate::output::table::{Cell, column, csv, several};
@@ -89,25 +90,12 @@ fn table(spread: &SpreadPaths, weight_n: f64) -> Result<Vec<u8>, OutputError> {
         }),
         column("crown_drop_m", |row: &Row<'_>| row.1.crown_drop_m),
         several(pushes, |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
-            for push in [first_motion, capacity] {
-                cells.extend(
-                    row.1
-                        .pushes
-                        .iter()
-                        .map(|pushes| pushes.as_ref().map(push).into()),
-                );
+            for push in Push::ALL {
+                cells.extend(row.1.sides(*push).map(Cell::from));
             }
         }),
     ];
     csv(columns, &rows)
-}
-
-fn first_motion(pushes: &Pushes) -> f64 {
-    pushes.first_motion_g
-}
-
-fn capacity(pushes: &Pushes) -> f64 {
-    pushes.capacity_g
 }
 
 fn to_json(spread: &SpreadPaths, weight_n: f64) -> Value {
@@ -123,6 +111,7 @@ fn to_json(spread: &SpreadPaths, weight_n: f64) -> Value {
                 "falls_at_m": path.falls_at_m,
                 "falls_at_part_of_clear_span": path.falls_at_m.map(|at_m| at_m / spread.clear_span_m),
                 "falls_by": hinges(causes),
+                "lost": path.lost.as_ref().map(ToString::to_string),
                 "snaps": path.snaps.iter().map(snap).collect::<Vec<_>>(),
                 "stages": path.stages.iter().map(|stage| stage_json(stage, weight_n)).collect::<Vec<_>>(),
             })
@@ -159,9 +148,16 @@ fn stage_json(stage: &Stage, weight_n: f64) -> Value {
         });
         open.collect()
     });
-    let sides = |push: fn(&Pushes) -> f64| {
-        let [right, left] = stage.pushes.map(|pushes| pushes.as_ref().map(push));
+    let sides = |push: Push| {
+        let [right, left] = stage.sides(push);
         json!({ "right": right, "left": left })
+    };
+    let not_found = |missing: &NotFound| {
+        json!({
+            "push": missing.push.name(),
+            "side": missing.sway.name(),
+            "reason": missing.reason.to_string(),
+        })
     };
     json!({
         "movement_m": stage.movement_m,
@@ -174,8 +170,9 @@ fn stage_json(stage: &Stage, weight_n: f64) -> Value {
         }),
         "friction_demand": state.map(|state| state.friction),
         "crown_drop_m": stage.crown_drop_m,
-        "first_motion_g": sides(first_motion),
-        "capacity_g": sides(capacity),
+        "first_motion_g": sides(Push::FirstMotion),
+        "capacity_g": sides(Push::Capacity),
+        "not_found": stage.not_found.iter().map(not_found).collect::<Vec<_>>(),
     })
 }
 
@@ -188,18 +185,47 @@ fn short(hinge: &Hinge) -> String {
     format!("{}{edge}", hinge.joint)
 }
 
+/// A line about the stages of a way at which a push to a side was not found.
+fn not_found(text: &mut String, path: &Path, push: Push, sway: Sway) {
+    let stages = path.stages.iter();
+    let missing: Vec<(f64, &NotFound)> = stages
+        .filter_map(|stage| {
+            let mut missing = stage.not_found.iter();
+            let missing = missing.find(|missing| missing.push == push && missing.sway == sway)?;
+            Some((stage.movement_m, missing))
+        })
+        .collect();
+    if let [(first_m, first), ..] = missing[..] {
+        let _ = writeln!(
+            text,
+            "  {} to the {} not found at {} of {} stages, first at {first_m:.6} m: {}",
+            push.name(),
+            sway.name(),
+            missing.len(),
+            path.stages.len(),
+            first.reason
+        );
+    }
+}
+
 fn words(spread: &SpreadPaths, friction_coefficient: Option<f64>) -> String {
     let mut text = String::new();
     let clear_span_m = spread.clear_span_m;
     for path in &spread.paths {
         let (springing, way) = (path.way.springing.name(), path.way.words());
-        let _ = match path.falls_at_m {
-            Some(at_m) => writeln!(
+        let last = path.stages.len() - 1;
+        let _ = match (path.falls_at_m, &path.lost) {
+            (Some(at_m), _) => writeln!(
                 text,
                 "{springing} springing {way}: falls at {at_m:.6} m, {:.5} of the clear span of {clear_span_m:.3} m",
                 at_m / clear_span_m
             ),
-            None => writeln!(
+            (None, Some(reason)) => writeln!(
+                text,
+                "{springing} springing {way}: stands up to {:.6} m, and was not followed further: {reason}",
+                path.stages[last].movement_m
+            ),
+            (None, None) => writeln!(
                 text,
                 "{springing} springing {way}: stands as far as it was moved, the clear span of {clear_span_m:.3} m"
             ),
@@ -208,7 +234,6 @@ fn words(spread: &SpreadPaths, friction_coefficient: Option<f64>) -> String {
             text,
             "  movement m   hinges          thrust/weight  crown drop m  first motion g  capacity g"
         );
-        let last = path.stages.len() - 1;
         for part in PARTS.map(|part| part.min(last)) {
             let stage = &path.stages[part];
             let hinges: Vec<String> = stage.hinges().iter().map(short).collect();
@@ -222,9 +247,14 @@ fn words(spread: &SpreadPaths, friction_coefficient: Option<f64>) -> String {
                 hinges.join(" "),
                 number(stage.thrust_ratio(), 6),
                 stage.crown_drop_m,
-                number(stage.least(first_motion), 6),
-                number(stage.least(capacity), 6),
+                number(stage.least(Push::FirstMotion), 6),
+                number(stage.least(Push::Capacity), 6),
             );
+        }
+        for push in Push::ALL {
+            for side in SIDES {
+                not_found(&mut text, path, *push, side);
+            }
         }
         let demands = path.stages.iter().filter_map(|stage| stage.state.as_ref());
         let demand = demands.map(|state| state.friction).fold(0.0, f64::max);

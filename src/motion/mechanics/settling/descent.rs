@@ -12,7 +12,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::{Condition, Pins, SettlingError};
+use super::{Condition, Pins, ROUNDING, SettlingError};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{ContactError, Load, Program};
@@ -150,7 +150,7 @@ impl<'a> Descent<'a> {
         state.is_some_and(|state| {
             let pairs = state.rotations_rad.iter().zip(stance.placement.poses());
             let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
-            state.holds() && turns.all(|turn_rad| turn_rad < NEAR_RAD)
+            state.holds(ROUNDING) && turns.all(|turn_rad| turn_rad < NEAR_RAD)
         })
     }
 

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use thiserror::Error;
 
-use super::pins::{Pins, Pulls, two_bodies};
+use super::pins::{Pins, Pulls, side, two_bodies};
 use super::{Condition, Hinge};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
@@ -176,7 +176,8 @@ impl<'a> Held<'a> {
         let first = Pose::about(pins_m[0], pins_m[0], self.sense * q_rad);
         match pins_m[1..] {
             [second, third, last] => {
-                let others = two_bodies([second, third, last], &[first, built])?;
+                let others =
+                    two_bodies([second, third, last], &[first, built], side(&pins_m[1..]))?;
                 Some(vec![built, first, others[0], others[1], built])
             }
             _ => Some(vec![built, first]),

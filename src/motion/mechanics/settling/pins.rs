@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
-use super::{Condition, ROUNDING};
+use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::LEAST_LOAD;
 use crate::mechanics::geometry::field::{Momentum, turned};
@@ -82,9 +82,9 @@ impl State {
         openings.chain(forces).fold(f64::INFINITY, least)
     }
 
-    /// Whether its hinges hold the row, but for rounding.
-    pub(super) fn holds(&self) -> bool {
-        self.margin() >= -ROUNDING
+    /// Whether its hinges hold the row, but for this slack.
+    pub(super) fn holds(&self, slack: f64) -> bool {
+        self.margin() >= -slack
     }
 
     /// Where it has less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
@@ -167,9 +167,28 @@ impl Pins {
     /// Where the bodies between the pins are, of a row that stood so before; `None` where the pins do not meet, or nothing holds the bodies.
     fn bodies(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<Vec<Pose>> {
         match self.pins_m[..] {
-            [left, middle, right] => two_bodies([left, middle, right], &condition.supports),
+            // A snap may have taken the middle pin to the other side of the outer ones than that on which it was built.
+            [left, middle, right] => {
+                let side = side(&self.pins_in(before));
+                two_bodies([left, middle, right], &condition.supports, side)
+            }
             _ => Chain::new(self, row, condition, before).rest(),
         }
+    }
+
+    /// Where the pins are in a row that stands so.
+    fn pins_in(&self, stance: &Stance) -> Vec<Vector2<f64>> {
+        let placement = &stance.placement;
+        let last = &placement.support_poses()[1];
+        let pins = self.hinges.iter().zip(&self.pins_m);
+        pins.map(|(hinge, pin_m)| {
+            placement
+                .poses()
+                .get(hinge.joint)
+                .unwrap_or(last)
+                .of(*pin_m)
+        })
+        .collect()
     }
 
     /// Positions and forces of a row on these hinges that stood so before; `None` where they cannot meet, carry no force, or nothing holds
@@ -325,23 +344,29 @@ impl Pins {
     }
 }
 
-/// Where two bodies between three pins are; `None` where the outer pins are too far apart.
+/// On which side of the line from the first of three pins to the last the middle one is: 1 to the left, or -1.
+pub(super) fn side(pins_m: &[Vector2<f64>]) -> f64 {
+    let [left, middle, right] = [0, 1, 2].map(|pin| pins_m[pin]);
+    (right - left).perp(&(middle - left)).signum()
+}
+
+/// Where two bodies between three pins are, the middle pin on this side of the outer ones; `None` where these are too far apart.
 pub(super) fn two_bodies(
     [left, middle, right]: [Vector2<f64>; 3],
     supports: &[Pose; 2],
+    side: f64,
 ) -> Option<Vec<Pose>> {
     let ends = [supports[0].of(left), supports[1].of(right)];
     let (first, second) = (middle - left, right - middle);
     let apart = ends[1] - ends[0];
     let distance = apart.norm();
-    // The middle pin by its components along the line between the outer ones, and across it on the side on which it was built.
+    // The middle pin by its components along the line between the outer ones, and across it on its side.
     let squares = [distance, first.norm(), second.norm()].map(|length| length * length);
     let along = (squares[0] + squares[1] - squares[2]) / (2.0 * distance);
     let height_squared = squares[1] - along * along;
     if !(height_squared > 0.0 && distance > 0.0) {
         return None;
     }
-    let side = (right - left).perp(&first).signum();
     let axis = apart / distance;
     let pin = ends[0] + axis * along + turned(axis) * (side * height_squared.sqrt());
     let body = |from: Vector2<f64>, to: Vector2<f64>, end: Vector2<f64>, arm: Vector2<f64>| {
