@@ -56,6 +56,7 @@ mod readme;
 mod records;
 mod report;
 mod rest;
+mod results_folder;
 mod robustness;
 mod rows;
 mod run_input;

@@ -562,19 +562,27 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
 fn two_programs_do_not_work_on_one_part() {
     let folder = folder_with_map(300);
     let path = folder.path();
-    let mut child = start_long_work(path, &[]);
-    let part = path.join("r/map.part");
-    let begun = Instant::now();
-    while fs::metadata(&part).map_or(0, |file| file.len()) < 10_000 {
-        assert!(begun.elapsed() < Duration::from_secs(30), "no rows");
-        sleep(Duration::from_millis(5));
+    let locked = "the folder r is being written to by another run";
+    let same_part = "another program is at work on it";
+    for (shard, part, same) in [
+        (&[][..], "r/map.part", locked),
+        (&["--shard", "1/2"], "r/map-1-of-2.part", same_part),
+    ] {
+        let mut child = start_long_work(path, shard);
+        let begun = Instant::now();
+        while fs::metadata(path.join(part)).map_or(0, |file| file.len()) < 10_000 {
+            assert!(begun.elapsed() < Duration::from_secs(30), "no rows");
+            sleep(Duration::from_millis(5));
+        }
+        for more in [&[][..], &["--resume"]] {
+            let again = ["map", "s.toml", "--out", "r"];
+            refused(path, &[&again, shard, more].concat(), &[same]);
+            // The whole study has the folder for itself.
+            refused(path, &[&again, more].concat(), &[locked]);
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
     }
-    for more in [&[][..], &["--resume"]] {
-        let again = [&["map", "s.toml", "--out", "r"], more].concat();
-        refused(path, &again, &["another program is at work on it"]);
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
 }
 
 /// A map that takes some seconds on one thread.

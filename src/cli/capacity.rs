@@ -6,6 +6,7 @@ use archrock::studies::capacity::{capacity as capacities, tell};
 use nalgebra::Vector2;
 
 use super::figure::FigureOption;
+use super::kept::CAPACITY;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show};
 
@@ -45,7 +46,8 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(error.to_string()))?;
     let place = arguments
         .figure
-        .printed(input.results(arguments.out.as_deref())?);
+        .printed(input.results(arguments.out.as_deref())?)
+        .locked(CAPACITY, &scenario, quiet)?;
     let results = tell(&scenario, &sides, arguments.figure.get()?)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)

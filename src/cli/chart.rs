@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use archrock::studies::chart::{Chart, FILES};
 
 use super::figure::FigureOption;
+use super::kept::CHART;
 use super::scenario_file::ScenarioFile;
 use super::study::say;
 use super::{Failure, commands};
@@ -31,12 +32,14 @@ pub fn chart(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     commands::model(&scenario)?;
     let place = arguments
         .figure
-        .printed(input.results(arguments.out.as_deref())?);
+        .printed(input.results(arguments.out.as_deref())?)
+        .locked(CHART, &scenario, quiet)?;
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let folder = place.open(&FILES)?;
     let law = scenario.motion().impact();
     let results = Chart::of(arch, law).tell(arguments.figure.get()?)?;
     results.write(folder)?;
+    place.publish()?;
     if !quiet {
         say(&format!("{} in {}", results.words, place.holds(&results)));
     }

@@ -12,6 +12,7 @@ mod figure;
 mod first;
 mod impact;
 mod init;
+mod kept;
 mod run;
 mod scenario_file;
 mod spread;

@@ -5,6 +5,7 @@ mod progress;
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use archrock::output::Folder;
 use archrock::scenario::{Hinges, Scenario, shown_lines};
@@ -17,9 +18,10 @@ use serde_json::{Map, Value};
 
 use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
+use super::kept::{Origin, RUN};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::studies::compare;
-use super::study::Work;
+use super::study::{Pending, Work};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
 
@@ -98,7 +100,8 @@ pub enum Models {
 }
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let jobs = Job::all(arguments)?;
+    let mut jobs = Job::all(arguments)?;
+    Job::lock_all(&mut jobs, arguments, quiet)?;
     let mut summaries = Vec::new();
     let mut failures = Vec::new();
     for job in &jobs {
@@ -109,6 +112,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             Ok(told) => told,
             // The other scenarios are still run.
             Err(Failure::Work(message)) if jobs.len() > 1 => {
+                job.place.results.iter().for_each(Destination::abandon);
                 failures.push(format!("{}: {message}", job.name));
                 continue;
             }
@@ -141,6 +145,8 @@ struct Job {
     name: String,
     /// One for each model of motion that was asked for.
     scenarios: Vec<Scenario>,
+    /// The scenario of its file, whose suite may name the record.
+    origin: Rc<Origin>,
     place: Place,
 }
 
@@ -184,6 +190,7 @@ impl Job {
         let input = arguments.set.open(path)?;
         let models = Models::read(&arguments.hinges, &input)?;
         let about = |failure| input.about(failure);
+        let origin = Rc::new(Origin::of(&models[0]));
         let chosen = arguments.suite.choose(models).map_err(about)?;
         let jobs = chosen.into_iter().map(|(record, scenarios)| {
             scenarios[0]
@@ -196,10 +203,31 @@ impl Job {
                     None => file.to_string(),
                 },
                 place: Place::of(arguments, &input, record.as_deref())?,
+                origin: Rc::clone(&origin),
                 scenarios,
             })
         });
         jobs.collect()
+    }
+
+    /// Locks the folders of all jobs, before anything is written. The records of a suite share the lock of the folder around theirs.
+    fn lock_all(jobs: &mut [Self], arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+        let mut locked: Vec<Destination> = Vec::new();
+        for job in jobs {
+            let (Some(results), Some(root)) = (&mut job.place.results, job.place.root.take())
+            else {
+                continue;
+            };
+            let known = locked.iter().find(|known| known.path() == root.path());
+            let root = match known {
+                Some(known) => known.clone(),
+                None if arguments.work.is_part() => root.locked_for_a_part(RUN)?,
+                None => root.locked_for(RUN, &job.origin, quiet)?,
+            };
+            *results = results.clone().locked_with(&root);
+            locked.push(root);
+        }
+        Ok(())
     }
 
     /// Runs the job and reports what happened.
@@ -209,14 +237,18 @@ impl Job {
             figure: arguments.figure.get()?,
             quiet,
         };
+        let mut pending = Pending::default();
         if samples.is_part(&self.scenarios)? {
             let (words, summary) = (String::new(), Value::Null);
             let mut told = Told { words, summary };
-            self.run_samples(samples, &mut told)?;
+            self.run_samples(samples, &mut told, &mut pending)?;
             return Ok(told);
         }
         let mut told = self.run_itself(arguments, quiet)?;
-        self.run_samples(samples, &mut told)?;
+        self.run_samples(samples, &mut told, &mut pending)?;
+        if let Some(place) = &self.place.results {
+            pending.publish(place)?;
+        }
         let mut heading = heading(&self.scenarios[0]);
         if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
             let _ = writeln!(heading, "  {ignored}");
@@ -226,7 +258,12 @@ impl Job {
     }
 
     /// Runs the samples of `[uncertain]`, and adds their results, of which the words come first.
-    fn run_samples(&self, samples: Telling, told: &mut Told) -> Result<(), Failure> {
+    fn run_samples(
+        &self,
+        samples: Telling,
+        told: &mut Told,
+        pending: &mut Pending,
+    ) -> Result<(), Failure> {
         let Some(place) = &self.place.results else {
             return Ok(());
         };
@@ -236,7 +273,7 @@ impl Job {
         for scenario in &self.scenarios {
             let name = scenario.motion().hinges().name();
             let place = if several { &place.within(name) } else { place };
-            if let Some(results) = samples.tell(scenario, Asked::Histories, place)? {
+            if let Some(results) = samples.tell(scenario, Asked::Histories, place, pending)? {
                 if several {
                     let _ = writeln!(likely, "{}", scenario.motion().words());
                 }
@@ -385,6 +422,8 @@ impl Arguments {
 struct Place {
     /// The folder, if files are written.
     results: Option<Destination>,
+    /// The folder that is locked for it until it is: itself, or the one around the folders of a suite's records.
+    root: Option<Destination>,
     /// Whether the rotations go to standard output.
     to_stdout: bool,
     /// The name of an option that needs a folder.
@@ -401,11 +440,13 @@ impl Place {
             None if to_stdout || matches!(arguments.format, Format::Json) => None,
             out => Some(input.results(out.as_deref())?),
         };
+        let root = results.clone();
         let results = match (results, record) {
             (Some(results), Some(record)) => Some(results.of_record(record)?),
             (results, _) => results,
         };
         Ok(Self {
+            root,
             results: results.map(|results| arguments.figure.printed(results)),
             to_stdout,
             of_files: arguments.of_files(),
@@ -416,6 +457,7 @@ impl Place {
     fn within(&self, name: &str) -> Self {
         Self {
             results: self.results.as_ref().map(|results| results.within(name)),
+            root: None,
             ..*self
         }
     }

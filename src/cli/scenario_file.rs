@@ -6,12 +6,13 @@ use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use archrock::output::Folder;
 use archrock::output::print::PictureFormat;
+use archrock::output::{Batch, Folder, OutputError};
 use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
 use super::Failure;
+use super::kept::{Origin, Writer};
 use super::study::say;
 
 /// The scenario of a command.
@@ -163,7 +164,7 @@ impl Input<'_> {
 }
 
 /// A hidden file that names the scenario file to which the results beside it belong.
-const ORIGIN: &str = ".scenario";
+pub const ORIGIN: &str = ".scenario";
 
 /// The path of a scenario file, from the current folder if the file is below it, otherwise from the root.
 fn origin(path: &Path) -> String {
@@ -179,8 +180,10 @@ pub struct Destination {
     path: PathBuf,
     /// The scenario file after which the folder is named.
     origin: Option<String>,
-    /// What pictures are written in beside SVG.
+    /// The format of pictures beside SVG.
     pictures: Option<PictureFormat>,
+    /// The command whose results go there, once the folder is locked.
+    locked: Option<(Batch, Writer)>,
 }
 
 impl Destination {
@@ -190,6 +193,64 @@ impl Destination {
             path: path.to_owned(),
             origin: None,
             pictures: None,
+            locked: None,
+        }
+    }
+
+    /// Locks the folder and everything below it for a command, before anything is written. The results of its last run are removed when
+    /// those of this run are published. Warns of results of other commands that come from another scenario.
+    pub fn locked(self, writer: Writer, scenario: &Scenario, quiet: bool) -> Result<Self, Failure> {
+        self.locked_for(writer, &Origin::of(scenario), quiet)
+    }
+
+    /// [`Destination::locked`] for results of this origin.
+    pub fn locked_for(self, writer: Writer, origin: &Origin, quiet: bool) -> Result<Self, Failure> {
+        let batch = Batch::lock(&self.path, true).map_err(elsewhere)?;
+        batch.replace(writer.last_run(&self.path));
+        if !quiet {
+            super::warn(&writer.warnings(&self.path, origin));
+        }
+        Ok(Self {
+            locked: Some((batch, writer)),
+            ..self
+        })
+    }
+
+    /// Locks the folder for a part of a study: other parts may be computed in it at the same time.
+    pub fn locked_for_a_part(self, writer: Writer) -> Result<Self, Failure> {
+        let batch = Batch::lock(&self.path, false).map_err(elsewhere)?;
+        Ok(Self {
+            locked: Some((batch, writer)),
+            ..self
+        })
+    }
+
+    /// The same place in a folder that is locked already.
+    pub fn locked_with(self, outer: &Self) -> Self {
+        Self {
+            locked: outer.locked.clone(),
+            ..self
+        }
+    }
+
+    /// The folder inside this one for the comparison of several models.
+    pub fn of_models(&self) -> Self {
+        let writer = self.locked.as_ref().map(|(_, writer)| *writer);
+        self.within(writer.map_or_else(String::new, |writer| writer.models(&self.path)))
+    }
+
+    /// Gives all results their names.
+    pub fn publish(&self) -> Result<(), Failure> {
+        match &self.locked {
+            Some((batch, _)) => Ok(batch.publish()?),
+            None => Ok(()),
+        }
+    }
+
+    /// Drops the results that are not published.
+    pub fn abandon(&self) {
+        if let Some((batch, _)) = &self.locked {
+            batch.abandon();
         }
     }
 
@@ -200,7 +261,11 @@ impl Destination {
 
     /// A folder inside this one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
-        Self::of(&self.path.join(name)).with_pictures(self.pictures)
+        Self {
+            path: self.path.join(name),
+            origin: None,
+            ..self.clone()
+        }
     }
 
     /// The same with every picture in this format too.
@@ -233,7 +298,7 @@ impl Destination {
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
         let place = Self::checked(self.path.join(name), self.origin.clone())?;
-        Ok(place.with_pictures(self.pictures))
+        Ok(place.with_pictures(self.pictures).locked_with(self))
     }
 
     /// The folder, unless it holds the results of another scenario file.
@@ -254,12 +319,19 @@ impl Destination {
             path,
             origin,
             pictures: None,
+            locked: None,
         })
+    }
+
+    /// Prepares results in the folder, which are not published yet.
+    pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
+        Ok(results.write(self.open(&results.names())?)?)
     }
 
     /// Writes results into the folder, and reports it.
     pub fn write(&self, results: &Results, quiet: bool) -> Result<(), Failure> {
-        results.write(self.open(&results.names())?)?;
+        self.prepare(results)?;
+        self.publish()?;
         if !quiet {
             say(&format!("results in {}", self.holds(results)));
         }
@@ -286,13 +358,20 @@ impl Destination {
         if self.origin.is_some() {
             all.insert(0, ORIGIN);
         }
-        let mut folder = Folder::open(&self.path, &all).map_err(|error| {
-            Failure::Input(format!("{error}; choose another folder with --out"))
-        })?;
+        let folder = match &self.locked {
+            Some((batch, _)) => batch.folder(&self.path, &all),
+            None => Folder::open(&self.path, &all),
+        };
+        let mut folder = folder.map_err(elsewhere)?;
         if let Some(origin) = &self.origin {
             writeln!(folder.file(ORIGIN), "{origin}")
                 .map_err(|error| Failure::Work(format!("cannot write {ORIGIN}: {error}")))?;
         }
         Ok(folder.with_pictures(self.pictures))
     }
+}
+
+/// A folder that cannot be used.
+fn elsewhere(error: OutputError) -> Failure {
+    Failure::Input(format!("{error}; choose another folder with --out"))
 }

@@ -6,6 +6,7 @@ use archrock::studies::spread::{NoSpread, Springing, Way, spread as paths, tell}
 use clap::ValueEnum;
 
 use super::figure::FigureOption;
+use super::kept::SPREAD;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show};
 
@@ -70,7 +71,8 @@ pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let found = paths(&scenario, &ways).map_err(|error| input.about(error.into()))?;
     let place = arguments
         .figure
-        .printed(input.results(arguments.out.as_deref())?);
+        .printed(input.results(arguments.out.as_deref())?)
+        .locked(SPREAD, &scenario, quiet)?;
     let results = tell(&scenario, &found, arguments.figure.get()?)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)

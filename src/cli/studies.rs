@@ -14,9 +14,10 @@ use clap::ValueEnum;
 use serde_json::Map;
 
 use super::figure::FigureOption;
+use super::kept::{MAP, Origin, SPECTRUM, SUITE, Writer};
 use super::run::Models;
 use super::scenario_file::{Destination, Input};
-use super::study::{HingesOption, Options, say};
+use super::study::{HingesOption, Options, Pending, say};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print};
 
@@ -173,26 +174,29 @@ pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
     if scenario.uncertain().is_some() {
         CellsOfSamples::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
     }
-    let place = options.place(&input, arguments.figure)?;
+    let place = options.place(MAP, (&input, &scenario), arguments.figure, quiet)?;
+    let mut pending = Pending::default();
     let results = with_samples(
         StudyKind::Map,
         Asked::Map(look),
         options,
         (&input, &scenario),
         (look, &place),
+        &mut pending,
         quiet,
     )?;
-    show_if_whole(results, &place, options.format(), quiet)
+    publish_if_whole(results, &place, pending, options.format(), quiet)
 }
 
 /// Computes a study of a scenario, and then that of its samples, whose words come first. A part of a scenario with samples is one of
-/// these. Returns the results, which are written; `None` of a part.
+/// these. Returns the results, which are prepared; `None` for a part.
 fn with_samples(
     kind: StudyKind,
     asked: Asked,
     options: &Options,
     (input, scenario): (&Input<'_>, &Scenario),
     (look, place): (Look, &Destination),
+    pending: &mut Pending,
     quiet: bool,
 ) -> Result<Option<Results>, Failure> {
     let samples = Telling {
@@ -202,9 +206,9 @@ fn with_samples(
     };
     let mut own = None;
     if scenario.uncertain().is_none() || !samples.work.is_part() {
-        own = options.compute(kind, input, scenario, (look, place), quiet)?;
+        own = options.compute(kind, input, scenario, (look, place), (pending, quiet))?;
     }
-    let likely = samples.tell(scenario, asked, place)?;
+    let likely = samples.tell(scenario, asked, place, pending)?;
     if let (Some(own), Some(likely)) = (&mut own, likely) {
         own.words.insert_str(0, &(likely.words + ITSELF + "  "));
         own.summary["uncertain"] = likely.summary;
@@ -212,13 +216,15 @@ fn with_samples(
     Ok(own)
 }
 
-/// Tells results that are written; a part has none.
-fn show_if_whole(
+/// Publishes and reports results; a part has none.
+fn publish_if_whole(
     results: Option<Results>,
     place: &Destination,
+    pending: Pending,
     format: Format,
     quiet: bool,
 ) -> Result<(), Failure> {
+    pending.publish(place)?;
     results.map_or(Ok(()), |results| show(&results, place, format, quiet))
 }
 
@@ -233,8 +239,9 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
         }
     }
     let look = Look::of(arguments.figure.get()?);
-    let place = options.place(&input, arguments.figure)?;
-    let compute = |scenario: &Scenario, place: &Destination| {
+    let place = options.place(SUITE, (&input, &scenarios[0]), arguments.figure, quiet)?;
+    let mut pending = Pending::default();
+    let mut compute = |scenario: &Scenario, place: &Destination| {
         let asked = Asked::Suite;
         with_samples(
             StudyKind::Suite,
@@ -242,26 +249,36 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
             options,
             (&input, scenario),
             (look, place),
+            &mut pending,
             quiet,
         )
     };
     if let [scenario] = &scenarios[..] {
-        return show_if_whole(compute(scenario, &place)?, &place, options.format(), quiet);
+        let results = compute(scenario, &place)?;
+        return publish_if_whole(results, &place, pending, options.format(), quiet);
     }
-    let (mut models, mut summaries) = (Vec::new(), Map::new());
+    let mut all = Vec::new();
     for scenario in &scenarios {
         let name = scenario.motion().hinges().name();
         let place = place.within(name);
         if let Some(results) = compute(scenario, &place)? {
-            if !quiet {
-                say(scenario.motion().words());
-            }
-            show(&results, &place, Format::Text, quiet)?;
-            models.push((scenario.motion().words(), results.peaks));
-            summaries.insert(name.to_owned(), results.summary);
+            all.push((scenario, place, results));
         }
     }
+    let (mut models, mut summaries) = (Vec::new(), Map::new());
+    for (scenario, _, results) in &all {
+        let motion = scenario.motion();
+        models.push((motion.words(), results.peaks.clone()));
+        summaries.insert(motion.hinges().name().to_owned(), results.summary.clone());
+    }
     let compared = compare(scenarios[0].title(), &models, &place, look.figure)?;
+    pending.publish(&place)?;
+    for (scenario, place, results) in &all {
+        if !quiet {
+            say(scenario.motion().words());
+        }
+        show(results, place, Format::Text, quiet)?;
+    }
     if let (Some(compared), false) = (&compared, quiet) {
         say(&compared.words);
     }
@@ -293,12 +310,9 @@ pub fn compare(
         figure,
     );
     let results = results.map_err(StudyError::from)?;
-    place.within(MODELS).write(&results, true)?;
+    place.of_models().prepare(&results)?;
     Ok(Some(results))
 }
-
-/// The folder of what several models of motion have in common.
-const MODELS: &str = "models";
 
 pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
     let options = &arguments.options;
@@ -308,15 +322,16 @@ pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failur
     if !quiet {
         super::warn(&scenario.unlikely());
     }
-    let place = options.place(&input, arguments.figure)?;
+    let place = options.place(SPECTRUM, (&input, &scenario), arguments.figure, quiet)?;
+    let mut pending = Pending::default();
     let results = options.compute(
         StudyKind::Spectrum,
         &input,
         &scenario,
         (look, &place),
-        quiet,
+        (&mut pending, quiet),
     )?;
-    show_if_whole(results, &place, options.format(), quiet)
+    publish_if_whole(results, &place, pending, options.format(), quiet)
 }
 
 pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
@@ -326,27 +341,20 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
     let beside = beside.unwrap_or(Path::new("."));
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     let place = arguments.figure.printed(place);
-    let (_, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
+    let (kind, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
         (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
         (StudyKind::UncertainMap, Some(scenario)) => arguments.map.of_samples(scenario, figure),
         _ => arguments.map.of_no_map(figure),
     })?;
-    write(&results, &place, arguments.format, quiet)
+    let origin = Origin::of_summary(&results.summary).unwrap_or_default();
+    let place = place.locked_for(Writer::merge(kind), &origin, quiet)?;
+    place.prepare(&results)?;
+    place.publish()?;
+    show(&results, &place, arguments.format, quiet)
 }
 
-/// Writes results into their folder, and prints their summary.
-pub fn write(
-    results: &Results,
-    place: &Destination,
-    format: Format,
-    quiet: bool,
-) -> Result<(), Failure> {
-    place.write(results, true)?;
-    show(results, place, format, quiet)
-}
-
-/// Tells results that are written.
-pub fn show(
+/// Reports results that are published.
+fn show(
     results: &Results,
     place: &Destination,
     format: Format,

@@ -17,6 +17,7 @@ use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::figure::FigureOption;
+use super::kept::Writer;
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
 
@@ -144,9 +145,20 @@ impl Options {
         self.work
     }
 
-    /// Where results go.
-    pub fn place(&self, input: &Input<'_>, figure: FigureOption) -> Result<Destination, Failure> {
-        Ok(figure.printed(input.results(self.out.as_deref())?))
+    /// The folder for results, locked for a command.
+    pub fn place(
+        &self,
+        writer: Writer,
+        (input, scenario): (&Input<'_>, &Scenario),
+        figure: FigureOption,
+        quiet: bool,
+    ) -> Result<Destination, Failure> {
+        let place = figure.printed(input.results(self.out.as_deref())?);
+        if self.work.is_part() {
+            place.locked_for_a_part(writer)
+        } else {
+            place.locked(writer, scenario, quiet)
+        }
     }
 
     /// The format of the printed summary.
@@ -154,14 +166,14 @@ impl Options {
         self.format
     }
 
-    /// Computes the study of a scenario into a folder. Returns its results, which are written; `None` of a part.
+    /// Computes the study of a scenario in a folder, and prepares its results there, which are returned; `None` for a part.
     pub fn compute(
         &self,
         kind: StudyKind,
         input: &Input<'_>,
         scenario: &Scenario,
         (look, place): (Look, &Destination),
-        quiet: bool,
+        (pending, quiet): (&mut Pending, bool),
     ) -> Result<Option<Results>, Failure> {
         let done = self
             .work
@@ -175,9 +187,35 @@ impl Options {
         let Some((results, part)) = done else {
             return Ok(None);
         };
-        place.write(&results, true)?;
-        part.map_or(Ok(()), PartFile::remove)?;
+        pending.prepare(place, &results, part)?;
         Ok(Some(results))
+    }
+}
+
+/// The files that keep the rows of results until these are published.
+#[derive(Default)]
+pub struct Pending(Vec<PartFile>);
+
+impl Pending {
+    /// Prepares results in a folder. `part` keeps their rows.
+    pub fn prepare(
+        &mut self,
+        place: &Destination,
+        results: &Results,
+        part: Option<PartFile>,
+    ) -> Result<(), Failure> {
+        place.prepare(results)?;
+        self.0.extend(part);
+        Ok(())
+    }
+
+    /// Publishes the results of a command.
+    pub fn publish(self, place: &Destination) -> Result<(), Failure> {
+        place.publish()?;
+        for part in self.0 {
+            part.remove()?;
+        }
+        Ok(())
     }
 }
 

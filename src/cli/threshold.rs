@@ -11,9 +11,10 @@ use archrock::studies::threshold::{
 };
 
 use super::figure::FigureOption;
+use super::kept::{Origin, THRESHOLD};
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
-use super::study::{Display, Work, say};
+use super::study::{Display, Pending, Work, say};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
 
@@ -53,16 +54,18 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
     let models = Models::read(&arguments.hinges, &input)?;
+    let origin = Origin::of(&models[0]);
     let about = |failure| input.about(failure);
-    let place = arguments
+    let is_part = arguments.work.is_part();
+    let root = arguments
         .figure
         .printed(input.results(arguments.out.as_deref())?);
     let (mut names, mut tasks) = (Vec::new(), Vec::new());
     for (record, scenarios) in arguments.suite.choose(models).map_err(about)? {
         check(&scenarios[0]).map_err(|message| about(Failure::Input(message)))?;
         let place = match &record {
-            Some(record) => place.of_record(record)?,
-            None => place.clone(),
+            Some(record) => root.of_record(record)?,
+            None => root.clone(),
         };
         names.push(record.unwrap_or_default());
         tasks.push((scenarios, place));
@@ -77,8 +80,17 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     {
         say(ignored);
     }
+    let root = if is_part {
+        root.locked_for_a_part(THRESHOLD)?
+    } else {
+        root.locked_for(THRESHOLD, &origin, quiet)?
+    };
+    let title = tasks[0].0[0].title();
+    let title = title.map_or(String::new(), |title| format!("{title}\n"));
     let mut found = Vec::new();
-    for (scenarios, place) in &tasks {
+    for (scenarios, place) in tasks {
+        let mut pending = Pending::default();
+        let (scenarios, place) = (&scenarios, &place.locked_with(&root));
         if !quiet {
             super::warn(&scenarios[0].unlikely());
         }
@@ -97,7 +109,9 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         for scenario in scenarios {
             let name = scenario.motion().hinges().name();
             let place = if several { &place.within(name) } else { place };
-            if let Some(told) = samples.tell(scenario, Asked::FirstEdges(factors), place)? {
+            if let Some(told) =
+                samples.tell(scenario, Asked::FirstEdges(factors), place, &mut pending)?
+            {
                 if several {
                     likely += &format!("{}\n", scenario.motion().words());
                 }
@@ -109,13 +123,15 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         if !likely.is_empty() {
             results.words.insert_str(0, &(likely + ITSELF));
         }
+        pending.publish(place)?;
+        if !is_part && !quiet {
+            say(&format!("results in {}", place.holds(&results)));
+        }
         found.push(results);
     }
     match arguments.format {
         Format::Json => print_all(found.into_iter().map(|results| results.summary)),
         Format::Text => {
-            let title = tasks[0].0[0].title();
-            let title = title.map_or(String::new(), |title| format!("{title}\n"));
             let words: String = found.into_iter().map(|results| results.words).collect();
             print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
@@ -175,9 +191,6 @@ fn find(
     let of_models: Vec<&Scenario> = scenarios.iter().collect();
     let results = tell(&of_models, factors, &found, arguments.figure.get()?)?;
     results.write(folder)?;
-    if !quiet {
-        say(&format!("results in {}", place.holds(&results)));
-    }
     Ok(results)
 }
 

@@ -3,13 +3,12 @@
 use archrock::output::Figure;
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{StudyKind, first_edges};
-use archrock::studies::part::PartFile;
 use archrock::studies::results::{Look, Results};
 use archrock::studies::threshold::Factors;
 
 use super::Failure;
 use super::scenario_file::Destination;
-use super::study::Work;
+use super::study::{Pending, Work};
 
 /// How the samples are computed and reported.
 #[derive(Clone, Copy)]
@@ -47,13 +46,14 @@ impl Telling {
         Ok(self.work.is_part())
     }
 
-    /// Computes the samples of a scenario that has `[uncertain]`, and writes their results into their own folder inside
+    /// Computes the samples of a scenario that has `[uncertain]`, and prepares their results in their own folder inside
     /// `place`, which the words name. Returns `None` if the scenario has no `[uncertain]`, or if only a part is computed.
     pub fn tell(
         self,
         scenario: &Scenario,
         asked: Asked,
         place: &Destination,
+        pending: &mut Pending,
     ) -> Result<Option<Results>, Failure> {
         if scenario.uncertain().is_none() {
             return Ok(None);
@@ -85,8 +85,7 @@ impl Telling {
         let Some((mut results, part)) = done else {
             return Ok(None);
         };
-        place.write(&results, true)?;
-        part.map_or(Ok(()), PartFile::remove)?;
+        pending.prepare(&place, &results, part)?;
         results.words = format!(
             "  {}\n  results in {}\n",
             results.words,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use archrock::studies::verify::{Check, tell};
 
+use super::kept::VERIFY;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
 
@@ -33,6 +34,7 @@ pub fn verify(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         Check::new(&scenario).map_err(|error| input.about(Failure::Input(error.to_string())))?;
     let results = tell(&scenario, &check)?;
     let place = input.results(arguments.out.as_deref())?;
+    let place = place.locked(VERIFY, &scenario, quiet)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)
 }

@@ -1,60 +1,189 @@
-//! A folder of results that are replaced together.
+//! Folders of results: the results of one command get their names together.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempPath};
 
 use super::OutputError;
 use super::print::PictureFormat;
 
+/// The results of one command, in a folder and its subfolders.
+///
+/// The folder and everything below it stay locked as long as this value or a [`Folder`] of it lives: no other command writes there.
+/// The system unlocks the folder when the program ends, even if it is killed.
+///
+/// Every file is written under a hidden name. [`Batch::publish`] removes the results of the last run, then gives all files
+/// their names. The seal of each folder is removed first and written last: a folder with a seal holds the results of one run.
+///
+/// A killed run leaves its hidden files behind; the next run removes them.
+#[derive(Clone, Debug)]
+pub struct Batch(Arc<Mutex<Inner>>);
+
+#[derive(Debug)]
+struct Inner {
+    path: PathBuf,
+    /// Whether other commands are locked out, rather than only those that lock others out.
+    alone: bool,
+    /// Hold the locks; empty where folders cannot be locked, as on some network drives and on Windows.
+    locks: Vec<File>,
+    /// Folders that were created for the results, outermost first.
+    made: Vec<PathBuf>,
+    prepared: Vec<Prepared>,
+    /// Results of the last run, in the order in which they are removed.
+    last: Vec<PathBuf>,
+}
+
+/// The complete files of one folder, still under hidden names.
+#[derive(Debug)]
+struct Prepared {
+    /// Their paths, the seal last.
+    files: Vec<(PathBuf, TempPath)>,
+    /// Results that earlier runs may have left and that this run does not write.
+    obsolete: Vec<PathBuf>,
+}
+
 /// A folder in which results are being prepared.
-///
-/// Every file is written under a hidden name and gets its own name when all are complete. The last of them,
-/// the seal, is removed first and written last: a folder with a seal holds the results of one run.
-///
-/// The folder stays locked as long as this value lives, so that two runs cannot mix their files: a second run gets an error.
-/// A single file is replaced in one step and cannot mix with others, so runs that write only one share the lock.
-///
-/// A killed run leaves its hidden files behind, but no lock; the next run removes the files.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
-    /// Holds the lock; `None` where folders cannot be locked, as on some network drives and on Windows.
-    _lock: Option<File>,
-    /// Folders that were created for this one, outermost first.
-    made: Vec<PathBuf>,
+    /// Complete files, still under hidden names.
+    done: Vec<(String, TempPath)>,
     files: Vec<(String, BufWriter<NamedTempFile>)>,
-    /// Results that earlier runs may have left and that this run does not write.
+    /// Names of results that earlier runs may have left and that this run does not write.
     obsolete: Vec<String>,
-    /// What pictures are written in beside SVG.
+    /// The format of pictures beside SVG.
     pictures: Option<PictureFormat>,
+    /// Whether completing it publishes the batch.
+    publishes: bool,
+    batch: Batch,
 }
 
 /// How the hidden names begin.
 const PREFIX: &str = ".archrock-";
 
-impl Folder {
-    /// Opens the folder for the files with these names, the seal last; creates the folder if necessary.
+impl Batch {
+    /// Locks the folder and everything below it, alone or together with others that do so too; creates the folder if necessary.
     ///
     /// # Errors
-    /// When the folder or a file in it cannot be created, or another run is writing to it.
-    pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
-        let mut folder = Self {
+    /// When the folder cannot be created, or another command is writing to it, to a folder below it, or to a folder around it.
+    pub fn lock(path: &Path, alone: bool) -> Result<Self, OutputError> {
+        let mut inner = Inner {
             path: path.to_owned(),
-            _lock: None,
+            alone,
+            locks: Vec::new(),
             made: Vec::new(),
+            prepared: Vec::new(),
+            last: Vec::new(),
+        };
+        inner.make(path)?;
+        inner.lock()?;
+        Ok(Self(Arc::new(Mutex::new(inner))))
+    }
+
+    /// Names the results of the last run, which are removed before the first new file gets its name; returns those that exist. Hidden files
+    /// beside them, which a killed run left, are removed at once.
+    pub fn replace(&self, results: Vec<PathBuf>) {
+        let mut inner = self.inner();
+        if inner.alone && !inner.locks.is_empty() {
+            for folder in folders(&results) {
+                remove_abandoned(folder);
+            }
+        }
+        inner.last = results;
+    }
+
+    /// Opens the folder, or one below it, for files with these names, the seal last.
+    ///
+    /// # Errors
+    /// When the folder or a file in it cannot be created.
+    pub fn folder(&self, path: &Path, names: &[&str]) -> Result<Folder, OutputError> {
+        let mut inner = self.inner();
+        // The user may have removed it since it was locked.
+        let root = inner.path.clone();
+        if !root.exists() {
+            inner.make(&root)?;
+            inner.lock()?;
+        }
+        inner.make(path)?;
+        drop(inner);
+        let mut folder = Folder {
+            path: path.to_owned(),
+            done: Vec::new(),
             files: Vec::new(),
             obsolete: Vec::new(),
             pictures: None,
+            publishes: false,
+            batch: self.clone(),
         };
+        for name in names {
+            let file = folder.hidden(name)?;
+            let file = (String::from(*name), BufWriter::new(file));
+            folder.files.push(file);
+        }
+        Ok(folder)
+    }
+
+    /// Gives all complete files their names, after removing the results of the last run.
+    ///
+    /// # Errors
+    /// When the system refuses; the folders are then left without their seals, or untouched.
+    pub fn publish(&self) -> Result<(), OutputError> {
+        let mut inner = self.inner();
+        let failed = |path: &Path| OutputError::io(format!("cannot write {}", path.display()));
+        let prepared = std::mem::take(&mut inner.prepared);
+        let last = std::mem::take(&mut inner.last);
+        for path in &last {
+            remove_if_there(path).map_err(failed(path))?;
+        }
+        let mut emptied: Vec<&Path> = folders(&last);
+        emptied.sort_by_key(|folder| std::cmp::Reverse(folder.components().count()));
+        for folder in emptied.into_iter().filter(|folder| *folder != inner.path) {
+            // A folder that holds anything else stays.
+            let _ = fs::remove_dir(folder);
+        }
+        let seals = prepared.iter().filter_map(|folder| folder.files.last());
+        let obsolete = prepared.iter().flat_map(|folder| &folder.obsolete);
+        for path in seals.map(|(path, _)| path).chain(obsolete) {
+            remove_if_there(path).map_err(failed(path))?;
+        }
+        let mut seals = Vec::new();
+        for mut folder in prepared {
+            seals.extend(folder.files.pop());
+            for (path, file) in folder.files {
+                file.persist(&path)
+                    .map_err(|error| failed(&path)(error.error))?;
+            }
+        }
+        // Subfolders are sealed before the folder around them, which was prepared before them.
+        for (path, file) in seals.into_iter().rev() {
+            file.persist(&path)
+                .map_err(|error| failed(&path)(error.error))?;
+        }
+        Ok(())
+    }
+
+    /// Drops all files that are complete but not published.
+    pub fn abandon(&self) {
+        self.inner().prepared.clear();
+    }
+
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Inner {
+    /// Creates a folder and those around it, as far as they are missing.
+    fn make(&mut self, path: &Path) -> Result<(), OutputError> {
         for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
             if ancestor.as_os_str().is_empty() || ancestor.exists() {
                 continue;
             }
             match fs::create_dir(ancestor) {
-                Ok(()) => folder.made.push(ancestor.to_owned()),
+                Ok(()) => self.made.push(ancestor.to_owned()),
                 // Another run created it first.
                 Err(_) if ancestor.is_dir() => {}
                 Err(error) => {
@@ -63,27 +192,49 @@ impl Folder {
                 }
             }
         }
-        let alone = names.len() > 1;
-        folder._lock = lock(path, alone)?;
-        if alone && folder._lock.is_some() {
-            remove_abandoned(path);
+        Ok(())
+    }
+
+    /// Locks the folder, and shares the lock of every folder around it with others that write below that one.
+    fn lock(&mut self) -> Result<(), OutputError> {
+        self.locks = lock(&self.path, self.alone)?.into_iter().collect();
+        // Links in the path lead to other folders around it.
+        let canonical = self.path.canonicalize().unwrap_or_default();
+        for around in canonical.ancestors().skip(1) {
+            self.locks.extend(lock(around, false)?);
         }
-        for name in names {
-            let file = tempfile::Builder::new()
-                .prefix(&format!("{PREFIX}{name}-"))
-                .permissions_like_others()
-                .tempfile_in(path)
-                // The system's message would name the hidden file.
-                .map_err(|error| error.kind().into())
-                .map_err(OutputError::io(format!(
-                    "cannot write {}",
-                    path.join(name).display()
-                )))?;
-            folder
-                .files
-                .push(((*name).to_owned(), BufWriter::new(file)));
+        if self.alone && !self.locks.is_empty() {
+            remove_abandoned(&self.path);
         }
-        Ok(folder)
+        Ok(())
+    }
+}
+
+impl Drop for Inner {
+    /// Removes everything that was not published.
+    fn drop(&mut self) {
+        self.prepared.clear();
+        for made in self.made.iter().rev() {
+            // A folder that holds anything stays.
+            let _ = fs::remove_dir(made);
+        }
+    }
+}
+
+impl Folder {
+    /// Opens the folder for the files with these names, the seal last; creates the folder if necessary. [`Folder::complete`] gives the
+    /// files their names.
+    ///
+    /// A single file is replaced in one step and cannot mix with others, so commands that write only one share the lock.
+    ///
+    /// # Errors
+    /// When the folder or a file in it cannot be created, or another command is writing to it.
+    pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
+        let batch = Batch::lock(path, names.len() > 1)?;
+        Ok(Self {
+            publishes: true,
+            ..batch.folder(path, names)?
+        })
     }
 
     /// Names a result that earlier runs may have left and that this run does not write.
@@ -118,78 +269,97 @@ impl Folder {
         self.files.iter_mut().map(|(name, file)| (&**name, file))
     }
 
-    /// Completes the files and gives them their names.
+    /// Adds a file with these contents, which is not the seal. Its name may be that of a file in a subfolder, which is created.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        if let Some(folder) = self.path.join(name).parent() {
+            self.batch.inner().make(folder)?;
+        }
+        let mut file = self.hidden(name)?;
+        let written = file.write_all(contents);
+        written
+            .and_then(|()| file.as_file().sync_data())
+            .map_err(self.cannot_write(name))?;
+        self.done
+            .insert(0, (name.to_owned(), file.into_temp_path()));
+        Ok(())
+    }
+
+    /// Completes the files. They get their names when their batch is published, which a folder that was opened by itself does at once.
     ///
     /// # Errors
     /// When the system refuses; earlier results are then left without their seal, or untouched.
     pub fn complete(mut self) -> Result<(), OutputError> {
-        let path = self.path.clone();
-        let failed =
-            |name: &str| OutputError::io(format!("cannot write {}", path.join(name).display()));
-        let mut files = Vec::new();
         for (name, writer) in std::mem::take(&mut self.files) {
             let file = writer
                 .into_inner()
-                .map_err(|error| failed(&name)(error.into_error()))?;
+                .map_err(|error| self.cannot_write(&name)(error.into_error()))?;
             if let Some(stem) = name.strip_suffix(".svg") {
                 for format in PictureFormat::OTHERS {
                     let other = format!("{stem}.{}", format.extension());
                     if self.pictures == Some(format) {
-                        let converted = converted(&file, format, &path).map_err(failed(&other))?;
-                        files.push((other, converted));
+                        let converted =
+                            converted(&file, format).map_err(self.cannot_write(&other))?;
+                        self.add(&other, &converted)?;
                     } else {
                         self.obsolete.push(other);
                     }
                 }
             }
-            file.as_file().sync_data().map_err(failed(&name))?;
-            files.push((name, file));
+            file.as_file()
+                .sync_data()
+                .map_err(self.cannot_write(&name))?;
+            self.done.push((name, file.into_temp_path()));
         }
-        if let Some((seal, _)) = files.last() {
-            remove_if_there(&path.join(seal)).map_err(failed(seal))?;
+        let path = |name: &String| self.path.join(name);
+        let files = self.done.drain(..);
+        let files = files
+            .map(|(name, file)| (self.path.join(name), file))
+            .collect();
+        let obsolete = self.obsolete.iter().map(path).collect();
+        let prepared = Prepared { files, obsolete };
+        self.batch.inner().prepared.push(prepared);
+        if self.publishes {
+            self.batch.publish()?;
         }
-        for name in &self.obsolete {
-            remove_if_there(&path.join(name)).map_err(failed(name))?;
-        }
-        for (name, file) in files {
-            file.persist(path.join(&name))
-                .map_err(|error| failed(&name)(error.error))?;
-        }
-        self.made.clear();
         Ok(())
     }
-}
 
-impl Drop for Folder {
-    /// Removes everything if the results were not completed.
-    fn drop(&mut self) {
-        self.files.clear();
-        for made in self.made.iter().rev() {
-            // A folder that holds anything else stays.
-            let _ = fs::remove_dir(made);
-        }
+    /// A new file under a hidden name.
+    fn hidden(&self, name: &str) -> Result<NamedTempFile, OutputError> {
+        let path = self.path.join(name);
+        let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
+        tempfile::Builder::new()
+            .prefix(&format!("{PREFIX}{name_alone}-"))
+            .permissions_like_others()
+            .tempfile_in(path.parent().unwrap_or(&self.path))
+            // The system's message would name the hidden file.
+            .map_err(|error| error.kind().into())
+            .map_err(self.cannot_write(name))
+    }
+
+    fn cannot_write(&self, name: &str) -> impl FnOnce(io::Error) -> OutputError + use<> {
+        OutputError::io(format!("cannot write {}", self.path.join(name).display()))
     }
 }
 
-/// A picture in another format, as a hidden file of this folder.
-fn converted(
-    picture: &NamedTempFile,
-    format: PictureFormat,
-    folder: &Path,
-) -> io::Result<NamedTempFile> {
+/// A picture in another format.
+fn converted(picture: &NamedTempFile, format: PictureFormat) -> io::Result<Vec<u8>> {
     let picture = fs::read_to_string(picture.path())?;
-    let picture = format.of_picture(&picture).map_err(io::Error::other)?;
-    let mut file = tempfile::Builder::new()
-        .prefix(PREFIX)
-        .permissions_like_others()
-        .tempfile_in(folder)?;
-    file.write_all(&picture)?;
-    file.as_file().sync_data()?;
-    Ok(file)
+    format.of_picture(&picture).map_err(io::Error::other)
 }
 
-/// Locks a folder, for one run alone or for several that write single files. The system unlocks it when the program ends,
-/// even if it is killed.
+/// The folders of these files, each once.
+fn folders(files: &[PathBuf]) -> Vec<&Path> {
+    let mut folders: Vec<&Path> = files.iter().filter_map(|file| file.parent()).collect();
+    folders.sort_unstable();
+    folders.dedup();
+    folders
+}
+
+/// Locks a folder, for one command alone or for several. The system unlocks it when the program ends, even if it is killed.
 fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);

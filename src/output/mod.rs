@@ -21,7 +21,7 @@ use std::io;
 use std::path::PathBuf;
 
 pub use figure::Figure;
-pub use folder::Folder;
+pub use folder::{Batch, Folder};
 pub use panels::Subject;
 use serde_json::Value;
 

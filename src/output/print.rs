@@ -58,7 +58,8 @@ impl FromStr for PictureFormat {
 
 impl PictureFormat {
     /// Those that stand beside an SVG.
-    pub(super) const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
+    /// The formats that pictures may have beside SVG.
+    pub const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
 
     /// The format of a file, by its extension; SVG without one.
     ///

@@ -189,6 +189,16 @@ impl Scenario {
             .chain(right)
     }
 
+    /// Name and checksum of each record file, of the ground and of the suite, separated by a space.
+    #[must_use]
+    pub fn record_checksums(&self) -> Vec<String> {
+        let suite = self.suite.iter().flat_map(|suite| &suite.records);
+        let series = self.series().chain(suite);
+        series
+            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
+            .collect()
+    }
+
     /// The initial state of the motion; `None`: rest.
     #[must_use]
     pub const fn initial(&self) -> Option<Initial> {

@@ -84,6 +84,63 @@ impl StudyKind {
         Self::ALL.iter().copied().find(|kind| kind.name() == name)
     }
 
+    /// The names of all files that its results may have, the seal last.
+    #[must_use]
+    pub const fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Map => &[
+                "no_impact.csv",
+                "map.svg",
+                "map.html",
+                "map.json",
+                "map.csv",
+            ],
+            Self::Spectrum => &["spectrum.svg", "spectrum.json", "spectrum.csv"],
+            Self::Suite => &[
+                "suite.svg",
+                "ida.svg",
+                "peaks.svg",
+                "ida.csv",
+                "peaks.csv",
+                "capacity.csv",
+                "intensity.csv",
+                "fragility.csv",
+                "fragility.json",
+                "suite.csv",
+            ],
+            Self::Uncertain => &[
+                "bands.svg",
+                "matters.svg",
+                "bands.csv",
+                "samples.csv",
+                "uncertain.json",
+            ],
+            Self::UncertainThreshold => &[
+                "probability.svg",
+                "matters.svg",
+                "probability.csv",
+                "samples.csv",
+                "uncertain.json",
+            ],
+            Self::UncertainSuite => &[
+                "fragility.svg",
+                "matters.svg",
+                "fragility.csv",
+                "capacities.csv",
+                "samples.csv",
+                "uncertain.json",
+            ],
+            Self::UncertainMap => &[
+                "map.svg",
+                "map.html",
+                "matters.svg",
+                "probability.csv",
+                "map.csv",
+                "uncertain.json",
+            ],
+        }
+    }
+
     /// Computes the study of a scenario, in a folder, where it can be resumed, or in memory. `watch` is as in [`Runner::rows`].
     ///
     /// # Errors

@@ -357,6 +357,19 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
     Ok(header)
 }
 
+/// The number of complete rows in a file; `None` if it is not a part.
+#[must_use]
+pub fn rows_in(path: &Path) -> Option<usize> {
+    if !path.is_file() {
+        return None;
+    }
+    let (text, _) = complete_lines(path, |path| fs::read(path)).ok()?;
+    match header_of(path, &text).ok()? {
+        Some((_, lines)) => Some(lines.count()),
+        None => Some(0),
+    }
+}
+
 /// The file of a shard that is being computed. It stays locked as long as this value lives.
 #[derive(Debug)]
 pub struct PartFile {

@@ -119,6 +119,9 @@ fn rotations_rad(peaks: &[Peak]) -> Vec<f64> {
     all
 }
 
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", "peaks.json"];
+
 /// The distributions of several models of the same cases, side by side: table, picture, numbers and words.
 ///
 /// # Errors
@@ -154,16 +157,16 @@ pub fn tell(title: &str, models: &[OfModel<'_>], figure: Figure) -> Result<Resul
         .map(|(names, apart)| in_words(*names, apart))
         .collect();
     Ok(Results {
-        files: vec![
-            (
-                "peaks.svg",
+        files: FILES
+            .into_iter()
+            .zip([
                 figure
                     .fitted(|figure| draw(figure, title, models, &distributions))
                     .into_bytes(),
-            ),
-            ("peaks.csv", csv(columns, &rows)?),
-            ("peaks.json", pretty(&summary).into_bytes()),
-        ],
+                csv(columns, &rows)?,
+                pretty(&summary).into_bytes(),
+            ])
+            .collect(),
         words: words.join("\n  "),
         summary,
         ..Results::default()

@@ -129,6 +129,7 @@ pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> V
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": scenario.to_json(),
         "warnings": warnings(scenario),
+        "record_checksums": scenario.record_checksums(),
         "cases": cases,
     });
     remarks.add_to(&mut summary);

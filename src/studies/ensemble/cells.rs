@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde::{Deserialize, Serialize};
 
 use super::statistics::Share;
-use super::{NoAnswer, SampleRow, Told, files, uncertain};
+use super::{NoAnswer, SampleRow, Told, uncertain};
 use crate::dynamics::history::Outcome;
 use crate::output::OutputError;
 use crate::scenario::{Axis, Quantity, Scenario, Spacing, Uncertain, UncertainKey};
@@ -190,7 +190,7 @@ impl Study for CellsOfSamples<'_> {
     }
 
     fn inputs(&self) -> Vec<String> {
-        files(self.scenario)
+        self.scenario.record_checksums()
     }
 
     fn count(&self) -> usize {

@@ -120,17 +120,6 @@ fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
     })
 }
 
-/// The files that a scenario names, with their checksums, as in [`Study::inputs`].
-fn files(scenario: &Scenario) -> Vec<String> {
-    let suite = scenario.suite().into_iter();
-    let series = scenario
-        .series()
-        .chain(suite.flat_map(|suite| &suite.records));
-    series
-        .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-        .collect()
-}
-
 impl<Q: Question> Study for Ensemble<'_, Q> {
     type Row = SampleRow<Q::Answer>;
 
@@ -141,7 +130,7 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 
     fn inputs(&self) -> Vec<String> {
-        let mut inputs = files(self.scenario);
+        let mut inputs = self.scenario.record_checksums();
         inputs.extend(self.question.settings());
         inputs
     }

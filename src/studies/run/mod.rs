@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io::{self, Write as _};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -213,7 +213,7 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(wanted).collect()
     }
 
-    /// Simulates the scenario. The files go into a folder that was opened for them. Rotations go to `rotations` instead, if it is
+    /// Simulates the scenario. The files go into a folder that was opened for them, and which is completed. Rotations go to `rotations` instead, if it is
     /// given.
     ///
     /// # Errors
@@ -348,24 +348,33 @@ fn write(folder: &mut Folder, name: &str, what: &str, text: &str) -> Result<(), 
 }
 
 /// The folder of a film, in that of the results.
-const FILM: &str = "film";
+pub const FILM: &str = "film";
 
-/// Writes the pictures of a film, numbered; those of an earlier one go.
-fn write_film(path: &Path, stills: &[String]) -> Result<(), OutputError> {
-    let names: Vec<String> = (1..=stills.len())
-        .map(|number| format!("frame-{number:04}.svg"))
-        .collect();
-    let mut folder = Folder::open(path, &names.iter().map(String::as_str).collect::<Vec<_>>())?;
-    let old = fs::read_dir(path).into_iter().flatten().flatten();
-    for name in old.filter_map(|file| file.file_name().into_string().ok()) {
-        if name.starts_with("frame-") && !names.contains(&name) {
-            folder.forget(&name);
+/// How the names of its pictures begin.
+const FRAME: &str = "frame-";
+
+/// The pictures of a film that are in its folder.
+#[must_use]
+pub fn frames(film: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(film).into_iter().flatten().flatten();
+    let is_frame = |entry: &fs::DirEntry| {
+        let name = entry.file_name();
+        name.to_str().is_some_and(|name| name.starts_with(FRAME))
+    };
+    entries.filter(is_frame).map(|entry| entry.path()).collect()
+}
+
+/// Adds the numbered pictures of a film, which replace those of an earlier one.
+fn write_film(folder: &mut Folder, stills: &[String]) -> Result<(), OutputError> {
+    for old in frames(&folder.path().join(FILM)) {
+        if let Some(name) = old.file_name().and_then(|name| name.to_str()) {
+            folder.forget(&format!("{FILM}/{name}"));
         }
     }
-    for (name, still) in names.iter().zip(stills) {
-        write(&mut folder, name, "a picture of the film", still)?;
+    for (number, still) in (1..).zip(stills) {
+        folder.add(&format!("{FILM}/{FRAME}{number:04}.svg"), still.as_bytes())?;
     }
-    folder.complete()
+    Ok(())
 }
 
 /// What is collected from a history for its words and pictures.
@@ -454,7 +463,7 @@ impl Shown {
         if let Some(film) = &self.film {
             let path = folder.path().join(FILM);
             let stills = film.stills(figure, title);
-            write_film(&path, &stills)?;
+            write_film(folder, &stills)?;
             let _ = writeln!(
                 said,
                 "  {} pictures of a film in {}",

@@ -42,6 +42,7 @@ pub fn summary(
     object.put("program", json!(env!("CARGO_PKG_NAME")));
     object.put("version", json!(env!("CARGO_PKG_VERSION")));
     object.put("scenario", scenario.to_json());
+    object.put("record_checksums", json!(scenario.record_checksums()));
     let evidence = Evidence {
         scenario,
         history,

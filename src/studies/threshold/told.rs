@@ -177,6 +177,7 @@ fn to_json(
             let mut model = json!({
                 "model": threshold.model,
                 "scenario": scenario.to_json(),
+                "record_checksums": scenario.record_checksums(),
                 "lowest_factor": threshold.lowest_factor(),
                 "bands": ranges(threshold.bands()),
                 "gaps": ranges(threshold.gaps()),

@@ -26,7 +26,7 @@ use crate::mechanics::sway::Sway;
 use crate::scenario::{Demand, LimitState, PointDemand, Scenario, Sides, StateRule, Verify};
 pub use histories::{Histories, HistorySide};
 pub use mechanism::{Mechanism, PlacedHinge, Way};
-pub use page::{page, tell};
+pub use page::{FILES, page, tell};
 pub use summary::to_json;
 pub use words::words;
 

@@ -21,6 +21,9 @@ use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::{LimitState, Scenario, StateRule};
 use crate::studies::results::Results;
 
+/// Names of the files, the seal last.
+pub const FILES: [&str; 2] = ["verify.html", "verify.json"];
+
 /// Page, numbers and words of a check of a scenario.
 ///
 /// # Errors
@@ -29,10 +32,10 @@ pub fn tell(scenario: &Scenario, check: &Check) -> Result<Results, OutputError> 
     let summary = to_json(scenario, check)?;
     let page = page(scenario, check, &today());
     Ok(Results {
-        files: vec![
-            ("verify.html", page.into_bytes()),
-            ("verify.json", pretty(&summary).into_bytes()),
-        ],
+        files: FILES
+            .into_iter()
+            .zip([page.into_bytes(), pretty(&summary).into_bytes()])
+            .collect(),
         words: words(check),
         summary,
         ..Results::default()

@@ -1,0 +1,364 @@
+//! The results that a command finds in its folder: those of its own last run, and those of other commands.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use archrock::output::print::PictureFormat;
+use archrock::scenario::{Hinges, Scenario};
+use archrock::studies::catalogue::StudyKind;
+use archrock::studies::part::{Shard, rows_in};
+use archrock::studies::{capacity, chart, peaks, run, spread, threshold, verify};
+use serde_json::Value;
+
+use super::scenario_file::ORIGIN;
+
+/// A command that writes a folder of results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Writer {
+    /// The name of the command.
+    pub name: &'static str,
+    /// All files that it may write beside one another, the seal last.
+    files: &'static [&'static str],
+    /// The file that holds the scenario; `None`: no file does.
+    summary: Option<&'static str>,
+    /// The study of the samples of `[uncertain]`, whose results are in a subfolder.
+    samples: Option<StudyKind>,
+    /// The file that shows that the results of several models are in subfolders; `None`: results of models are never apart.
+    of_models: Option<&'static str>,
+    /// Whether the results of each record of the suite may be in a subfolder.
+    of_records: bool,
+}
+
+const PLAIN: Writer = Writer {
+    name: "",
+    files: &[],
+    summary: None,
+    samples: None,
+    of_models: None,
+    of_records: false,
+};
+pub const RUN: Writer = Writer {
+    name: "run",
+    files: &run::FILES,
+    summary: Some("summary.json"),
+    samples: Some(StudyKind::Uncertain),
+    of_models: Some(run::OVERLAY),
+    of_records: true,
+};
+pub const THRESHOLD: Writer = Writer {
+    name: "threshold",
+    files: &threshold::FILES,
+    summary: Some("threshold.json"),
+    samples: Some(StudyKind::UncertainThreshold),
+    of_models: Some("threshold.json"),
+    of_records: true,
+};
+pub const MAP: Writer = Writer {
+    name: "map",
+    files: StudyKind::Map.files(),
+    summary: Some("map.json"),
+    samples: Some(StudyKind::UncertainMap),
+    ..PLAIN
+};
+pub const SPECTRUM: Writer = Writer {
+    name: "spectrum",
+    files: StudyKind::Spectrum.files(),
+    summary: Some("spectrum.json"),
+    ..PLAIN
+};
+pub const SUITE: Writer = Writer {
+    name: "suite",
+    files: StudyKind::Suite.files(),
+    summary: Some("fragility.json"),
+    samples: Some(StudyKind::UncertainSuite),
+    of_models: Some("models/peaks.json"),
+    ..PLAIN
+};
+pub const CAPACITY: Writer = Writer {
+    name: "capacity",
+    files: &capacity::FILES,
+    summary: Some("capacity.json"),
+    ..PLAIN
+};
+pub const SPREAD: Writer = Writer {
+    name: "spread",
+    files: &spread::FILES,
+    summary: Some("spread.json"),
+    ..PLAIN
+};
+pub const VERIFY: Writer = Writer {
+    name: "verify",
+    files: &verify::FILES,
+    summary: Some("verify.json"),
+    ..PLAIN
+};
+pub const CHART: Writer = Writer {
+    name: "chart",
+    files: &chart::FILES,
+    ..PLAIN
+};
+
+const ALL: [Writer; 9] = [
+    RUN, THRESHOLD, MAP, SPECTRUM, SUITE, CAPACITY, SPREAD, VERIFY, CHART,
+];
+
+/// The folder that compares the results of several models of motion.
+const MODELS: &str = "models";
+
+impl Writer {
+    /// `merge` of a study, which replaces the results of that study only: those of its samples are merged apart.
+    pub const fn merge(kind: StudyKind) -> Self {
+        Self {
+            name: "merge",
+            files: kind.files(),
+            ..PLAIN
+        }
+    }
+
+    /// The paths of everything that the last run of this command may have left in a folder, in the order in which it is removed: the seal
+    /// first. Rows of an interrupted study are not among them.
+    pub fn last_run(&self, folder: &Path) -> Vec<PathBuf> {
+        let mut seal_first = self.beside_one_another(folder, self.files).into_iter();
+        let mut all: Vec<PathBuf> = seal_first.by_ref().take(1).collect();
+        all.extend(self.below(folder));
+        if self.of_records {
+            for record in self.record_folders(folder) {
+                all.extend(self.beside_one_another(&record, self.files));
+                all.extend(self.below(&record));
+                all.push(record.join(ORIGIN));
+            }
+        }
+        all.extend(seal_first);
+        all.extend(self.beside_one_another(&folder.join(self.models(folder)), &peaks::FILES));
+        all
+    }
+
+    /// The folder for the comparison of several models: another name if `models` belongs to another command.
+    pub fn models(&self, folder: &Path) -> String {
+        let has_models = |writer: &Self| {
+            Hinges::ALL.iter().any(|hinges| {
+                let below = folder.join(hinges.name());
+                let samples = |kind: StudyKind| below.join(kind.name()).is_dir();
+                match writer.name {
+                    "run" => writer.samples.is_some_and(samples),
+                    _ => writer.is_sealed(&below),
+                }
+            })
+        };
+        let others = [RUN, SUITE].into_iter().filter(|writer| writer != self);
+        if others.into_iter().any(|other| has_models(&other)) {
+            format!("{MODELS}_{}", self.name)
+        } else {
+            MODELS.to_owned()
+        }
+    }
+
+    /// Warnings of results of other commands in a folder that come from another scenario.
+    pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
+        let others = ALL.iter().filter(|writer| writer.files != self.files);
+        let warning = |other: &Self| {
+            let difference = other
+                .places(folder)
+                .into_iter()
+                .find_map(|place| own.difference(&other.origin(&place)?))?;
+            Some(format!(
+                "{} holds results of `archrock {}` from another scenario: {difference}. They stay; choose another folder with --out to keep \
+                 results apart",
+                folder.display(),
+                other.name
+            ))
+        };
+        let mut all: Vec<String> = others.filter_map(warning).collect();
+        if own.scenario.get("uncertain").is_none() {
+            all.extend(self.interrupted(folder));
+        }
+        all
+    }
+
+    /// A warning of rows of samples that were interrupted and that this run, which has no samples, leaves where they are.
+    fn interrupted(&self, folder: &Path) -> Option<String> {
+        let kind = self.samples?;
+        let part = Self::part(folder, kind);
+        let rows = rows_in(&part).filter(|rows| *rows > 0)?;
+        Some(format!(
+            "{} has {rows} cases of samples from an interrupted run; they are not part of the results of this run",
+            part.display()
+        ))
+    }
+
+    /// The file that keeps the rows of samples while they are computed.
+    fn part(folder: &Path, kind: StudyKind) -> PathBuf {
+        folder
+            .join(kind.name())
+            .join(Shard::WHOLE.file_name(kind.name()))
+    }
+
+    /// Whether a folder holds complete results of this command.
+    fn is_sealed(&self, folder: &Path) -> bool {
+        let seal = self.files.last();
+        seal.is_some_and(|seal| folder.join(seal).is_file())
+    }
+
+    /// A folder of results, and its subfolders of several models.
+    fn places(&self, folder: &Path) -> Vec<PathBuf> {
+        let mut places = vec![folder.to_owned()];
+        if self.of_models.is_some() {
+            places.extend(Hinges::ALL.iter().map(|model| folder.join(model.name())));
+        }
+        places
+    }
+
+    /// The scenario of complete results in a folder.
+    fn origin(&self, folder: &Path) -> Option<Origin> {
+        let summary = folder.join(self.summary?);
+        // Reading a pipe of that name would never end.
+        if !self.is_sealed(folder) || !summary.is_file() {
+            return None;
+        }
+        let summary: Value = serde_json::from_slice(&fs::read(summary).ok()?).ok()?;
+        let of_models = summary.pointer("/models/0");
+        Origin::of_summary(of_models.unwrap_or(&summary))
+    }
+
+    /// Files of one folder, the seal first, and their pictures in other formats.
+    fn beside_one_another(&self, folder: &Path, files: &[&str]) -> Vec<PathBuf> {
+        if !folder.is_dir() {
+            return Vec::new();
+        }
+        let mut all: Vec<PathBuf> = files.iter().rev().map(|file| folder.join(file)).collect();
+        let pictures = files.iter().filter_map(|file| file.strip_suffix(".svg"));
+        for (stem, format) in
+            pictures.flat_map(|stem| PictureFormat::OTHERS.map(|other| (stem, other)))
+        {
+            all.push(folder.join(format!("{stem}.{}", format.extension())));
+        }
+        all
+    }
+
+    /// What is in the subfolders of a folder of results: samples, films and models.
+    fn below(&self, folder: &Path) -> Vec<PathBuf> {
+        let mut all = Vec::new();
+        if let Some(kind) = self.samples {
+            let samples = folder.join(kind.name());
+            all.extend(self.beside_one_another(&samples, kind.files()));
+            // A part without rows is no loss.
+            let part = Self::part(folder, kind);
+            if rows_in(&part) == Some(0) {
+                all.push(part);
+            }
+        }
+        if self.name == RUN.name {
+            let film = folder.join(run::FILM);
+            // Of a killed run the folder may hold hidden files only.
+            all.extend(self.beside_one_another(&film, &["frame-0001.svg"]));
+            all.extend(run::frames(&film));
+        }
+        if let Some(mark) = self.of_models {
+            for below in Hinges::ALL.iter().map(|hinges| folder.join(hinges.name())) {
+                // A sealed folder may have been chosen with --out, and is then not of this folder's run.
+                let alone = self.is_sealed(&below) && !folder.join(mark).is_file();
+                if below.is_dir() && !alone {
+                    all.extend(self.beside_one_another(&below, self.files));
+                    let one = Self {
+                        of_models: None,
+                        ..*self
+                    };
+                    all.extend(one.below(&below));
+                }
+            }
+        }
+        all
+    }
+
+    /// The subfolders with results of one record each: they have its name.
+    fn record_folders(&self, folder: &Path) -> Vec<PathBuf> {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+        let is_of_record = |path: &PathBuf| {
+            let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+                return false;
+            };
+            let shaken_by = |place: PathBuf| {
+                let origin = self.origin(&place)?;
+                let file = origin.scenario.pointer("/ground/record/file")?.as_str()?;
+                Some(Path::new(file).file_name()? == name)
+            };
+            // The names of records have an extension.
+            name.contains('.')
+                && self
+                    .places(path)
+                    .into_iter()
+                    .any(|place| shaken_by(place) == Some(true))
+        };
+        entries
+            .map(|entry| entry.path())
+            .filter(is_of_record)
+            .collect()
+    }
+}
+
+/// The scenario of some results.
+#[derive(Default)]
+pub struct Origin {
+    scenario: Value,
+    /// Name and checksum of each record file.
+    records: Vec<String>,
+}
+
+/// Tables that results of one command may have, and those of another not: a title, studies, and models of motion.
+const OF_SOME: [&str; 10] = [
+    "title",
+    "map",
+    "spectrum",
+    "suite",
+    "demand",
+    "verify",
+    "uncertain",
+    "impact",
+    "free_hinges",
+    "elastic_joints",
+];
+/// Those among them that say how the structure moves.
+const MODEL: [&str; 3] = ["impact", "free_hinges", "elastic_joints"];
+
+impl Origin {
+    /// A scenario that is about to have results.
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            scenario: scenario.to_json(),
+            records: scenario.record_checksums(),
+        }
+    }
+
+    /// The scenario in the summary of results; `None` if there is none.
+    pub fn of_summary(summary: &Value) -> Option<Self> {
+        let records = summary["record_checksums"].as_array();
+        let records = records.into_iter().flatten().filter_map(Value::as_str);
+        Some(Self {
+            scenario: summary.get("scenario")?.clone(),
+            records: records.map(str::to_owned).collect(),
+        })
+    }
+
+    /// The first difference from the scenario of other results; `None` if they agree.
+    fn difference(&self, other: &Self) -> Option<String> {
+        let (own, others) = (self.scenario.as_object()?, other.scenario.as_object()?);
+        let tables = own.keys().chain(others.keys());
+        let of_both = tables.filter(|table| {
+            !OF_SOME.contains(&table.as_str())
+                || MODEL.contains(&table.as_str())
+                    && own.contains_key(*table)
+                    && others.contains_key(*table)
+        });
+        let mut of_both = of_both.filter(|table| own.get(*table) != others.get(*table));
+        if let Some(table) = of_both.next() {
+            return Some(format!("[{table}] differs"));
+        }
+        let name = |record: &str| record.rsplit_once(' ').map(|(name, _)| name.to_owned());
+        let mut changed = self.records.iter().filter(|record| {
+            let mut others = other.records.iter();
+            !other.records.contains(record) && others.any(|other| name(other) == name(record))
+        });
+        let changed = changed.next().and_then(|record| name(record))?;
+        Some(format!("the contents of {changed} differ"))
+    }
+}
