@@ -45,10 +45,10 @@ fn run(
         longest_step_s: step_s,
         shortest_step_s: step_s,
         merged_after: 0,
+        may_halve: false,
         end_s,
         output_step_s: Some(end_s / 200.0),
         friction_coefficient: Some(coefficient),
-        may_halve: false,
     };
     let mut impacts = Impacts::default();
     let summary = simulate(row, ground, GRAVITY, &settings, None, Some(&mut impacts)).unwrap();

@@ -2,7 +2,8 @@
 //!
 //! If these disagree on whether it overturns, that is **uncertain**: neither overturned nor survived. The side to which it overturns,
 //! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
-//! nothing after an impact decides (`is_plain`).
+//! nothing after an impact decides (`is_plain`). Where joints slip, a motion that comes near overturning is uncertain as well if a
+//! repetition differs before the largest rotation: then still other steps may end otherwise ([`EarlyDifference`]).
 
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
@@ -23,6 +24,9 @@ const AGREEMENT: f64 = 0.5;
 /// Half cycles that peak below this fraction of the largest peak are not compared.
 const LEAST_PEAK_RATIO: f64 = 1e-2;
 
+/// Slips below this, in metres, are none.
+const LEAST_SLIP_M: f64 = 1e-6;
+
 /// A motion beside its repetitions: only what they agree on can be relied on.
 ///
 /// After the first change of side, the order of impacts that almost coincide decides how the motion goes
@@ -41,6 +45,39 @@ pub struct Spread {
     pub parts_at_s: Option<f64>,
     /// The largest rotation of a block; `None` if one of the motions overturns.
     pub largest: Option<PeakSpread>,
+    /// The first difference that makes the outcome of a row with joints that slip uncertain.
+    pub early: Option<EarlyDifference>,
+    /// Slips of the joints at the end; empty if one of the motions overturns, and without slip.
+    pub slips: Vec<SlipSpread>,
+}
+
+/// A half cycle before the largest rotation that differs by more than [`SAME_PEAK_RATIO`] in a repetition.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EarlyDifference {
+    /// When it peaks, in seconds.
+    pub peak_time_s: f64,
+    /// Its difference as a fraction of the larger peak; 1 where the repetition has no [counterpart](HalfCycle::counterpart) of it.
+    pub ratio: f64,
+    /// The repetition.
+    pub repetition: &'static str,
+}
+
+/// Slip of a joint at the end of the motion, in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlipSpread {
+    /// In the motion itself.
+    pub own_m: f64,
+    /// The least of all.
+    pub min_m: f64,
+    /// The largest of all.
+    pub max_m: f64,
+}
+
+impl SlipSpread {
+    /// Largest magnitude.
+    fn most_m(&self) -> f64 {
+        self.min_m.abs().max(self.max_m.abs())
+    }
 }
 
 /// A half cycle of a motion beside its counterparts in the repetitions.
@@ -119,17 +156,57 @@ impl Spread {
             .iter()
             .map(|summary| summary.largest_rotation_rad())
             .collect();
+        let all_stand = runs.iter().all(stands);
+        let mut early = repetitions.iter().filter_map(|(name, other)| {
+            let (peak_time_s, ratio) = early_difference(own, other)?;
+            Some(EarlyDifference {
+                peak_time_s,
+                ratio,
+                repetition: name,
+            })
+        });
         Self {
             repeated: repetitions.iter().map(|(name, _)| *name).collect(),
             outcomes: runs.iter().map(|summary| summary.outcome).collect(),
             same_until_half_cycle: parts.unwrap_or(half_cycles.len()),
             parts_at_s: parts.map(|parts| half_cycles[parts].own.start_s),
             half_cycles,
-            largest: runs
-                .iter()
-                .all(stands)
-                .then(|| PeakSpread::of(&largest_rad)),
+            largest: all_stand.then(|| PeakSpread::of(&largest_rad)),
+            early: early.next(),
+            slips: if all_stand { slips(&runs) } else { Vec::new() },
         }
+    }
+
+    /// Whether the outcome is uncertain: a repetition ends otherwise, or differs too early.
+    #[must_use]
+    pub fn is_uncertain(&self) -> bool {
+        let mut verdicts = self.outcomes.iter().map(|outcome| Verdict::from(*outcome));
+        let own = verdicts.next();
+        self.early.is_some() || verdicts.any(|other| Some(other) != own)
+    }
+
+    /// Whether some joint has slipped in the end.
+    #[must_use]
+    pub fn has_slipped(&self) -> bool {
+        self.most_slip_m() > LEAST_SLIP_M
+    }
+
+    fn most_slip_m(&self) -> f64 {
+        self.slips
+            .iter()
+            .map(SlipSpread::most_m)
+            .fold(0.0, f64::max)
+    }
+
+    /// The joint whose slips at the end differ most, if they differ so much that they are not certain to [`SAME_PEAK_RATIO`] of the
+    /// largest slip of any joint.
+    #[must_use]
+    pub fn uncertain_slip(&self) -> Option<usize> {
+        let range_m = |joint: &usize| self.slips[*joint].max_m - self.slips[*joint].min_m;
+        let joints = 0..self.slips.len();
+        let worst = joints.max_by(|one, other| range_m(one).total_cmp(&range_m(other)));
+        let same_m = AGREEMENT * SAME_PEAK_RATIO * self.most_slip_m();
+        worst.filter(|joint| self.has_slipped() && range_m(joint) > same_m)
     }
 
     /// Whether all ended alike, to the same side if they overturned.
@@ -137,6 +214,56 @@ impl Spread {
     pub fn same_outcome(&self) -> bool {
         self.outcomes.iter().all(|other| *other == self.outcomes[0])
     }
+}
+
+/// Slips of the joints at the end of all these motions; empty where joints do not slip.
+fn slips(runs: &[&Summary]) -> Vec<SlipSpread> {
+    let slipped = |summary: &Summary| summary.row.as_ref().and_then(|row| row.sliding.clone());
+    let Some(all) = runs
+        .iter()
+        .map(|run| slipped(run))
+        .collect::<Option<Vec<_>>>()
+    else {
+        return Vec::new();
+    };
+    let joint = |joint: usize| {
+        let slips_m = all.iter().map(|sliding| sliding.offsets_m[joint]);
+        SlipSpread {
+            own_m: all[0].offsets_m[joint],
+            min_m: slips_m.clone().fold(f64::INFINITY, f64::min),
+            max_m: slips_m.fold(f64::NEG_INFINITY, f64::max),
+        }
+    };
+    (0..all[0].offsets_m.len()).map(joint).collect()
+}
+
+/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]: when it peaks, in
+/// seconds, and by how much it differs. `None` for joints that do not slip, elastic joints, and motions that are known to stay far from
+/// overturning. Where rigid joints slip, already the first half cycle may depend on the step.
+fn early_difference(own: &Summary, other: &Summary) -> Option<(f64, f64)> {
+    let row = own.row.as_ref()?;
+    let slips = row.sliding.is_some() && row.elastic.is_none();
+    let overturns = Verdict::from(own.outcome) == Verdict::Overturns;
+    if !slips || !overturns && is_far(own.peak_potential_over_barrier) {
+        return None;
+    }
+    let others = &other.row.as_ref()?.half_cycles;
+    let cycles = own.half_cycles();
+    let largest_rad = cycles
+        .iter()
+        .map(|cycle| cycle.peak_rad)
+        .fold(0.0, f64::max);
+    let before = cycles
+        .iter()
+        .take_while(|cycle| cycle.peak_rad < largest_rad);
+    let mut differences = before.map(|cycle| {
+        let ratio = cycle.counterpart(others).map_or(1.0, |other| {
+            let [one_rad, other_rad] = [cycle.peak_rad, other.peak_rad];
+            (one_rad - other_rad).abs() / one_rad.max(other_rad)
+        });
+        (cycle.peak_time_s, ratio)
+    });
+    differences.find(|(_, ratio)| *ratio > SAME_PEAK_RATIO)
 }
 
 /// The repetitions of a motion, computed on threads of their own beside it. If the motion itself fails nobody waits for them: they
@@ -234,20 +361,28 @@ impl Verdict {
     }
 }
 
-/// How a repetition contradicts a history that ended like this; `None` if it agrees.
+/// Why a repetition makes the outcome of a history uncertain; `None` if it confirms it.
 pub fn objection(
-    own: Outcome,
+    own: &Summary,
     name: &str,
     repeated: &Result<Summary, SimulationError>,
 ) -> Option<String> {
-    let own = Verdict::from(own);
-    match repeated {
-        Ok(summary) => {
-            let other = Verdict::from(summary.outcome);
-            (other != own).then(|| format!("{}; {} with {name}", own.words(), other.words()))
-        }
-        Err(error) => Some(format!("{}; failed with {name}: {error}", own.words())),
+    let verdict = Verdict::from(own.outcome);
+    let words = verdict.words();
+    let repeated = match repeated {
+        Ok(repeated) => repeated,
+        Err(error) => return Some(format!("{words}; failed with {name}: {error}")),
+    };
+    let other = Verdict::from(repeated.outcome);
+    if other != verdict {
+        return Some(format!("{words}; {} with {name}", other.words()));
     }
+    early_difference(own, repeated).map(|(peak_time_s, ratio)| {
+        let percent = 100.0 * ratio;
+        format!(
+            "{words}; the half cycle at {peak_time_s:.4} s differs by {percent:.1} % with {name}"
+        )
+    })
 }
 
 /// A history with what studies of many cases ask of it.
@@ -383,7 +518,7 @@ impl Jobs for Checks<'_> {
             return;
         };
         if let Some(Ok(own)) = &self.own[case] {
-            self.doubts[case] = objection(own.outcome, self.names[repetition], &answer);
+            self.doubts[case] = objection(own, self.names[repetition], &answer);
         }
         if self.doubts[case].is_none() {
             self.repeat(case, repetition + 1);
@@ -419,7 +554,12 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
                     barrier_j.map(|barrier_j| row.largest_potential_j / barrier_j)
                 }
             };
-            ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+            is_far(ratio)
         }
     }
+}
+
+/// Whether the largest potential energy over the barrier is known, and far from it.
+fn is_far(ratio: Option<f64>) -> bool {
+    ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
 }

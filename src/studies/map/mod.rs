@@ -452,7 +452,7 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcom
         let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
         for (name, repeated) in &repeated {
             let repeated = &repeated[index];
-            doubt = doubt.or_else(|| objection(own.outcome, name, repeated));
+            doubt = doubt.or_else(|| objection(&own, name, repeated));
             match repeated {
                 Ok(other) => names.push(other.outcome.name()),
                 Err(error) => failed = failed.or(Some(format!("with {name}: {error}"))),

@@ -323,6 +323,21 @@ fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
         object.number("max", peak.max_rad)?;
         Ok(Value::Object(object.0))
     };
+    let mut slips_m = Vec::new();
+    for slip in &spread.slips {
+        let mut object = Object::default();
+        object.number("own", slip.own_m)?;
+        object.number("min", slip.min_m)?;
+        object.number("max", slip.max_m)?;
+        slips_m.push(Value::Object(object.0));
+    }
+    let early = spread.early.map(|early| {
+        json!({
+            "peak_time_s": early.peak_time_s,
+            "ratio": early.ratio,
+            "repetition": early.repetition.replace(' ', "_"),
+        })
+    });
     let mut half_cycles = Vec::new();
     for cycle in &spread.half_cycles {
         let peak_rad = cycle.peak.as_ref().map(peak).transpose()?;
@@ -339,5 +354,7 @@ fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
         "same_until_half_cycle": spread.same_until_half_cycle,
         "parts_at_s": spread.parts_at_s,
         "largest_rotation_rad": largest,
+        "early_difference": early,
+        "slips_m": slips_m,
     }))
 }

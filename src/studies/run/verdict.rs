@@ -21,12 +21,7 @@ impl Evidence<'_> {
     /// Whether the structure overturns, as far as this is known.
     pub(super) fn verdict(&self) -> Verdict {
         let own = Verdict::from(self.history.outcome);
-        let others = self
-            .repeated()
-            .into_iter()
-            .flat_map(|spread| &spread.outcomes);
-        let mut others = others.map(|other| Verdict::from(*other));
-        if own != Verdict::Incomplete && others.any(|other| other != own) {
+        if own != Verdict::Incomplete && self.repeated().is_some_and(Spread::is_uncertain) {
             return Verdict::Uncertain;
         }
         own
@@ -63,6 +58,19 @@ impl Evidence<'_> {
                 .zip(outcomes)
                 .filter(|(_, other)| Verdict::from(**other) != own);
             let names: Vec<&str> = other.map(|(name, _)| *name).collect();
+            if let (true, Some(early)) = (names.is_empty(), spread.and_then(|spread| spread.early))
+            {
+                let percent = 100.0 * early.ratio;
+                let verdict = if own == Verdict::Overturns {
+                    "overturns"
+                } else {
+                    "survives"
+                };
+                return format!(
+                    "UNCERTAIN: {verdict}, but the half cycle at {:.4} s, before the largest rotation, differs by {percent:.1} % with {}",
+                    early.peak_time_s, early.repetition
+                );
+            }
             let [does, otherwise] = match own {
                 Verdict::Overturns => ["overturns", "survives"],
                 _ => ["survives", "overturns"],

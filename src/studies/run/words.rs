@@ -818,6 +818,16 @@ fn sure(spread: &Spread) -> String {
             write!(text, "\n    LARGEST ROTATION {} rad", ends(&largest))
         };
     }
+    if let Some(joint) = spread.uncertain_slip() {
+        let [min_mm, max_mm] =
+            [spread.slips[joint].min_m, spread.slips[joint].max_m].map(|m| 1e3 * m);
+        let _ = write!(
+            text,
+            "\n    FINAL SLIP of joint {joint} {min_mm:.3} to {max_mm:.3} mm"
+        );
+    } else if spread.has_slipped() {
+        let _ = write!(text, "\n    final slips within {percent} % of the largest");
+    }
     text.push('\n');
     text
 }
