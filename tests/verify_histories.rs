@@ -314,8 +314,19 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     let seven = &*SEVEN;
     assert!(seven.is_mean() && seven.passes() == [true, true]);
     for (side, own) in seven.sides.iter().enumerate() {
-        let mean_m = peaks(&seven.records, side).iter().sum::<f64>() / 7.0;
+        let peaks_m = peaks(&seven.records, side);
+        let mean_m = peaks_m.iter().sum::<f64>() / 7.0;
         assert!((own.demand_m.unwrap() / mean_m - 1.0).abs() < 1e-12);
+        // The mean scatters as the peaks do, over the root of their number; a bootstrap takes their own standard deviation.
+        let count = peaks_m.len() as f64;
+        let squares: f64 = peaks_m.iter().map(|peak_m| (peak_m - mean_m).powi(2)).sum();
+        let error_m = squares.sqrt() / count;
+        let [low_m, high_m] = own.mean_interval_m.unwrap();
+        assert!(low_m < mean_m && mean_m < high_m);
+        assert!(
+            ((high_m - low_m) / (2.0 * 1.96 * error_m) - 1.0).abs() < 0.2,
+            "{low_m} {high_m} {error_m}"
+        );
         assert!((own.capacity_m / (0.4 * own.d0_m) - 1.0).abs() < 1e-12);
         assert!((own.capacity_over_fc_m * 1.35 / own.capacity_m - 1.0).abs() < 1e-12);
         assert_eq!(own.exceeded, [0, 0]);
@@ -338,6 +349,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         let own = few.sides[0];
         let largest_m = peaks(&few.records, 0).into_iter().fold(0.0, f64::max);
         assert!(!few.is_mean() && own.demand_m == Some(largest_m));
+        assert_eq!(own.mean_interval_m, None);
         let within =
             [own.capacity_m, own.capacity_over_fc_m].map(|allowed_m| largest_m <= allowed_m);
         assert_eq!((few.passes(), within), (passes, passes), "{records}");

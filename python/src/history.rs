@@ -499,6 +499,11 @@ impl History {
         Ok(summary.map_err(not_written)?.to_string())
     }
 
+    /// `warnings` of `summary.json`.
+    fn warnings(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| run::warnings(&self.shaken(), &*self.model, &self.summary))
+    }
+
     /// `report.html` with these words on it. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
         let scenario = self.shaken();

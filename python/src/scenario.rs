@@ -236,6 +236,11 @@ impl Scenario {
         Ok(json!(impacts).to_string())
     }
 
+    /// Its unlikely numbers, a sentence each.
+    fn unlikely(&self, py: Python<'_>) -> Vec<String> {
+        py.detach(|| self.inner.unlikely())
+    }
+
     /// Names of the bodies.
     fn bodies(&self, py: Python<'_>) -> PyResult<Vec<String>> {
         Ok(self.model(py)?.bodies())

@@ -10,7 +10,8 @@
 
 Everything is computed by the Rust library of the same name; results are bit-identical to the program's. Lengths are in
 metres, times in seconds, and ground accelerations in units of gravity if their name ends in ``_g``. x is to the right,
-rotations are positive anticlockwise. An invalid value raises ``ValueError`` with the library's explanation.
+rotations are positive anticlockwise. An invalid value raises ``ValueError`` with the library's explanation. An unlikely value, and
+whatever limits the trust in a result, is an :class:`ArchrockWarning`.
 """
 
 from importlib.metadata import version as _version
@@ -46,9 +47,11 @@ from ._studies import (
     threshold,
     verify,
 )
+from ._warnings import ArchrockWarning
 
 __all__ = [
     "Arch",
+    "ArchrockWarning",
     "Capacity",
     "ChainLink",
     "Check",

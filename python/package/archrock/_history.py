@@ -12,6 +12,7 @@ import numpy as np
 
 from . import _native
 from ._hinge import Hinge
+from ._warnings import warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -148,6 +149,7 @@ class History:
         self._origin = origin
         self._folder = folder
         self._cache: dict[str, Any] | None = None
+        warn(native.warnings())
 
     # Samples
 

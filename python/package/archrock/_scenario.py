@@ -16,6 +16,7 @@ from ._native import Scenario as NativeScenario
 from ._settings import Settings
 from ._structure import Model, Structure
 from ._tables import Tables, to_toml
+from ._warnings import warn
 
 
 class Scenario(Described):
@@ -196,6 +197,7 @@ class Scenario(Described):
         Raises:
             ValueError: when the library cannot find such an onset.
         """
+        warn(self._native.unlikely())
         return Limit._of(json.loads(self._native.limit_json()))
 
     def to_toml(self) -> str:

@@ -12,6 +12,7 @@ from ._hinge import ChainLink, Limit, Mechanism
 from ._native import Scenario as NativeScenario
 from ._settings import Settings
 from ._tables import Tables, arguments, plain_table, to_toml
+from ._warnings import warn
 
 _MOST_BASES = 64
 
@@ -81,6 +82,7 @@ class Structure(Described):
         Raises:
             ValueError: when the library cannot find such an onset.
         """
+        warn(self._native.unlikely())
         return Limit._of(json.loads(self._native.limit_json()))
 
     def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:

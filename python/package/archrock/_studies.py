@@ -10,7 +10,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, Union
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ._ground import Ground, Pulse, Record, _csv
 from ._history import _axes, _figure_of
 from ._scenario import Scenario
 from ._structure import Structure
+from ._warnings import warn
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -528,6 +529,15 @@ def _allowed(threads: int | None) -> int | None:
     return threads
 
 
+_OfStudy = TypeVar("_OfStudy", bound=Files)
+
+
+def _warned(results: _OfStudy) -> _OfStudy:
+    """Issues the warnings of new results."""
+    warn(results.summary.get("warnings", ()))
+    return results
+
+
 def _study(
     kind: str, scenario: Scenario, threads: int | None, progress: Progress | None
 ) -> list[tuple[str, bytes]]:
@@ -603,12 +613,12 @@ def overturning_map(
     """
     if _whole(of, {"ground": ground, "axes": axes, "spread": spread, **settings}):
         assert isinstance(of, Scenario)
-        return OverturningMap(_study("map", of, threads, progress))
+        return _warned(OverturningMap(_study("map", of, threads, progress)))
     assert isinstance(of, Structure)
     if ground is None or axes is None:
         raise ValueError("a map needs a ground motion and two axes")
     scenario = map_scenario(of, ground, axes, spread=bool(spread), **settings)
-    return OverturningMap(_study("map", scenario, threads, progress))
+    return _warned(OverturningMap(_study("map", scenario, threads, progress)))
 
 
 def spectrum(
@@ -640,10 +650,10 @@ def spectrum(
     table = {"p_t": p_t, "acceleration_over_incipient": acceleration_over_incipient}
     if _whole(of, {"ground": ground, **table, **settings}):
         assert isinstance(of, Scenario)
-        return Spectrum(_study("spectrum", of, threads, progress))
+        return _warned(Spectrum(_study("spectrum", of, threads, progress)))
     assert isinstance(of, Structure)
     scenario = Scenario.of(of, ground, spectrum=table, **settings)
-    return Spectrum(_study("spectrum", scenario, threads, progress))
+    return _warned(Spectrum(_study("spectrum", scenario, threads, progress)))
 
 
 def suite_scenario(
@@ -701,7 +711,7 @@ def suite(
     others = {"records": records, "peaks_g": peaks_g, "scales": scales, "both_signs": both_signs}
     if _whole(of, {**others, **settings}):
         assert isinstance(of, Scenario)
-        return Suite(_study("suite", of, threads, progress))
+        return _warned(Suite(_study("suite", of, threads, progress)))
     assert isinstance(of, Structure)
     scenario = suite_scenario(
         of,
@@ -711,7 +721,7 @@ def suite(
         both_signs=both_signs is not False,
         **settings,
     )
-    return Suite(_study("suite", scenario, threads, progress))
+    return _warned(Suite(_study("suite", scenario, threads, progress)))
 
 
 def threshold(
@@ -748,7 +758,9 @@ def threshold(
         assert isinstance(of, Structure)
         scenario = Scenario.of(of, ground, **settings)
     factors = (from_factor, to_factor, stride)
-    return Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
+    return _warned(
+        Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
+    )
 
 
 def ensemble(
@@ -773,7 +785,7 @@ def ensemble(
     """
     if not isinstance(scenario, Scenario):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
-    return Histories(_study("uncertain", scenario, threads, progress))
+    return _warned(Histories(_study("uncertain", scenario, threads, progress)))
 
 
 def verify(
@@ -809,6 +821,7 @@ def verify(
     records = {"slv_records": slv_records, "slc_records": slc_records}
     if _whole(of, {"demand": demand, "title": title, **records, **how}):
         assert isinstance(of, Scenario)
+        warn(of._native.unlikely())
         return Check(_native.verify(of._native))
     assert isinstance(of, Structure)
     if demand is None:
@@ -824,6 +837,7 @@ def verify(
     scenario = Scenario.of(
         of, title=title, demand=table, verify=how or None, files=files, model=of._model
     )
+    warn(scenario._native.unlikely())
     return Check(_native.verify(scenario._native))
 
 
@@ -890,6 +904,7 @@ def capacity(of: Structure | Scenario) -> Capacity:
     """
     if not isinstance(of, (Structure, Scenario)):
         raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
+    warn(of._native.unlikely())
     return Capacity(_native.capacity(of._native))
 
 
@@ -926,6 +941,7 @@ def compute_part(
     """
     if not isinstance(scenario, Scenario):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
+    warn(scenario._native.unlikely())
     index, count = shard
     path = _native.compute_part(
         scenario._native, study, f"{index}/{count}", folder, _allowed(threads), progress
@@ -950,4 +966,4 @@ def merge(
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
     study, files = _native.merge(list(parts), native)
-    return _KINDS[study](files)
+    return _warned(_KINDS[study](files))

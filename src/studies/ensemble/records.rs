@@ -165,23 +165,52 @@ fn distributions(
     ]
 }
 
-impl Told<'_, Capacity> {
-    fn by_record(asked: &Capacities, capacity: &Capacity) -> Intensities {
+impl<'a> Told<'a, Capacity> {
+    /// The number of signs of each record that count: one if every mirrored record gives exactly what the record itself gives, as with
+    /// four links of a symmetric structure.
+    fn counted_signs(&self, asked: &Capacities) -> usize {
+        let mut all = self
+            .own
+            .iter()
+            .chain(self.answered().map(|(_, answer)| answer));
+        let alike = all.all(|capacity| {
+            let mut records = capacity.0.chunks(asked.signs());
+            records.all(|signs| signs.iter().all(|edge| *edge == signs[0]))
+        });
+        if alike { 1 } else { asked.signs() }
+    }
+
+    /// The edges that count: of the scenario itself, and of all samples.
+    pub(crate) fn counted(&self, asked: &Capacities) -> [Vec<&'a FirstEdge>; 2] {
+        let signs = self.counted_signs(asked);
+        let of = |capacity: &'a Capacity| -> Vec<&'a FirstEdge> {
+            let records = capacity.0.chunks(asked.signs());
+            records.flat_map(|edges| &edges[..signs]).collect()
+        };
+        [
+            self.own.iter().flat_map(of).collect(),
+            self.answered()
+                .flat_map(|(_, capacity)| of(capacity))
+                .collect(),
+        ]
+    }
+
+    fn by_record(asked: &Capacities, signs: usize, capacity: &Capacity) -> Intensities {
         let records = capacity.0.chunks(asked.signs());
-        records
-            .map(|edges| edges.iter().map(FirstEdge::strength).collect())
-            .collect()
+        let strengths = |edges: &[FirstEdge]| edges.iter().map(FirstEdge::strength).collect();
+        records.map(|edges| strengths(&edges[..signs])).collect()
     }
 
     /// The fragility due to the records, to the uncertain numbers, and to both.
     pub(crate) fn fragilities(&self, asked: &Capacities) -> Fragilities {
+        let signs = self.counted_signs(asked);
         let own = self
             .own
             .as_ref()
-            .map_or_else(|_| Vec::new(), |own| Self::by_record(asked, own));
+            .map_or_else(|_| Vec::new(), |own| Self::by_record(asked, signs, own));
         let samples: Vec<Intensities> = self
             .answered()
-            .map(|(_, capacity)| Self::by_record(asked, capacity))
+            .map(|(_, capacity)| Self::by_record(asked, signs, capacity))
             .collect();
         let count = asked.suite.records.len();
         let all: Vec<usize> = (0..count).collect();

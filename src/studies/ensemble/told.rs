@@ -552,12 +552,7 @@ fn first_of_capacities(
     fragilities: &Fragilities,
 ) -> String {
     let column = asked.measure().column();
-    let all: Vec<&FirstEdge> = told
-        .answered()
-        .flat_map(|(_, capacity)| &capacity.0)
-        .collect();
-    let own = told.own.as_ref().ok();
-    let own: Vec<&FirstEdge> = own.iter().flat_map(|own| &own.0).collect();
+    let [own, all] = told.counted(asked);
     let at = |part: f64, of: &[&FirstEdge], column: &str| {
         let found = FirstStrength::of(of.iter().copied(), part);
         let unknown = "nowhere up to the highest level";
@@ -608,8 +603,8 @@ pub(super) fn capacities(
     let mut json = beginning(told);
     json["intensity"] = json!(column_name);
     json["fragility"] = fragilities.to_json();
-    let all_edges = || told.answered().flat_map(|(_, capacity)| &capacity.0);
-    let at_lowest = all_edges().filter(|edge| edge.at_most).count();
+    let [_, counted] = told.counted(asked);
+    let at_lowest = counted.iter().filter(|edge| edge.at_most).count();
     json["at_lowest_level"] = json!(at_lowest);
     let (name, of) = decides[0].to_json();
     json["what_matters"] = json!({ name: of });
@@ -695,7 +690,7 @@ pub(super) fn capacities(
         format!(
             "{at_lowest} of {} records and samples overturn at the lowest level already, which counts as their intensity: the \
              fractiles may be lower",
-            all_edges().count()
+            counted.len()
         )
     }));
     words.extend(without_answer(told));

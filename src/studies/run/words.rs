@@ -605,15 +605,29 @@ fn cut_short(scenario: &Scenario, history: &Summary) -> String {
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
-    let thrust = history.thrust.as_ref();
-    let rough = thrust.filter(|thrust| thrust.largest_excess.value > EXCESS_LEVELS[1]);
-    let trust = rough
-        .filter(|_| model.as_mechanisms().is_some())
-        .and_then(|thrust| trust(thrust, scenario.structure(), &[]));
+    let structure = scenario.structure();
+    // The ground cannot hold a column down; an arch is four links as long as its line of thrust stays almost inside.
+    let most = if structure.thrusts() {
+        EXCESS_LEVELS[1]
+    } else {
+        0.0
+    };
+    let thrust = history
+        .thrust
+        .as_ref()
+        .filter(|_| model.as_mechanisms().is_some());
+    let leaves = thrust.filter(|thrust| thrust.largest_excess.value > most);
+    let evidence = Evidence {
+        scenario,
+        history,
+        spread: None,
+        varied: &[],
+    };
     let caveats = [
-        trust,
+        (history.outcome == Outcome::Incomplete).then(|| evidence.in_words()),
+        leaves.and_then(|thrust| trust(thrust, structure, &[])),
         needs(scenario, history),
-        Some(cut_short(scenario, history)),
+        (history.outcome != Outcome::Incomplete).then(|| cut_short(scenario, history)),
     ];
     // Words of the report, whose lines are indented.
     let caveats = caveats.into_iter().flatten();

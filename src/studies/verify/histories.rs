@@ -13,6 +13,7 @@ use crate::dynamics::history::{EventKind, Outcome, State};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Scenario, Series, StateRule};
+use crate::studies::ensemble::statistics::{bootstrap, interval};
 
 /// With this many records or more the mean counts, otherwise the largest (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;
@@ -59,6 +60,9 @@ pub struct HistorySide {
     pub restitution: Option<f64>,
     /// Mean of the peaks, or the largest if there are few records; `None` if one overturns.
     pub demand_m: Option<f64>,
+    /// Ends of the 95 % interval of the mean, in metres, by bootstrap over the records: after impacts peaks scatter. `None` if the
+    /// largest peak counts, or one overturns.
+    pub mean_interval_m: Option<[f64; 2]>,
     /// Displacement that may be reached, in metres.
     pub capacity_m: f64,
     /// The same divided by FC.
@@ -205,13 +209,20 @@ fn history_side(
     let peaks: Vec<Peak> = records.iter().map(|record| record.peaks[side]).collect();
     let overturned = peaks.iter().any(|peak| peak.overturned);
     let displacements = || peaks.iter().map(|peak| peak.displacement_m);
-    #[expect(clippy::cast_precision_loss, reason = "records are few")]
-    let demand_m = if peaks.len() >= FOR_THE_MEAN {
+    let is_mean = peaks.len() >= FOR_THE_MEAN;
+    let demand_m = if is_mean {
         displacements().sum::<f64>() / peaks.len() as f64
     } else {
         displacements().fold(0.0, f64::max)
     };
     let demand_m = (!overturned).then_some(demand_m);
+    let mean_interval_m = demand_m.filter(|_| is_mean).and_then(|_| {
+        let means = bootstrap(peaks.len()).map(|drawn| {
+            let drawn = drawn.iter().map(|record| peaks[*record].displacement_m);
+            drawn.sum::<f64>() / peaks.len() as f64
+        });
+        interval(means.collect())
+    });
     let divisors = [1.0, confidence_factor];
     let exceeded = divisors.map(|divisor| {
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
@@ -222,6 +233,7 @@ fn history_side(
         sway,
         restitution: None,
         demand_m,
+        mean_interval_m,
         capacity_m,
         capacity_over_fc_m: capacity_m / confidence_factor,
         d0_m,

@@ -915,7 +915,14 @@ fn history_side(state: LimitState, histories: &Histories, side: &HistorySide) ->
     let demand = side
         .demand_m
         .map_or("a record overturns it".to_owned(), |demand_m| {
-            format!("{counted} <b>{}</b> m", n(demand_m, 5))
+            let spread = side.mean_interval_m.map_or(String::new(), |[low, high]| {
+                format!(
+                    " (95 %: {} to {} m, by bootstrap over the records)",
+                    n(low, 5),
+                    n(high, 5)
+                )
+            });
+            format!("{counted} <b>{}</b> m{spread}", n(demand_m, 5))
         });
     let restitution = side.restitution.map_or(String::new(), |kept| {
         format!(

@@ -228,6 +228,7 @@ fn histories(one: &Histories) -> Value {
         let told = json!({
             "restitution": side.restitution,
             "demand_m": side.demand_m,
+            "mean_interval_m": side.mean_interval_m,
             "capacity_m": side.capacity_m,
             "capacity_over_fc_m": side.capacity_over_fc_m,
             "d0_m": side.d0_m,

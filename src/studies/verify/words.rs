@@ -133,10 +133,13 @@ fn in_histories(histories: &Histories) -> String {
     let mut text = String::new();
     for side in &histories.sides {
         let demand = match side.demand_m {
-            Some(demand_m) => format!(
-                "{counted} of {} peaks {demand_m:.5} m",
-                histories.records.len()
-            ),
+            Some(demand_m) => {
+                let spread = side.mean_interval_m.map_or(String::new(), |[low, high]| {
+                    format!(" (95 %: {low:.5} to {high:.5} m)")
+                });
+                let count = histories.records.len();
+                format!("{counted} of {count} peaks {demand_m:.5} m{spread}")
+            }
             None => "overturns".to_owned(),
         };
         let _ = writeln!(
