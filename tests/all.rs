@@ -49,6 +49,7 @@ mod model;
 mod motion;
 mod names;
 mod one_story;
+mod outcomes;
 mod pictures;
 mod points;
 mod properties;

@@ -225,7 +225,7 @@ fn a_map_does_not_cut_pulses_off() {
     let text = |axis: &str| {
         format!(
             "{ARCH}[ground.ricker]\namplitude_g = 1\nduration_s = 1\nstart_s = 1.0\n\
-             [map]\n{axis}\namplitude_g = [1, 2]"
+             [simulation]\nduration_s = 10\n[map]\n{axis}\namplitude_g = [1, 2]"
         )
     };
     // Ricker wavelets last four durations.
@@ -237,7 +237,7 @@ fn a_map_does_not_cut_pulses_off() {
     assert!(
         errors
             .to_string()
-            .contains("s.toml:9:1: [map] has pulses that last until 11 s"),
+            .contains("s.toml:11:1: [map] has pulses that last until 11 s"),
         "{errors}"
     );
 }

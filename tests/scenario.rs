@@ -72,7 +72,7 @@ fn defaults() {
     assert_eq!(
         *scenario.simulation(),
         Simulation {
-            duration_s: 10.0,
+            duration_s: None,
             output_step_s: 0.005,
             relative_tolerance: 1e-9,
             rest_energy_ratio: 1e-8,
@@ -297,7 +297,7 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
         assert_eq!(error.argument, "gravity_m_s2");
     }
     let simulation = Simulation {
-        duration_s: 20.0,
+        duration_s: Some(20.0),
         output_step_s: 20.0,
         relative_tolerance: 1e-6,
         rest_energy_ratio: 0.1,

@@ -1320,7 +1320,7 @@ fn distributions_of_models_are_compared() {
         let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
         write(at, &format!("{name}.csv"), &table);
     }
-    let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 4.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
+    let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
                  both_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n[impact]\n";
     write(at, "s.toml", suite);
     let said = done(

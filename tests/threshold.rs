@@ -651,7 +651,7 @@ fn names(models: &[(String, Value)]) -> Vec<&str> {
 fn both_models_have_their_own_scenario() {
     let root = tempfile::tempdir().unwrap();
     let folder = root.path();
-    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 4.0\n";
+    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 12.0\n";
     file(
         folder,
         &SCENARIO.replace("[ground", &format!("voussoirs = 7\n{impact}[ground")),

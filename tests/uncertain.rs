@@ -473,6 +473,7 @@ fn maps_tell_the_probability_of_each_cell() {
             "uncertain",
             "rest",
             "never_moved",
+            "vibrates",
             "still_rocking",
         ];
         let sum: f64 = all.iter().map(|name| row.number(*name)).sum();

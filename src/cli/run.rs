@@ -484,7 +484,7 @@ impl Place {
         let folder = self.open(&run.files())?;
         let stdout = || -> Box<dyn io::Write> { Box::new(BufWriter::new(io::stdout().lock())) };
         let rotations = self.to_stdout.then(stdout);
-        let progress = RunProgress::new(scenario.simulation().duration_s, quiet);
+        let progress = RunProgress::new(scenario.request().end_s, quiet);
         let told = run.compute(folder, rotations, &mut |stage| progress.show(stage))?;
         Ok(told)
     }

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use serde::Serialize;
 
-use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Count, Number, OneOf, Reading, Table};
 use crate::argument::short;
@@ -156,7 +155,8 @@ impl ElasticTable {
         &self,
         table: &mut Table<'_>,
         structure: &Structure,
-        simulation: &Simulation,
+        gravity_m_s2: f64,
+        end_s: f64,
     ) -> Reading<()> {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
@@ -167,7 +167,7 @@ impl ElasticTable {
             return Ok(());
         };
         let joints = joints.on_supports(self.supports.displacements());
-        let rest = joints.rest([0.0, -simulation.gravity_m_s2]);
+        let rest = joints.rest([0.0, -gravity_m_s2]);
         if let Err(RestError::Supports(part)) = rest {
             return Err(table.wrong(
                 "supports",
@@ -216,13 +216,13 @@ impl ElasticTable {
             Some(_) => Ok(()),
             None => {
                 let step_s = ElasticJoints::default_step_s(&joints);
-                if simulation.duration_s <= ElasticOptions::MOST_STEPS * step_s {
+                if end_s <= ElasticOptions::MOST_STEPS * step_s {
                     return Ok(());
                 }
                 let most = format!(
                     "makes steps of {} s, too many for a motion of {} s: give less damping, or a shorter [simulation] duration_s",
                     short(step_s),
-                    short(simulation.duration_s)
+                    short(end_s)
                 );
                 let keys = ["damping_ratio", "damping_time_s"];
                 let given = keys

@@ -221,13 +221,14 @@ impl Map {
         end_s: f64,
         simulation: &Simulation,
     ) -> Reading<()> {
-        if end_s <= simulation.duration_s {
+        let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
+        if end_s <= duration_s {
             return Ok(());
         }
         Err(table.wrong_itself(format!(
             "has {what} until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
             plain(end_s),
-            plain(simulation.duration_s)
+            plain(duration_s)
         )))
     }
 }

@@ -371,7 +371,14 @@ impl Scenario {
             verify.suits(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), structure) = (motion?, structure?);
-        motion.check(table, &structure, simulation.as_ref().ok())?;
+        let until = simulation
+            .as_ref()
+            .map(|simulation| {
+                let end_s = simulation.end_s(ground_motion.end_s(), structure.size_m());
+                (simulation.gravity_m_s2, end_s)
+            })
+            .ok();
+        motion.check(table, &structure, until)?;
         if !ties.is_empty() && table.gives("initial") {
             let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
             return Err(table.wrong("initial", wrong));
@@ -396,6 +403,8 @@ impl Scenario {
             ground_motion: Arc::new(GroundMotion::still()),
         };
         certain.ground_motion = Arc::new(certain.under_both_feet(ground_motion));
+        let end_s = certain.request().end_s;
+        certain.simulation.check_default_end(table, end_s)?;
         let uncertain = uncertain?.map(|uncertain| {
             let resolved = certain.to_json();
             certain.as_given = uncertain.as_given(table, &resolved);
@@ -539,10 +548,19 @@ impl Scenario {
     #[must_use]
     pub fn request(&self) -> Request {
         Request {
-            gravity_m_s2: self.simulation.gravity_m_s2,
-            end_s: self.simulation.duration_s,
-            output_step_s: self.simulation.output_step_s,
             initial: self.initial,
+            ..self.request_on(&self.ground_motion, &self.structure)
+        }
+    }
+
+    /// The request for a history of a structure from rest on a ground motion, whatever `[initial]` says.
+    #[must_use]
+    pub(crate) fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
+        Request {
+            gravity_m_s2: self.simulation.gravity_m_s2,
+            end_s: self.simulation.end_s(ground.end_s(), structure.size_m()),
+            output_step_s: self.simulation.output_step_s,
+            initial: None,
             relative_tolerance: self.simulation.relative_tolerance,
             rest_energy_ratio: self.simulation.rest_energy_ratio,
         }
@@ -551,13 +569,10 @@ impl Scenario {
     /// The same request from rest, whatever `[initial]` says; studies use it for their histories.
     #[must_use]
     pub fn request_from_rest(&self) -> Request {
-        Request {
-            initial: None,
-            ..self.request()
-        }
+        self.request_on(&self.ground_motion, &self.structure)
     }
 
-    /// The scenario as TOML text, with every default written out.
+    /// The scenario as TOML text, with every default written out, except for a `duration_s` that follows the ground motion.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
     #[must_use]
@@ -568,7 +583,27 @@ impl Scenario {
         }
     }
 
-    /// The scenario as JSON, with every default written out and the keys of the file.
+    /// The scenario as TOML text, as [`Scenario::to_toml`] gives it, and when the simulation ends by default.
+    #[must_use]
+    pub fn to_resolved_toml(&self) -> String {
+        match self.to_resolved_json() {
+            Value::Object(table) => toml_text(&table),
+            _ => unreachable!("a scenario is a table"),
+        }
+    }
+
+    /// The scenario as JSON, as [`Scenario::to_json`] gives it, and when the simulation ends by default.
+    #[must_use]
+    pub fn to_resolved_json(&self) -> Value {
+        let mut json = self.to_json();
+        if let Some(Value::Object(simulation)) = json.get_mut("simulation") {
+            simulation.shift_insert(0, "duration_s".to_owned(), self.request().end_s.into());
+        }
+        json
+    }
+
+    /// The scenario as JSON, with every default written out and the keys of the file, except for a `duration_s` that follows the ground
+    /// motion: it would not follow another one.
     #[must_use]
     pub fn to_json(&self) -> Value {
         fn json(value: &impl Serialize) -> Value {

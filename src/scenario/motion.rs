@@ -4,7 +4,6 @@ use serde_json::{Value, json};
 
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
-use super::simulation::Simulation;
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact, supports};
@@ -167,12 +166,12 @@ impl Motion {
         }
     }
 
-    /// Refuses options that do not fit a structure.
+    /// Refuses options that do not fit a structure under this gravity in m/s2, or a history that ends then.
     pub(super) fn check(
         &self,
         table: &mut Table<'_>,
         structure: &Structure,
-        simulation: Option<&Simulation>,
+        until: Option<(f64, f64)>,
     ) -> Reading<()> {
         if let Some(movements) = self.supports() {
             supports::check(table, structure, &movements)?;
@@ -190,8 +189,8 @@ impl Motion {
             Self::ElasticJoints(joints) => {
                 let coefficient = joints.friction_coefficient;
                 free_hinges::carries(table, "elastic_joints", structure, coefficient)?;
-                simulation.map_or(Ok(()), |simulation| {
-                    joints.check(table, structure, simulation)
+                until.map_or(Ok(()), |(gravity_m_s2, end_s)| {
+                    joints.check(table, structure, gravity_m_s2, end_s)
                 })
             }
         }

@@ -16,9 +16,10 @@ const REST_ENERGY_RATIO: Number = Number::within(&Request::REST_ENERGY_RATIO);
 /// The output has at least one step and at most 1e7 of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Simulation {
-    /// Longest time to simulate, in 1e-6 to 1e6.
-    pub duration_s: f64,
-    /// Time between rows of the output, at least 1e-6 and at most `duration_s`.
+    /// Longest time to simulate, in 1e-6 to 1e6; if `None`, the default of [`Simulation::end_s`], which follows the ground motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration_s: Option<f64>,
+    /// Time between rows of the output, at least 1e-6 and at most the time to simulate.
     pub output_step_s: f64,
     /// Allowed error of the integrator, relative to the state, in 1e-13 to 1e-3.
     pub relative_tolerance: f64,
@@ -31,9 +32,19 @@ pub struct Simulation {
 impl Simulation {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let default = Request::default();
-        let duration_s = table.or("duration_s", &TIME_S, default.end_s);
-        let output_step_s = table.or("output_step_s", &TIME_S, default.output_step_s);
-        let rows = Self::check_rows(table, duration_s, output_step_s);
+        let duration_s = table.optional("duration_s", &TIME_S);
+        let output_step_s = table.or(OUTPUT_STEP_S, &TIME_S, default.output_step_s);
+        let rows = match (&duration_s, &output_step_s) {
+            (Ok(Some(duration_s)), Ok(step_s)) => rows_fault(*duration_s, *step_s),
+            _ => None,
+        };
+        // The step is easier to change.
+        let culprit = if table.gives(OUTPUT_STEP_S) {
+            OUTPUT_STEP_S
+        } else {
+            "duration_s"
+        };
+        let rows = rows.map_or(Ok(()), |wrong| Err(table.wrong(culprit, wrong)));
         let relative_tolerance = table.or(
             "relative_tolerance",
             &RELATIVE_TOLERANCE,
@@ -55,36 +66,60 @@ impl Simulation {
         })
     }
 
-    /// Checks that the output has at least one step and fits on a disk.
-    fn check_rows(
-        table: &mut Table<'_>,
-        duration_s: Reading<f64>,
-        output_step_s: Reading<f64>,
-    ) -> Reading<()> {
-        let (duration_s, step_s) = (duration_s?, output_step_s?);
-        let rows = duration_s / step_s;
-        let wrong = if rows < 1.0 {
-            format!(
-                "makes the output step of {} s longer than the run of {} s; the step must not exceed the run",
-                plain(step_s),
-                plain(duration_s)
-            )
-        } else if rows > Request::MOST_SAMPLES {
-            format!(
-                "makes {rows:.0} rows of output, every {} s for {} s; at most {:.0} are allowed",
-                plain(step_s),
-                plain(duration_s),
-                Request::MOST_SAMPLES
-            )
-        } else {
-            return Ok(());
+    /// When a history ends at the latest, in seconds: at `duration_s`, or by default after the end of the ground motion, by the
+    /// larger of 10 s and 20 times the square root of size over gravity, but after ten million output steps at the latest. In that time a structure that survives comes to rest, or
+    /// nearly so. The size is that of [`Structure::size_m`](super::Structure::size_m).
+    #[must_use]
+    pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
+        let after_s = AFTER_RATIO * (size_m / self.gravity_m_s2).sqrt();
+        let default_s = ground_end_s + after_s.max(AFTER_S);
+        let most_s = Request::TIME_S
+            .end()
+            .min(Request::MOST_SAMPLES * self.output_step_s);
+        self.duration_s.unwrap_or(default_s.min(most_s))
+    }
+
+    /// Checks that the output of a history that ends by default has at least one step and fits on a disk.
+    pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> Reading<()> {
+        let fault = match self.duration_s {
+            None => rows_fault(end_s, self.output_step_s),
+            Some(_) => None,
         };
-        // The defaults agree with each other, so at least one of the two is given; the step is easier to change.
-        let culprit = if table.gives("output_step_s") {
-            "output_step_s"
-        } else {
-            "duration_s"
-        };
-        Err(table.wrong(culprit, wrong))
+        match fault {
+            None => Ok(()),
+            Some(wrong) if table.gives_in("simulation", OUTPUT_STEP_S) => {
+                Err(table.wrong_in("simulation", OUTPUT_STEP_S, wrong))
+            }
+            Some(wrong) => Err(table.wrong_itself(format!(
+                "{wrong}; give `duration_s` or `output_step_s` in [simulation]"
+            ))),
+        }
+    }
+}
+
+const OUTPUT_STEP_S: &str = "output_step_s";
+/// By default a history ends this long after the ground motion, in seconds ...
+const AFTER_S: f64 = 10.0;
+/// ... or this many times the square root of size over gravity, if that is longer.
+const AFTER_RATIO: f64 = 20.0;
+
+/// Why the output of a history is too short or too long, if it is.
+fn rows_fault(duration_s: f64, step_s: f64) -> Option<String> {
+    let rows = duration_s / step_s;
+    if rows < 1.0 {
+        Some(format!(
+            "makes the output step of {} s longer than the run of {} s; the step must not exceed the run",
+            plain(step_s),
+            plain(duration_s)
+        ))
+    } else if rows > Request::MOST_SAMPLES {
+        Some(format!(
+            "makes {rows:.0} rows of output, every {} s for {} s; at most {:.0} are allowed",
+            plain(step_s),
+            plain(duration_s),
+            Request::MOST_SAMPLES
+        ))
+    } else {
+        None
     }
 }

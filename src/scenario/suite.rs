@@ -212,7 +212,9 @@ fn suits(
     }
     series.scaled(strongest).check_strength(gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
-    if lasts_s > duration_s {
+    if let Some(duration_s) = duration_s
+        && lasts_s > duration_s
+    {
         return Err(format!(
             "lasts {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
             plain(lasts_s),

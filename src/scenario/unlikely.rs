@@ -115,7 +115,7 @@ impl Scenario {
 
     /// Warns that a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<String> {
-        let duration_s = self.simulation.duration_s;
+        let duration_s = self.request().end_s;
         let begin = format!("the simulation lasts {} s", short(duration_s));
         if !self.motion.hinges().has_joints() {
             return (duration_s > DURATION_S).then(|| {

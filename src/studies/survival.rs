@@ -14,6 +14,8 @@ pub struct Survival {
     pub again: Vec<[f64; 2]>,
     /// Ranges of strengths for which it is uncertain whether it overturns.
     pub uncertain: Vec<[f64; 2]>,
+    /// Ranges of strengths whose histories end too early for a verdict.
+    pub incomplete: Vec<[f64; 2]>,
     /// The greatest strength that was tried.
     pub tried_to: f64,
 }
@@ -58,6 +60,7 @@ impl Survival {
             from_the_first: overturns_from == Some(tried_from),
             again: of(&runs[first.unwrap_or(runs.len())..], Verdict::Survives),
             uncertain: of(runs, Verdict::Uncertain),
+            incomplete: of(runs, Verdict::Incomplete),
             tried_to,
         }
     }
@@ -69,7 +72,7 @@ impl Survival {
 pub fn in_words(survival: &Survival, unit: &str) -> String {
     let at = |strength: f64| format!("{}{unit}", rounded(strength));
     let mut words = match survival.overturns_from {
-        None if survival.uncertain.is_empty() => {
+        None if survival.uncertain.is_empty() && survival.incomplete.is_empty() => {
             format!("does not overturn up to {}", at(survival.tried_to))
         }
         None => format!(
@@ -84,6 +87,10 @@ pub fn in_words(survival: &Survival, unit: &str) -> String {
     for (what, ranges) in [
         ("survives again", &survival.again),
         ("uncertain", &survival.uncertain),
+        (
+            "no verdict, since the run ends too early,",
+            &survival.incomplete,
+        ),
     ] {
         let ranges: Vec<String> = ranges
             .iter()
@@ -113,6 +120,7 @@ mod tests {
                     let verdict = match outcome {
                         b'x' => Some(Verdict::Overturns),
                         b'.' => Some(Verdict::Survives),
+                        b'/' => Some(Verdict::Incomplete),
                         b'~' => Some(Verdict::Uncertain),
                         _ => None,
                     };
@@ -151,6 +159,9 @@ mod tests {
         let uncertain = |outcomes| survival(outcomes).uncertain;
         assert_eq!(uncertain(".~x~~.~"), [[2.0, 2.0], [4.0, 5.0], [7.0, 7.0]]);
         assert_eq!(uncertain("..xx"), [[0.0; 2]; 0]);
+        // An incomplete history is no verdict.
+        assert_eq!(of("./x/.x"), (Some(3.0), false, vec![[5.0, 5.0]], 6.0));
+        assert_eq!(survival(".//").incomplete, [[2.0, 3.0]]);
     }
 
     #[test]
@@ -160,6 +171,7 @@ mod tests {
             from_the_first: from == Some(0.1),
             again: again.to_vec(),
             uncertain: Vec::new(),
+            incomplete: Vec::new(),
             tried_to: 4.0,
         };
         assert_eq!(

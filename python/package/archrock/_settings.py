@@ -26,7 +26,7 @@ class Settings(NamedTuple):
     damping_time_s: float | None = None
     compressive_strength_mpa: float | None = None
     contact_points: int | None = None
-    duration_s: float = 10.0
+    duration_s: float | None = None
     output_step_s: float = 0.005
     relative_tolerance: float = 1e-9
     rest_energy_ratio: float = 1e-8
@@ -36,7 +36,8 @@ class Settings(NamedTuple):
         """The tables of a scenario for these settings."""
         tables: Tables = {
             "simulation": {
-                "duration_s": self.duration_s,
+                # By default it follows the ground motion.
+                **_given(duration_s=self.duration_s),
                 "output_step_s": self.output_step_s,
                 "relative_tolerance": self.relative_tolerance,
                 "rest_energy_ratio": self.rest_energy_ratio,

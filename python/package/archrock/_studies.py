@@ -328,6 +328,12 @@ class Threshold(Results):
         ranges: list[dict[str, Any]] = self._model()["uncertain"]
         return ranges
 
+    @property
+    def incomplete(self) -> list[dict[str, Any]]:
+        """The ranges without a verdict, because the histories end too early, ascending, as in ``threshold.json``."""
+        ranges: list[dict[str, Any]] = self._model()["incomplete"]
+        return ranges
+
 
 class Capacity(Results):
     """The quasi-static capacity of the first mechanism to both sides: acceleration against displacement."""

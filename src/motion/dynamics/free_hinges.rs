@@ -19,6 +19,7 @@ use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Recorder, SimulationError};
 use super::row::course::{self, Clock, Task};
+use super::row::standing::estimated_barrier_j;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::stance::Stance;
@@ -253,6 +254,7 @@ pub fn simulate(
         gravity_m_s2,
         clock: settings.clock(),
         barrier_j: None,
+        built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
         energy_scale_j: 0.0,
     };
     motion(

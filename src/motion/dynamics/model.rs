@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::fall::FallEnd;
 use super::ground::GroundMotion;
 use super::history::{
-    Event, History, MEMORY_BYTES, MemoryError, Recording, Sample, Shape, Summary,
+    Event, History, MEMORY_BYTES, MemoryError, Outcome, Recording, Sample, Shape, Summary,
 };
 use super::until::{Until, UntilSafe};
 use crate::argument::{ArgumentError, within};
@@ -82,7 +82,13 @@ pub trait Model: Debug + Send + Sync {
         let (ground, request) = case;
         let mut until_safe = UntilSafe::new(until, ground, request);
         let recorder = until_safe.as_mut().map(|recorder| recorder as _);
-        self.simulate(ground, request, recorder)
+        let mut summary = self.simulate(ground, request, recorder)?;
+        if until_safe.is_some_and(|until_safe| until_safe.has_ended)
+            && summary.outcome == Outcome::Incomplete
+        {
+            summary.outcome = Outcome::StillRocking;
+        }
+        Ok(summary)
     }
 
     /// Its motions on several grounds, in their order.

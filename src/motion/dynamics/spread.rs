@@ -488,11 +488,13 @@ impl<'a> Checks<'a> {
             let mut safe_from_s = None;
             if self.settles
                 && let Ok(own) = &mut own
-                && own.outcome == Outcome::StillRocking
+                && let Outcome::StillRocking | Outcome::Vibrates = own.outcome
                 && own.end_s < request.end_s
             {
                 safe_from_s = Some(own.end_s);
-                own.outcome = Outcome::Rest;
+                if own.outcome == Outcome::StillRocking {
+                    own.outcome = Outcome::Rest;
+                }
             }
             Checked {
                 own,

@@ -43,6 +43,8 @@ pub(super) struct UntilSafe {
     half_cycle_s: f64,
     /// The largest energy so far, over the barrier.
     largest_ratio: f64,
+    /// Whether it has ended the history.
+    pub(super) has_ended: bool,
 }
 
 impl UntilSafe {
@@ -59,6 +61,7 @@ impl UntilSafe {
             sways: None,
             half_cycle_s: 0.0,
             largest_ratio: 0.0,
+            has_ended: false,
         })
     }
 
@@ -95,6 +98,7 @@ impl Recorder for UntilSafe {
         if self.rest_by_s < f64::INFINITY && !(rests && decayed) {
             return ControlFlow::Continue(());
         }
+        self.has_ended = true;
         ControlFlow::Break(())
     }
 }

@@ -214,10 +214,7 @@ impl Column {
     /// # Errors
     /// When a tie is none: with its index.
     pub fn with_ties(self, ties: Vec<Tie>, gravity_m_s2: f64) -> Result<Self, (usize, TieError)> {
-        let (blocks, size_m) = (
-            self.drum_heights_m().len(),
-            0.5 * self.height_m.hypot(self.width_m),
-        );
+        let (blocks, size_m) = (self.drum_heights_m().len(), self.half_diagonal_m());
         for (index, tie) in ties.iter().enumerate() {
             tie.check(blocks, size_m).map_err(|error| (index, error))?;
         }
@@ -235,6 +232,12 @@ impl Column {
     #[must_use]
     pub const fn is_on_pedestal(&self) -> bool {
         self.pedestal
+    }
+
+    /// Half the diagonal of its outline, in metres, as if it were as wide at the top as at the base.
+    #[must_use]
+    pub fn half_diagonal_m(&self) -> f64 {
+        0.5 * self.height_m.hypot(self.width_m)
     }
 
     /// Its drums as a row of blocks, on ground that extends beyond the base unless it stands on a

@@ -243,6 +243,16 @@ impl Structure {
         }
     }
 
+    /// The length that scales its motion, in m: the mean radius of an arch, half the diagonal of a column.
+    #[must_use]
+    pub fn size_m(&self) -> f64 {
+        match self {
+            Self::Arch(arch) => arch.mean_radius_m(),
+            Self::Column(column) => column.half_diagonal_m(),
+            Self::Masonry(masonry) => masonry.row().size_m(),
+        }
+    }
+
     /// The model of the motion as a row of blocks whose joints open and shut.
     ///
     /// # Errors

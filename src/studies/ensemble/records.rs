@@ -10,6 +10,7 @@ use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
 use crate::studies::ending::Ending;
 use crate::studies::results::{Look, Results};
+use crate::studies::suite::case;
 
 /// Relative width to which an intensity is bisected: far less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -76,12 +77,10 @@ impl Question for Capacities {
         let model = scenario
             .model()
             .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
-        let request = scenario.request_from_rest();
         let edges = (0..self.suite.records.len() * self.signs()).map(|shake| {
             let (record, mirrored) = (shake / self.signs(), shake % self.signs() == 1);
             let verdict = |level: f64| {
-                let shake = self.suite.shake(record, level, mirrored);
-                let ground = scenario.under_both_feet(shake.motion(request.gravity_m_s2));
+                let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
                 let ending = Ending::of(&*model, &ground, &request);
                 ending.map(|ending| ending.verdict())
             };

@@ -404,7 +404,12 @@ impl<'a> OverturningMap<'a> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
-        Ok((standing, (ground, scenario.request_from_rest())))
+        let structure = self
+            .structure(index, &scenario)
+            .map_err(FourLinkError::from);
+        let structure = structure.map_err(ModelError::from)?;
+        let request = scenario.request_on(&ground, &structure);
+        Ok((standing, (ground, request)))
     }
 
     /// The endings of cells with the same structure, and how many outcomes each has when it is repeated in other ways.

@@ -84,7 +84,7 @@ impl Evidence<'_> {
             Outcome::Overturned(sway) => format!("overturns to the {}", sway.name()),
             Outcome::NeverMoved => "never moves: the ground is too weak to start it".to_owned(),
             Outcome::Vibrates => "survives: it vibrates, and no joint opens".to_owned(),
-            Outcome::Incomplete => self.incomplete(),
+            Outcome::Incomplete => no_verdict(self.scenario, history),
             Outcome::Rest | Outcome::StillRocking => {
                 let (rotation, energy) = (
                     history.peak_over_critical,
@@ -93,30 +93,17 @@ impl Evidence<'_> {
                 let elastic = self.scenario.motion().hinges() == Hinges::Elastic;
                 match (rotation, energy) {
                     (Some(part), _) if part < 1.0 => {
-                        format!("survives: peak {} % of overturning", in_percent(part))
+                        format!("survives: peak {} of overturning", in_percent(part))
                     }
                     (None, Some(part)) if part < 1.0 => {
                         let percent = in_percent(part);
                         let rigid = if elastic { " with rigid joints" } else { "" };
-                        format!("survives: peak energy {percent} % of overturning{rigid}")
+                        format!("survives: peak energy {percent} of overturning{rigid}")
                     }
                     _ => "survives".to_owned(),
                 }
             }
         }
-    }
-
-    /// Why the run has no verdict.
-    fn incomplete(&self) -> String {
-        let (end_s, ground_s) = (self.history.end_s, self.scenario.ground_motion().end_s());
-        let why = if end_s < ground_s {
-            format!("the run ends at {end_s:.4} s and the ground moves until {ground_s:.4} s")
-        } else {
-            format!(
-                "at {end_s:.4} s, the end of the run, it still rocks with more than a quarter of the energy that overturns"
-            )
-        };
-        format!("NO VERDICT: {why}; give a longer duration_s in [simulation], or leave it out")
     }
 
     /// How sure the outcome is, from the repetitions or from the line of thrust of four links.
@@ -151,4 +138,17 @@ impl Evidence<'_> {
         let needed = needs(self.scenario, self.history).into_iter();
         needed.chain(otherwise(self.history, self.varied)).collect()
     }
+}
+
+/// Why an incomplete run has no verdict, and what to do.
+pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> String {
+    let (end_s, ground_s) = (history.end_s, scenario.ground_motion().end_s());
+    let why = if end_s < ground_s {
+        format!("the run ends at {end_s:.4} s and the ground moves until {ground_s:.4} s")
+    } else {
+        format!(
+            "at {end_s:.4} s, the end of the run, it moves with more than a quarter of the energy that overturns it"
+        )
+    };
+    format!("NO VERDICT: {why}; give a longer duration_s in [simulation], or leave it out")
 }

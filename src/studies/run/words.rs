@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Shown;
 use super::feet::FeetApart;
-use super::verdict::Evidence;
+use super::verdict::{Evidence, no_verdict};
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
     ElasticSummary, Event, Impact, Outcome, RowSummary, Sliding, Stress, Summary, TieSummary,
@@ -62,7 +62,6 @@ pub(super) fn words(
     }
     text += &incipient(scenario, model, history);
     text += &feet(scenario, history);
-    text += &cut_short(scenario, history);
     if sliding.is_none() {
         text += &trusted(scenario, model, history, beside);
     }
@@ -71,7 +70,7 @@ pub(super) fn words(
     }
     text += &row.map_or(String::new(), |row| of_ties(&row.ties));
     match spread {
-        Some(Ok(spread)) if history.outcome != Outcome::NeverMoved => text += &sure(spread),
+        Some(Ok(spread)) if !is_unmoved(history) => text += &sure(spread),
         Some(Err(reason)) => {
             let _ = writeln!(
                 text,
@@ -151,13 +150,16 @@ pub(super) fn needs(scenario: &Scenario, history: &Summary) -> Option<String> {
 }
 
 /// A fraction in percent, rounded down, so that a limit that was not reached does not read as reached.
-pub(super) fn in_percent(part: f64) -> f64 {
-    (100.0 * part).floor()
+pub(super) fn in_percent(part: f64) -> String {
+    match (100.0 * part).floor() {
+        percent if percent < 1.0 => "below 1 %".to_owned(),
+        percent => format!("{percent} %"),
+    }
 }
 
 /// How accurately the motion was computed, and in how many steps.
 fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String {
-    if history.outcome == Outcome::NeverMoved {
+    if is_unmoved(history) {
         return String::new();
     }
     let (defect, steps) = (history.energy_defect_ratio, history.cost.steps);
@@ -240,14 +242,14 @@ pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
 /// The report on the motion of mechanisms.
 fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notable) -> String {
     let mut text = String::new();
-    if let Some((time_s, impact)) = &impacts.first {
+    if let [Some((time_s, impact)), _] = impacts.of(history) {
         let _ = writeln!(
             text,
             "  first impact at {time_s:.4} s, restitution (energy after/before) {:.4}",
             impact.restitution,
         );
     }
-    if history.outcome == Outcome::NeverMoved {
+    if is_unmoved(history) {
         return text;
     }
     let _ = writeln!(
@@ -266,6 +268,21 @@ fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notabl
     text
 }
 
+/// Whether nothing moved, as far as the run went.
+pub(super) fn is_unmoved(history: &Summary) -> bool {
+    match history.outcome {
+        Outcome::NeverMoved => true,
+        Outcome::Incomplete => history.largest_rotation_rad() == 0.0 && !has_slipped(history),
+        _ => false,
+    }
+}
+
+/// Whether a joint slipped.
+fn has_slipped(history: &Summary) -> bool {
+    let sliding = history.row.as_ref().and_then(|row| row.sliding.as_ref());
+    sliding.is_some_and(|sliding| sliding.largest_offsets_m.iter().any(|slip_m| *slip_m > 0.0))
+}
+
 /// How far the motion went: it `passed` the point from which gravity alone overturns the structure, or reached a part of the way.
 fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
     match outcome {
@@ -282,19 +299,18 @@ fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
 /// The report on the motion of a row.
 fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
     let mut text = String::new();
-    if let Some((time_s, impact)) = &impacts.first {
+    let [first, hardest] = impacts.of(history);
+    if let Some((time_s, impact)) = first {
         let _ = writeln!(text, "  first impact at {time_s:.4} s: {}", landing(impact));
     }
-    if let Some((time_s, impact)) = &impacts.hardest
-        && impacts.hardest != impacts.first
-    {
+    if let Some((time_s, impact)) = hardest.filter(|_| hardest != first) {
         let _ = writeln!(
             text,
             "  largest loss in one impact at {time_s:.4} s: {}",
             landing(impact)
         );
     }
-    if history.outcome == Outcome::NeverMoved {
+    if is_unmoved(history) {
         return text;
     }
     let cycles = history.half_cycles();
@@ -309,8 +325,10 @@ fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
         let _ = writeln!(text, "  largest half cycles in rad: {cycles}");
     }
     let peak = history.largest_rotation_rad();
-    if peak <= STRAIGHT_RAD {
+    if peak <= STRAIGHT_RAD && has_slipped(history) {
         text += "  slides without rocking\n";
+    } else if peak <= STRAIGHT_RAD {
+        text += "  rotates by less than 0.000001 rad\n";
     } else {
         let _ = writeln!(
             text,
@@ -416,26 +434,26 @@ fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> impl Iterator<Item 
 /// A block that rotates by no more than this slides straight on: in print, the rotation is zero.
 const STRAIGHT_RAD: f64 = 5e-7;
 
-/// Impacts that are described, with their times.
+/// Impacts that are described, with their times: the first, and then each that takes more energy than all before.
 #[derive(Default)]
-pub(super) struct Notable {
-    first: Option<(f64, Impact)>,
-    /// The one that takes the most energy.
-    hardest: Option<(f64, Impact)>,
-}
+pub(super) struct Notable(Vec<(f64, Impact)>);
 
 impl Notable {
     pub(super) fn note(&mut self, event: &Event) {
         let (time_s, Some(impact)) = (event.time_s, &event.impact) else {
             return;
         };
-        if self.first.is_none() {
-            self.first = Some((time_s, impact.clone()));
+        let hardest = self.0.last();
+        if hardest.is_none_or(|(_, hardest)| taken_j(impact) > taken_j(hardest)) {
+            self.0.push((time_s, impact.clone()));
         }
-        let harder = |(_, hardest): &(f64, Impact)| taken_j(impact) > taken_j(hardest);
-        if self.hardest.as_ref().is_none_or(harder) {
-            self.hardest = Some((time_s, impact.clone()));
-        }
+    }
+
+    /// The first impact, and the one that takes the most energy; those after overturning do not count.
+    fn of(&self, history: &Summary) -> [Option<&(f64, Impact)>; 2] {
+        let until_s = history.overturned_s().unwrap_or(f64::INFINITY);
+        let before = || self.0.iter().filter(|(time_s, _)| *time_s <= until_s);
+        [before().next(), before().last()]
     }
 }
 
@@ -458,7 +476,10 @@ fn outcome(history: &Summary) -> String {
     match history.outcome {
         Outcome::NeverMoved => "  never moved\n".to_owned(),
         Outcome::Vibrates => "  vibrated, and no joint opened\n".to_owned(),
-        Outcome::Incomplete => format!("  incomplete at {time_s:.4} s{impacts}\n"),
+        Outcome::Incomplete if is_unmoved(history) => {
+            format!("  nothing moved until {time_s:.4} s\n")
+        }
+        Outcome::Incomplete => format!("  incomplete: the run ended at {time_s:.4} s{impacts}\n"),
         Outcome::Rest => format!("  came to rest at {time_s:.4} s{impacts}\n"),
         Outcome::Overturned(sway) => {
             let sway = sway.name();
@@ -587,20 +608,6 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
     text
 }
 
-/// Warns if the run ends before the ground motion does.
-fn cut_short(scenario: &Scenario, history: &Summary) -> String {
-    let ground = scenario.ground_motion();
-    if history.end_s >= scenario.simulation().duration_s && ground.end_s() > history.end_s {
-        return format!(
-            "  the run ends at {:.4} s and the ground moves until {:.4} s: a longer duration_s in [simulation] \
-             shows the rest\n",
-            history.end_s,
-            ground.end_s()
-        );
-    }
-    String::new()
-}
-
 /// Warnings about a run: unlikely numbers of its scenario, and what limits the trust in its history.
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
@@ -617,17 +624,10 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
         .as_ref()
         .filter(|_| model.as_mechanisms().is_some());
     let leaves = thrust.filter(|thrust| thrust.largest_excess.value > most);
-    let evidence = Evidence {
-        scenario,
-        history,
-        spread: None,
-        varied: &[],
-    };
     let caveats = [
-        (history.outcome == Outcome::Incomplete).then(|| evidence.in_words()),
+        (history.outcome == Outcome::Incomplete).then(|| no_verdict(scenario, history)),
         leaves.and_then(|thrust| trust(thrust, structure, &[])),
         needs(scenario, history),
-        (history.outcome != Outcome::Incomplete).then(|| cut_short(scenario, history)),
     ];
     // Words of the report, whose lines are indented.
     let caveats = caveats.into_iter().flatten();

@@ -178,14 +178,11 @@ impl Study for RecordSuite<'_> {
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
-        let request = self.scenario.request_from_rest();
-        let case = |index: &usize| {
+        let cases = indices.iter().map(|index| {
             let (level, record, mirrored) = self.place(*index);
-            let shake = self.suite.shake(record, level, mirrored);
-            let ground = shake.motion(request.gravity_m_s2);
-            (self.scenario.under_both_feet(ground), request)
-        };
-        let cases: Vec<Case> = indices.iter().map(case).collect();
+            case(self.scenario, self.suite, record, level, mirrored)
+        });
+        let cases: Vec<Case> = cases.collect();
         let results = Ending::of_all(&*self.model, &cases);
         let overturn: Vec<Option<bool>> = results.iter().map(overturns_certainly).collect();
         let edge = |case: usize| {
@@ -201,6 +198,20 @@ impl Study for RecordSuite<'_> {
         rows.map(|((index, result), edge)| self.case_row(*index, result, edge))
             .collect()
     }
+}
+
+/// The ground motion of a case, and the request for its history.
+pub(super) fn case(
+    scenario: &Scenario,
+    suite: &Suite,
+    record: usize,
+    level: f64,
+    mirrored: bool,
+) -> Case {
+    let shake = suite.shake(record, level, mirrored);
+    let ground = scenario.under_both_feet(shake.motion(scenario.gravity_m_s2()));
+    let request = scenario.request_on(&ground, scenario.structure());
+    (ground, request)
 }
 
 /// Whether a history certainly overturns, if there is one that is complete.
@@ -224,11 +235,8 @@ impl RecordSuite<'_> {
     /// the one below overturns as well, unless it is known that it survives.
     fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<f64> {
         let (level, record, mirrored) = self.place(index);
-        let request = self.scenario.request_from_rest();
         let overturns = |level: f64| {
-            let shake = self.suite.shake(record, level, mirrored);
-            let ground = shake.motion(request.gravity_m_s2);
-            let ground = self.scenario.under_both_feet(ground);
+            let (ground, request) = case(self.scenario, self.suite, record, level, mirrored);
             let ending = Ending::of(&*self.model, &ground, &request);
             overturns_certainly(&ending).ok_or(())
         };
@@ -425,7 +433,7 @@ impl SuiteFragility {
         for cases in shakes {
             let levels: Vec<_> = cases
                 .iter()
-                .map(|case| (case.level(self.measure), case.known_verdict()))
+                .map(|case| (case.level(self.measure), case.verdict()))
                 .collect();
             let mut survival = Survival::of_levels(&levels);
             let mut overturned = cases

@@ -240,6 +240,12 @@ impl Threshold {
         self.of(Verdict::Uncertain)
     }
 
+    /// The ranges whose histories end too early for a verdict, ascending.
+    #[must_use]
+    pub fn incomplete(&self) -> Vec<FactorRange> {
+        self.of(Verdict::Incomplete)
+    }
+
     /// The least factor that certainly overturns; `None` if none does.
     #[must_use]
     pub fn lowest_factor(&self) -> Option<f64> {

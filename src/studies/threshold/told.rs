@@ -153,7 +153,7 @@ fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
 }
 
 /// All results as JSON: for each model the least factor that overturns, the bands that overturn, the safe gaps between
-/// them, the uncertain ranges, the steps if the model has any, and all samples. Edges also have the peak ground acceleration, in g.
+/// them, the uncertain ranges, those without a verdict, the steps if the model has any, and all samples. Edges also have the peak ground acceleration, in g.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -182,6 +182,7 @@ fn to_json(
                 "bands": ranges(threshold.bands()),
                 "gaps": ranges(threshold.gaps()),
                 "uncertain": ranges(threshold.uncertain()),
+                "incomplete": ranges(threshold.incomplete()),
             });
             let mut remarks = Remarks::default();
             for ending in threshold.samples.iter().flat_map(|sample| &sample.result) {
@@ -295,15 +296,6 @@ fn words(scenarios: &[&Scenario], ground: &GroundMotion, thresholds: &[Threshold
     {
         let _ = writeln!(text, "  {caveat}");
     }
-    let end_s = scenario.simulation().duration_s;
-    if ground.end_s() > end_s {
-        let _ = writeln!(
-            text,
-            "  the histories end at {end_s:.4} s and the ground moves until {:.4} s: a longer duration_s in \
-             [simulation] shows the rest",
-            ground.end_s()
-        );
-    }
     text
 }
 
@@ -343,7 +335,7 @@ fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
 /// Adds a line for each range.
 fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     let at = |factor: f64| format!("{} ({} g)", rounded(factor), rounded(factor * peak_g));
-    let certainly = if threshold.uncertain().is_empty() {
+    let certainly = if threshold.uncertain().is_empty() && threshold.incomplete().is_empty() {
         ""
     } else {
         "certainly "
@@ -444,6 +436,18 @@ fn doubts(text: &mut String, threshold: &Threshold) {
             rounded(*factor)
         );
     }
+    let incomplete = samples
+        .iter()
+        .filter(|sample| sample.verdict() == Some(Verdict::Incomplete));
+    let incomplete = incomplete.count();
+    if incomplete > 0 {
+        let _ = writeln!(
+            text,
+            "  no verdict from {incomplete} of {} histories; {}",
+            samples.len(),
+            Ending::INCOMPLETE
+        );
+    }
     let rocking = samples.iter().filter(|sample| {
         let ending = sample.result.as_ref();
         ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
@@ -452,7 +456,7 @@ fn doubts(text: &mut String, threshold: &Threshold) {
     if rocking > 0 {
         let _ = writeln!(
             text,
-            "  still rocking at duration_s of [simulation], which counts as survived: {rocking} of {} histories",
+            "  still rocking at the end of the run, which counts as survived: {rocking} of {} histories",
             samples.len()
         );
     }

@@ -303,6 +303,7 @@ impl ElasticJoints {
             gravity_m_s2,
             clock: self.clock(request)?,
             barrier_j: self.rigid.barrier_on(ground, gravity_m_s2),
+            built_barrier_j: self.rigid.estimated_barrier_j(gravity_m_s2),
             energy_scale_j: self.rigid.energy_scale_j(gravity_m_s2),
         })
     }

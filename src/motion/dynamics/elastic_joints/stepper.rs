@@ -71,6 +71,7 @@ struct Lane<'a> {
     /// Energy, potential and elastic, at rest.
     rest_j: Option<f64>,
     rest_sway_kg_m: f64,
+    opening: Opening,
     /// The largest energies that count as rest.
     still_j: f64,
     /// Of rigid joints; where there is none, of these, once that was asked.
@@ -83,16 +84,42 @@ struct Lane<'a> {
     quiet: Option<(f64, f64)>,
     end_s: f64,
     quiet_since_s: f64,
+    /// When a joint was last open beyond its state at rest.
+    open_until_s: f64,
     marks: Marks,
     overturned: bool,
     /// The error for which it cannot go on.
     lost: Option<ElasticJointError>,
     summit: Summit,
     elastic: ElasticSummary,
+    /// The largest stress up to the last instant from which it may have fallen without return.
+    stress_before_fall: Stress,
     sliding: Sliding,
     ties: Vec<TieSummary>,
     /// What happened to ties since the last look.
     happened: Vec<(usize, EventKind)>,
+}
+
+/// The gaps beyond which joints have opened.
+#[derive(Default)]
+struct Opening {
+    /// Of each joint at intrados and extrados, in m; empty before the first observation, at rest.
+    from_m: Vec<[f64; 2]>,
+}
+
+impl Opening {
+    /// Whether a joint is open beyond its state at rest, by more than the weight compresses the most compressed edge.
+    fn is_seen(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
+        if !self.from_m.is_empty() {
+            let mut joints = penetrations_m.zip(&self.from_m);
+            return joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]));
+        }
+        let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
+        let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
+        let opens = |end: f64| (-end).max(0.0) + most_m;
+        self.from_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
+        false
+    }
 }
 
 /// Motions side by side.
@@ -125,6 +152,7 @@ impl<'a> Lane<'a> {
             kicked_s: start_s,
             rest_j: None,
             rest_sway_kg_m: 0.0,
+            opening: Opening::default(),
             still_j: 0.0,
             barrier_j: task.barrier_j,
             largest_j: 0.0,
@@ -132,11 +160,13 @@ impl<'a> Lane<'a> {
             quiet: None,
             end_s: task.clock.end_s,
             quiet_since_s: start_s,
+            open_until_s: start_s,
             marks: Marks::new(task.clock, start_s),
             overturned: false,
             lost: None,
             summit: Summit::new(0.0, start_s),
             elastic: ElasticSummary::default(),
+            stress_before_fall: Stress::default(),
             sliding: Sliding::none(joints),
             ties: Vec::new(),
             happened: Vec::new(),
@@ -348,6 +378,16 @@ impl<'a, const L: usize> Group<'a, L> {
             };
         }
         let joints = self.start.structure.joints();
+        if course.rocks != Some(true) || !course.moved {
+            let edges = (0..joints.len()).map(|joint| self.motion.memory(joint, index));
+            let penetrations_m = edges.map(|edges| edges.penetrations_m.map(|end| end.0[0]));
+            let slips = lane.elastic.friction_j > REST_ENERGY_RATIO * course.energy_unit;
+            let is_open = lane.opening.is_seen(penetrations_m);
+            if is_open {
+                lane.open_until_s = time;
+            }
+            course.rocks = Some(course.rocks == Some(true) || is_open || slips);
+        }
         let mut slid = 0.0;
         for (joint, largest) in lane.sliding.largest_offsets_m.iter_mut().enumerate() {
             let slipped_m = self.motion.slipped_m(joint, index);
@@ -373,7 +413,10 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + taken);
-        lane.summit.note(course, height);
+        lane.summit.note_results(course, height);
+        if lane.summit.time == time {
+            lane.stress_before_fall = lane.elastic.largest_stress;
+        }
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
         // A row that is still but stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
@@ -384,7 +427,7 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.mind_balance(barrier_j);
         lane.largest_j = lane.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
-            lane.course.stop();
+            lane.course.decide();
         }
     }
 
@@ -418,7 +461,13 @@ impl<'a, const L: usize> Group<'a, L> {
 impl<'a> Lane<'a> {
     fn rests_since(&self) -> Option<f64> {
         let quiet = self.course.is_quiet(self.quiet_since_s.max(self.quiet_s));
-        quiet.then_some(self.quiet_since_s)
+        // A row that never had more energy than at rest may rock all the same.
+        let since_s = if self.course.moved {
+            self.quiet_since_s
+        } else {
+            self.open_until_s
+        };
+        quiet.then_some(since_s)
     }
 
     fn overturned_s(&self) -> Option<f64> {
@@ -473,7 +522,15 @@ impl<'a> Lane<'a> {
             friction_j: self.elastic.friction_j,
             ..self.sliding.clone()
         });
-        of_row.elastic = Some(self.elastic);
+        let largest_stress = if self.overturned {
+            self.stress_before_fall
+        } else {
+            self.elastic.largest_stress
+        };
+        of_row.elastic = Some(ElasticSummary {
+            largest_stress,
+            ..self.elastic
+        });
         of_row.ties.clone_from(&self.ties);
         &mut self.course
     }

@@ -171,6 +171,8 @@ pub(super) struct LandingStepper<'a> {
     crowd: Crowd,
     /// Of a row that stood on hinges: since when it hardly moves, when it was highest, and whether it lies far from where it stood.
     quiet_since_s: f64,
+    /// Since when it lies undeformed without motion, in seconds; `None` while it moves.
+    lies_since_s: Option<f64>,
     summit: Summit,
     overturned: bool,
 }
@@ -197,14 +199,16 @@ impl<'a> LandingStepper<'a> {
         }
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
         let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
+        let right = RightSupport::new(row, ground);
+        let may_end_on_hinges = rest.is_on_hinges() || right.moves();
         let mut stepper = Self {
             row,
             velocity: GroundVelocity::new(ground),
-            right: RightSupport::new(row, ground),
+            right,
             gravity,
             settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
-            course: Course::new(task, Some(fallen), recorder),
+            course: Course::new(task, Some(fallen).filter(|_| !may_end_on_hinges), recorder),
             kicked_s: ground.start_s(),
             placement: standing.placement.clone(),
             rest,
@@ -233,6 +237,7 @@ impl<'a> LandingStepper<'a> {
             step_iterations: 0,
             crowd: Crowd::default(),
             quiet_since_s: ground.start_s(),
+            lies_since_s: None,
             summit: Summit::new(0.0, ground.start_s()),
             overturned: false,
         };
@@ -974,6 +979,7 @@ mod tests {
                 gravity_m_s2: 9.81,
                 clock: settings.clock(),
                 barrier_j: None,
+                built_barrier_j: 1.0,
                 energy_scale_j: 0.0,
             };
             let mut stepper = LandingStepper::new(task, &settings, &Stance::undeformed(&row), None);

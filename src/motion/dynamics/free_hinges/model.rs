@@ -285,6 +285,7 @@ impl Model for FreeHinges {
             gravity_m_s2: request.gravity_m_s2,
             clock: settings.clock(),
             barrier_j: self.rigid.barrier_on(ground, request.gravity_m_s2),
+            built_barrier_j: self.rigid.estimated_barrier_j(request.gravity_m_s2),
             energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
         };
         let standing = self.rigid.standing();

@@ -488,7 +488,7 @@ impl<'a> SlidingStepper<'a> {
         self.overturned |= self.has_fallen();
         let height = potential + self.held_back + taken;
         let height = (!self.right.moves()).then_some(height);
-        self.summit.note(&self.course, height);
+        self.summit.note_results(&mut self.course, height);
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
             self.quiet_since_s = self.course.time;
         }

@@ -19,6 +19,7 @@ use crate::dynamics::model::{
     FourLinkModel, MechanismModel, Model, Recorder, Request, SimulationError,
 };
 use crate::dynamics::thrust::ThrustRecord;
+use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::column::RockingColumn;
@@ -171,13 +172,30 @@ fn history_of<C: MechanismChain + MechanismModel>(
             }),
         Mode::Rocking { .. } => (Outcome::StillRocking, finish.time_s),
     };
+    let outcome = match finish.mode {
+        Mode::Overturned { .. } => outcome,
+        _ if finish.time_s < ground.end_s() => Outcome::Incomplete,
+        Mode::Rocking { link, .. }
+            if rocking.energy(link, &finish.state) > SAFE * rocking.barrier_of(link) =>
+        {
+            Outcome::Incomplete
+        }
+        _ => outcome,
+    };
+    let before_fall = tally.peaks_before_fall.take();
+    let (peak_rotations_rad, peak_over_critical) = before_fall
+        .filter(|_| matches!(outcome, Outcome::Overturned(_)))
+        .unwrap_or_else(|| {
+            let peaks_rad = tally.peak_rotations_rad.as_ref().to_vec();
+            (peaks_rad, tally.peak_over_critical)
+        });
     Ok(Summary {
         outcome,
         outcome_time_s,
         end_s: finish.time_s,
         impacts: tally.impacts,
-        peak_rotations_rad: tally.peak_rotations_rad.as_ref().to_vec(),
-        peak_over_critical: Some(tally.peak_over_critical),
+        peak_rotations_rad,
+        peak_over_critical: Some(peak_over_critical),
         peak_potential_over_barrier: None,
         energy_defect_ratio: tally.largest_defect / rocking.barrier(),
         thrust: sampler.map(|sampler| match outcome {
@@ -372,6 +390,8 @@ struct Tally<C: MechanismChain> {
     peak_rotations_rad: Rotations<C>,
     peak_over_critical: f64,
     last_outward_s: Option<f64>,
+    /// The largest rotations up to then, and over the critical one.
+    peaks_before_fall: Option<(Vec<f64>, f64)>,
     last_rest_s: Option<f64>,
     /// Initial energy minus what the impacts took.
     energy_without_work: f64,
@@ -386,6 +406,7 @@ impl<C: MechanismChain> Tally<C> {
             peak_rotations_rad: none,
             peak_over_critical: 0.0,
             last_outward_s: None,
+            peaks_before_fall: None,
             last_rest_s: None,
             energy_without_work: match mode {
                 Mode::Rocking { link, .. } => rocking.energy(link, state),
@@ -453,6 +474,9 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
                 }
             });
             self.last_outward_s = Some(passage_s);
+            self.note_peak(mode, &rocking.between(step, passage_s));
+            let peaks = self.peak_rotations_rad.as_ref().to_vec();
+            self.peaks_before_fall = Some((peaks, self.peak_over_critical));
         }
         ControlFlow::Continue(())
     }

@@ -14,6 +14,7 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::model::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
+use crate::dynamics::until::SAFE;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::{Demand, Hinge, LEAST_LOAD};
 use crate::mechanics::geometry::ring::Edge;
@@ -21,6 +22,9 @@ use crate::mechanics::sway::Sway;
 
 /// Sways below this fraction of the size do not count as a change of side.
 pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
+/// Where no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
+/// from one turning point to the next.
+const RECENT_RATIO: f64 = 5.0;
 /// At rest, the kinetic energy is below this fraction of weight times size ...
 pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
 /// ... for this many times the square root of size over gravity: longer than at any turning point.
@@ -130,6 +134,8 @@ pub(in crate::dynamics) struct Task<'a> {
     pub clock: Clock,
     /// Energy that the first mechanism has to gain to overturn, where that is known.
     pub barrier_j: Option<f64>,
+    /// The same of the row as it was built, with rigid joints and without ties; estimated where it is not known.
+    pub built_barrier_j: f64,
     /// Energy beside which errors of the balance are small or not, if the motion has less.
     pub energy_scale_j: f64,
 }
@@ -143,8 +149,10 @@ pub(in crate::dynamics) struct Course<'a> {
     kinetic: f64,
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
     pub sway: f64,
-    /// Whether a joint has opened or slipped.
+    /// Whether a joint has opened or slipped; of elastic joints, whether they move with more energy than at rest.
     pub moved: bool,
+    /// Of elastic joints, whether one has opened beyond its state at rest, or slipped.
+    pub rocks: Option<bool>,
     /// Mass times displacement below which a sway does not change the side.
     pub least_sway_kg_m: f64,
     /// Weight times size.
@@ -161,11 +169,20 @@ pub(in crate::dynamics) struct Course<'a> {
     /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
     fallen: f64,
     peak_potential: f64,
+    /// The results up to the last instant from which it may have fallen without return.
+    before_fall: UpTo,
     cycle: Option<HalfCycle>,
     cycle_energy: Option<f64>,
     rising: bool,
     highest_s: f64,
     recorder: Option<&'a mut dyn Recorder>,
+    /// The largest kinetic energies in the last two spans of time, the earlier one first, and when the later one began and how long it
+    /// lasts.
+    recent_j: [f64; 2],
+    recent_from_s: f64,
+    recent_s: f64,
+    /// Whether it is certain that it does not overturn any more.
+    is_safe: bool,
     /// Whether nobody follows it any further.
     stopped: bool,
     /// Whether its history is complete, and its fall is followed.
@@ -177,6 +194,18 @@ pub(in crate::dynamics) struct Course<'a> {
     phase: usize,
     /// Later events, while an impact is awaited.
     later: Option<Vec<Event>>,
+    thrust: ThrustRecord,
+}
+
+/// Results up to an instant.
+#[derive(Clone, Default)]
+struct UpTo {
+    time_s: f64,
+    peak_rotations_rad: Vec<f64>,
+    impacts: usize,
+    /// Half cycles that have ended, and the one under way.
+    half_cycles: usize,
+    cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
 }
 
@@ -456,6 +485,18 @@ pub(in crate::dynamics) struct Summit {
 }
 
 impl Summit {
+    /// Notes the height after a step, as [`Summit::note`], and the results of the course if it had not come down for good before.
+    pub(in crate::dynamics) fn note_results(
+        &mut self,
+        course: &mut Course<'_>,
+        height: Option<f64>,
+    ) {
+        self.note(course, height);
+        if self.time == course.time {
+            course.note_return();
+        }
+    }
+
     pub(in crate::dynamics) const fn new(height: f64, time: f64) -> Self {
         Self {
             time,
@@ -541,6 +582,7 @@ impl<'a> Course<'a> {
             kinetic: 0.0,
             sway: 0.0,
             moved: false,
+            rocks: None,
             least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
             energy_unit,
             shut: Vec::with_capacity(joints),
@@ -549,11 +591,20 @@ impl<'a> Course<'a> {
             task,
             fallen: fallen.unwrap_or(f64::NEG_INFINITY),
             peak_potential: 0.0,
+            before_fall: UpTo {
+                time_s: start_s,
+                peak_rotations_rad: vec![0.0; row.blocks().len()],
+                ..UpTo::default()
+            },
             cycle: None,
             cycle_energy: None,
             rising: false,
             highest_s: start_s,
             recorder,
+            recent_j: [0.0; 2],
+            recent_from_s: start_s,
+            recent_s: RECENT_RATIO * (row.size_m() / task.gravity_m_s2).sqrt(),
+            is_safe: false,
             stopped: false,
             falls: false,
             sample: Sample::at_rest(0.0),
@@ -608,7 +659,7 @@ impl<'a> Course<'a> {
     ) -> Option<(Outcome, f64)> {
         let time = self.time;
         if self.stopped {
-            return Some((Outcome::StillRocking, time));
+            return Some((self.standing().unwrap_or(Outcome::StillRocking), time));
         }
         if let Some(time_s) = overturned_s {
             return Some((Outcome::Overturned(towards(self.sway)), time_s));
@@ -616,13 +667,47 @@ impl<'a> Course<'a> {
         if time >= self.task.ground.end_s()
             && let Some(time_s) = rests_since()
         {
-            return Some(if self.moved {
-                (Outcome::Rest, time_s)
-            } else {
-                (Outcome::NeverMoved, time)
+            return Some(match self.standing() {
+                Some(standing) => (standing, time),
+                None => (Outcome::Rest, time_s),
             });
         }
-        (time >= self.task.clock.end_s).then_some((Outcome::StillRocking, time))
+        let over = time >= self.task.clock.end_s;
+        over.then(|| (self.standing().unwrap_or(Outcome::StillRocking), time))
+    }
+
+    /// The outcome as far as no joint has opened or slipped; otherwise `None`.
+    fn standing(&self) -> Option<Outcome> {
+        let least_j = REST_ENERGY_RATIO * self.energy_unit;
+        match self.rocks {
+            None => (!self.moved).then_some(Outcome::NeverMoved),
+            Some(true) => None,
+            Some(false) if self.of_row.largest_kinetic_j < least_j => Some(Outcome::NeverMoved),
+            Some(false) => Some(Outcome::Vibrates),
+        }
+    }
+
+    /// Whether the history ends too early for a verdict: see [`Outcome`].
+    fn is_incomplete(&self) -> bool {
+        if self.is_safe {
+            return false;
+        }
+        let elastic = self.of_row.elastic.as_ref();
+        let crushed_j = elastic.map_or(0.0, |elastic| elastic.crushed_j);
+        let lies = |barrier_j: &f64| crushed_j <= SLIPPED_RATIO * barrier_j;
+        let energy_ratio = match self.known_barrier_j().filter(lies) {
+            Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
+            None => self.recent_j[0].max(self.recent_j[1]) / self.task.built_barrier_j,
+        };
+        self.time < self.task.ground.end_s() || energy_ratio > SAFE
+    }
+
+    /// The energy barrier, unless the row slipped so far that its potential energy says nothing about it.
+    fn known_barrier_j(&self) -> Option<f64> {
+        let sliding = self.of_row.sliding.as_ref();
+        let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
+        let known = |barrier_j: &f64| rubbed_j <= SLIPPED_RATIO * barrier_j;
+        self.task.barrier_j.filter(known)
     }
 
     /// How long it must be quiet to rest, in seconds.
@@ -665,6 +750,7 @@ impl<'a> Course<'a> {
         self.peak_potential = potential.max(0.0);
         self.moved = moved;
         self.rising = true;
+        self.note_return();
     }
 
     /// Updates peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy,
@@ -688,6 +774,11 @@ impl<'a> Course<'a> {
         self.sway = sway;
         self.peak_potential = self.peak_potential.max(potential);
         self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
+        if self.time - self.recent_from_s > self.recent_s {
+            self.recent_from_s = self.time;
+            self.recent_j = [self.recent_j[1], 0.0];
+        }
+        self.recent_j[1] = self.recent_j[1].max(kinetic);
         if sway.abs() > self.least_sway_kg_m {
             let side = towards(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
@@ -707,6 +798,36 @@ impl<'a> Course<'a> {
         {
             (cycle.peak_rad, cycle.peak_time_s) = (largest, self.time);
         }
+        if self.highest_s == self.time && self.fallen > f64::NEG_INFINITY {
+            self.note_return();
+        }
+    }
+
+    /// Notes that it has not fallen without return before now.
+    pub(in crate::dynamics) fn note_return(&mut self) {
+        let before_fall = &mut self.before_fall;
+        before_fall.time_s = self.time;
+        let peaks_rad = &self.summary.peak_rotations_rad;
+        before_fall.peak_rotations_rad.clone_from(peaks_rad);
+        before_fall.impacts = self.summary.impacts;
+        before_fall.half_cycles = self.of_row.half_cycles.len();
+        before_fall.cycle = self.cycle;
+        before_fall.thrust = self.thrust;
+    }
+
+    /// Takes the results back to those of the instant at which it fell without return.
+    fn take_back_the_fall(&mut self) {
+        let before_fall = std::mem::take(&mut self.before_fall);
+        self.summary.peak_rotations_rad = before_fall.peak_rotations_rad;
+        self.summary.impacts = before_fall.impacts;
+        self.of_row.half_cycles.truncate(before_fall.half_cycles);
+        self.cycle = None;
+        let cycle = before_fall.cycle.map(|cycle| HalfCycle {
+            duration_s: before_fall.time_s - cycle.start_s,
+            ..cycle
+        });
+        self.of_row.half_cycles.extend(cycle);
+        self.thrust = before_fall.thrust;
     }
 
     /// Raises the peaks to the rotations of the blocks now; returns the largest of these.
@@ -770,8 +891,9 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Ends the motion here.
-    pub(in crate::dynamics) const fn stop(&mut self) {
+    /// Ends the motion here: it cannot overturn any more.
+    pub(in crate::dynamics) const fn decide(&mut self) {
+        self.is_safe = true;
         self.stopped = true;
     }
 
@@ -876,24 +998,25 @@ impl<'a> Course<'a> {
 
     /// Makes the summary, and reports the end if the row rests or has overturned.
     pub(in crate::dynamics) fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
+        if let Outcome::Overturned(_) = outcome {
+            self.take_back_the_fall();
+        }
         self.end_cycle(None);
-        let Task {
-            barrier_j,
-            energy_scale_j,
-            ..
-        } = self.task;
-        let energy_error = self.energy_error(energy_scale_j);
+        let outcome = match outcome {
+            Outcome::Overturned(_) | Outcome::Rest => outcome,
+            _ if self.is_incomplete() => Outcome::Incomplete,
+            _ => outcome,
+        };
+        let energy_error = self.energy_error(self.task.energy_scale_j);
         let (mut summary, mut of_row) = (self.summary.clone(), self.of_row.clone());
         of_row.energy_error = energy_error;
-        let sliding = of_row.sliding.as_ref();
-        let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
         of_row.largest_potential_j = self.peak_potential;
         summary.outcome = outcome;
         summary.outcome_time_s = outcome_time_s;
         summary.end_s = self.time;
-        summary.peak_potential_over_barrier = barrier_j
-            .filter(|barrier_j| rubbed_j <= SLIPPED_RATIO * barrier_j)
-            .map(|barrier_j| self.peak_potential / barrier_j);
+        let barrier_j = self.known_barrier_j();
+        summary.peak_potential_over_barrier =
+            barrier_j.map(|barrier_j| self.peak_potential / barrier_j);
         summary.thrust = self.recorder.is_some().then_some(self.thrust);
         summary.row = Some(Box::new(of_row));
         let ending = match outcome {

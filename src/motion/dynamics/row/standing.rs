@@ -1,12 +1,13 @@
 //! What is known of a row of rigid blocks before it moves: the push that starts it, and its first mechanism.
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Shape;
 use crate::dynamics::model::Initial;
-use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::row::FourLinkRow;
@@ -86,7 +87,8 @@ impl RigidRow {
             onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
         ];
         Ok(Self {
-            first: FirstMechanism::of(&row),
+            // No motion is released from the first mechanism of a row with ties, whose barrier is known only without them.
+            first: FirstMechanism::of(&row.clone().without_ties()),
             standing: Stance::undeformed(&row),
             row,
             incipient_g,
@@ -179,10 +181,7 @@ impl RigidRow {
             with_friction_g: None,
             standing: follower.stance().clone(),
             // That of the blocks alone: energies are judged beside it.
-            first: match self.row.ties() {
-                [] => self.first,
-                _ => FirstMechanism::of(&self.row.clone().without_ties()),
-            },
+            first: self.first,
             row: self.row,
         })
     }
@@ -209,6 +208,12 @@ impl RigidRow {
         }
     }
 
+    /// The barrier of the row as it was built, in J, with rigid joints and without its ties; estimated where that is not known.
+    pub(in crate::dynamics) fn estimated_barrier_j(&self, gravity_m_s2: f64) -> f64 {
+        self.built_barrier_j(gravity_m_s2)
+            .unwrap_or_else(|| estimated_barrier_j(&self.row, gravity_m_s2))
+    }
+
     /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built, without its ties.
     /// Where hinges are open a small push sets it in a motion of hardly any energy.
     pub(in crate::dynamics) fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
@@ -230,13 +235,8 @@ impl RigidRow {
                 Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
             Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
-                // One block turns about the nearer edge of its base, up to where its centre is above that edge.
                 ([block], [base]) => {
-                    let rise = |edge: Edge| {
-                        let arm_m = block.centre_m - base.corner_m(edge);
-                        arm_m.norm() - arm_m.y
-                    };
-                    let rise_m = rise(Edge::Intrados).min(rise(Edge::Extrados));
+                    let rise_m = rise_to_overturn_m(block.centre_m, base);
                     Some(block.mass_kg * gravity_m_s2 * rise_m)
                 }
                 _ => None,
@@ -295,4 +295,33 @@ impl RigidRow {
         };
         Ok((0..blocks).map(rotation_rad).collect())
     }
+}
+
+/// Where no barrier is known, that of an arch is taken as this fraction of its weight times its size.
+const BARRIER_RATIO: f64 = 1e-3;
+
+/// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
+/// its joints overturns as one block, where that is least.
+pub(in crate::dynamics) fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
+    if row.supports() == Supports::Both {
+        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m();
+    }
+    let above = |(index, joint): (usize, &Joint)| {
+        let blocks = &row.blocks()[index..];
+        let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
+        let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
+        let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
+        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
+    };
+    let joints = row.joints().iter().enumerate();
+    joints.map(above).fold(f64::INFINITY, f64::min)
+}
+
+/// How far a centre of gravity rises, in m, until it is above the nearer edge of the joint about which its block turns.
+fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
+    let rise = |edge: Edge| {
+        let arm_m = centre_m - joint.corner_m(edge);
+        arm_m.norm() - arm_m.y
+    };
+    rise(Edge::Intrados).min(rise(Edge::Extrados))
 }

@@ -67,6 +67,11 @@ impl LandingStepper<'_> {
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
+        let least = REST_ENERGY_RATIO * self.course.energy_unit;
+        // Ties that have yielded or broken hold another energy where the row rests.
+        let rests = kinetic < least && self.height().abs() < least;
+        let known_s = self.lies_since_s.filter(|_| lies);
+        self.lies_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
         if self.may_end_on_hinges() {
             self.observe_hinges(kinetic);
         }
@@ -85,7 +90,7 @@ impl LandingStepper<'_> {
             self.quiet_since_s = course.time;
         }
         let height = (!self.right.moves()).then_some(course.potential);
-        self.summit.note(course, height);
+        self.summit.note_results(&mut self.course, height);
         let far_m = OVERTURNED_RATIO * self.row.size_m();
         let stood = self.rest.placement();
         let moved_m = self.placement.centres_m().iter().zip(stood.centres_m());
@@ -281,16 +286,12 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn rests_since(&self) -> Option<f64> {
-        let least = REST_ENERGY_RATIO * self.course.energy_unit;
         let on_hinges = self.rest.is_on_hinges() || self.right_support_is_gone();
         if on_hinges && !self.lies_at_rest() {
             let quiet = self.course.is_quiet(self.quiet_since_s);
             return quiet.then_some(self.quiet_since_s);
         }
-        // Ties that have yielded or broken hold another energy where the row rests.
-        let height = self.height();
-        let rests = kinetic(&self.pieces) < least && height.abs() < least;
-        rests.then_some(self.course.time)
+        self.lies_since_s
     }
 
     /// By its height: what is in ties may be less than at rest.
