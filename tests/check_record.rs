@@ -448,3 +448,89 @@ fn linear_ranges_have_round_numbers() {
         ["-0.3", "-0.2", "-0.1", "0.0", "0.1", "0.2", "0.3"]
     );
 }
+
+#[test]
+fn the_name_of_a_column_gives_the_unit_of_times() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = |names: &str, times: [u32; 4]| {
+        let rows = times.iter().zip([0.0, 2.0, -1.0, 0.0]);
+        let rows: String = rows.map(|(time, a)| format!("{time},{a}\n")).collect();
+        fs::write(folder.path().join("r.csv"), format!("{names}{rows}")).unwrap();
+        archrock(folder.path(), &["check", "r.csv", "--set", "unit=m/s2"])
+    };
+    for (names, times, step) in [
+        ("time_ms,acc\n", [0, 10, 20, 30], "every 0.01 s"),
+        ("t [ms],a\n", [0, 10, 20, 30], "every 0.01 s"),
+        ("Time (msec),a\n", [0, 10, 20, 30], "every 0.01 s"),
+        ("t_us,a\n", [0, 5000, 10_000, 15_000], "every 0.005 s"),
+        ("time_s,a\n", [0, 10, 20, 30], "every 10 s"),
+        // The letters are part of a word.
+        ("items,a\n", [0, 1, 2, 3], "every 1 s"),
+        ("", [0, 10, 20, 30], "every 10 s"),
+    ] {
+        let output = table(names, times);
+        let warnings = stderr(&output);
+        assert!(stdout(&output).contains(step), "{names}");
+        let asks = "r.csv has a sample every ";
+        assert_eq!(
+            warnings.contains(asks),
+            !step.contains("0.0"),
+            "{names}: {warnings}"
+        );
+        assert!(!warnings.contains(asks) || warnings.contains("are its times in milliseconds?"));
+    }
+    // The step that a key gives is asked about as well.
+    fs::write(folder.path().join("one.csv"), "0\n1\n0\n").unwrap();
+    let arguments = ["check", "one.csv", "--set", "unit=m/s2", "--set", "dt_s=5"];
+    let said = stderr(&archrock(folder.path(), &arguments));
+    assert!(said.contains("a sample every 5 s"), "{said}");
+}
+
+#[test]
+fn a_weak_record_is_asked_for_its_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    for (peak, asks) in [(0.09, true), (0.1, false), (29.0, false), (30.0, true)] {
+        fs::write(
+            folder.path().join("r.csv"),
+            format!("0,0\n0.01,{peak}\n0.02,0\n"),
+        )
+        .unwrap();
+        let output = archrock(folder.path(), &["check", "r.csv", "--set", "unit=m/s2"]);
+        let warnings = stderr(&output);
+        assert_eq!(
+            warnings.contains("is its unit \"m/s2\"?"),
+            asks,
+            "{peak}: {warnings}"
+        );
+    }
+}
+
+#[test]
+fn a_damaged_first_number_is_no_name_of_a_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let check = |first: &str, more: &[&str]| {
+        fs::write(
+            folder.path().join("r.csv"),
+            format!("{first}\n1.0\n-1.0\n0.5\n"),
+        )
+        .unwrap();
+        let arguments = ["check", "r.csv", "--set", "unit=m/s2", "--set", "dt_s=0.01"];
+        archrock(folder.path(), &[&arguments[..], more].concat())
+    };
+    for damaged in [
+        "0.0O12", "1.2.3", "-0.0l", "nan", "inf", "***", "1e", "+0.5E-",
+    ] {
+        for more in [&[][..], &["--set", "wrapped=true"]] {
+            let said = refusal(&check(damaged, more));
+            assert!(said.contains("r.csv:1:"), "{damaged}: {said}");
+            assert!(
+                said.contains("numbers begin on line 2"),
+                "{damaged}: {said}"
+            );
+        }
+    }
+    for name in ["acceleration", "a (m/s2)", "Acc. NS", "\"a\"", "acc_10Hz"] {
+        let said = stdout(&check(name, &[]));
+        assert!(said.contains("3 samples"), "{name}: {said}");
+    }
+}

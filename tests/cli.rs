@@ -555,6 +555,11 @@ fn a_mistyped_command_is_answered_with_the_likely_one() {
 #[test]
 fn every_help_has_examples_that_are_right() {
     let folder = tempfile::tempdir().unwrap();
+    let help = crate::program::stdout(&archrock(folder.path(), &["run", "--help"]));
+    assert!(
+        help.lines().next().unwrap().contains("report.html"),
+        "{help}"
+    );
     let commands = [
         "init",
         "run",

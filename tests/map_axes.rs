@@ -261,3 +261,48 @@ fn survivors_can_be_coloured_by_how_close_it_was() {
         "{said}"
     );
 }
+
+#[test]
+fn an_axis_that_is_no_key_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for axis in [
+        "column.height m",
+        "column..height_m",
+        "column.",
+        ".height_m",
+        "column.[x]",
+    ] {
+        let text = format!(
+            "{COLUMN}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.5\n[map]\n'{axis}' = [1, 2]\namplitude_g = [0.1, 0.2]\n"
+        );
+        let said = refused(folder.path(), &text, &[]);
+        let words = format!("`{axis}` names no number of another table, as \"arch.depth_m\" does");
+        assert!(said.contains(&words), "{said}");
+    }
+}
+
+#[test]
+fn a_map_without_a_title_has_no_second_line_either() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "title = 'Mine'\n{COLUMN}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.5\n[map]\nduration_s = [0.1, 0.2]\namplitude_g = [0.1, 0.2]\n"
+    );
+    let texts = |arguments: &[&str]| -> Vec<String> {
+        rows(folder.path(), &text, arguments);
+        let picture = fs::read_to_string(folder.path().join("results/s/map.svg")).unwrap();
+        let picture = Document::parse(&picture).unwrap();
+        let texts = picture
+            .descendants()
+            .filter(|node| node.has_tag_name("text"));
+        texts
+            .filter_map(|text| text.text().map(str::to_owned))
+            .collect()
+    };
+    let (with, without) = (texts(&[]), texts(&["--no-title"]));
+    let below_the_title = &with[1];
+    assert_eq!(with[0], "Mine");
+    assert!(
+        !without.contains(&with[0]) && !without.contains(below_the_title),
+        "{without:?}"
+    );
+}

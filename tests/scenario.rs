@@ -913,3 +913,31 @@ fn pedestals() {
         &[(4, 12, &["`pedestal", "true or false"])],
     );
 }
+
+#[test]
+fn control_characters_of_keys_are_escaped_in_messages() {
+    for text in [
+        "[uncertain]\n\"ground.\tone_sine.amplitude_g\" = { deviation = 0.1 }\nduration_s = 1\n",
+        "[uncertain]\n\"arch.\\u0007x\" = { deviation = 0.1, form = 'normal' }\n",
+        "[map]\n\"arch.\tx\" = [0.2]\n\"arch.\\u001by\" = 3\n",
+        "\"a\\nb\" = 1\n",
+    ] {
+        for text in [text.to_owned(), format!("{ARCH}{text}")] {
+            let errors = parse(&text).expect_err("the text is faulty");
+            for error in errors.as_slice() {
+                let control = error.message.chars().any(char::is_control);
+                assert!(!control, "{text:?}: {:?}", error.message);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_table_that_is_refused_as_a_whole_has_no_unknown_keys() {
+    let text = format!(
+        "{ARCH}voussoirs = 12\n[elastic_joints]\nnormal_stiffness_gpa_m = 10\n[initial]\nsway = 'right'\nrotation_rad = 0.1\n"
+    );
+    let errors = parse(&text).expect_err("nothing to release").to_string();
+    assert!(errors.contains("leave [initial] out"), "{errors}");
+    assert!(!errors.contains("unknown key"), "{errors}");
+}

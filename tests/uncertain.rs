@@ -1184,6 +1184,9 @@ fn suites_tell_the_parts_of_fragility() {
     };
     fs::write(at.join("s.toml"), text).unwrap();
     let said = done(at, &["suite", "s.toml", "--out", "r"]);
+    // Records of so few samples are asked about first.
+    let (asked, said) = said.split_once("of the suite are like that\n").unwrap();
+    assert!(asked.contains("a.csv has a sample every 0.3 s"), "{asked}");
     assert!(
         said.starts_with("  overturns with a probability of 5 % at peak_g "),
         "{said}"
@@ -1255,4 +1258,38 @@ fn suites_tell_the_parts_of_fragility() {
         ["1", "2"].map(|part| format!("p/uncertain_suite/uncertain_suite-{part}-of-2.part"));
     done(at, &["merge", &parts[0], &parts[1], "--out", "m"]);
     assert_eq!(files(&at.join("m")), files(&results));
+}
+
+/// Reading eight uncertain numbers takes about as long as reading one: all are tried together.
+#[test]
+fn many_uncertain_numbers_are_read_quickly() {
+    let keys = [
+        "arch.mean_radius_m",
+        "arch.thickness_ratio",
+        "arch.depth_m",
+        "arch.density_kg_m3",
+        "free_hinges.friction_coefficient",
+        "ground.rectangular.amplitude_g",
+        "ground.rectangular.duration_s",
+        "simulation.gravity_m_s2",
+    ];
+    let read_s = |count: usize| {
+        let keys: String = keys[..count]
+            .iter()
+            .map(|key| format!("'{key}' = {{ deviation = 1e-4 }}\n"))
+            .collect();
+        let text = format!(
+            "{ARCH}voussoirs = 40\ndepth_m = 1.0\ndensity_kg_m3 = 2000.0\n[free_hinges]\nfriction_coefficient = 0.7\n{PULSE}\
+             [simulation]\ngravity_m_s2 = 9.81\n[uncertain]\n{keys}"
+        );
+        let once = |_| {
+            let begun = std::time::Instant::now();
+            let read = parsed(&text);
+            assert_eq!(read.uncertain().unwrap().keys.len(), count);
+            begun.elapsed().as_secs_f64()
+        };
+        (0..9).map(once).fold(f64::INFINITY, f64::min)
+    };
+    let [one, all] = [1, 8].map(read_s);
+    assert!(all < 3.0 * one, "{one} s, {all} s");
 }

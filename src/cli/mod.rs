@@ -55,7 +55,7 @@ enum Command {
     /// Write a commented scenario to start from.
     #[command(after_help = examples::INIT)]
     Init(init::Arguments),
-    /// Simulate the time history of a scenario and write it as CSV and JSON.
+    /// Simulate the time history of a scenario: report.html to look at, pictures, tables as CSV, summary.json.
     #[command(after_help = examples::RUN)]
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.

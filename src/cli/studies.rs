@@ -347,7 +347,14 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
         _ => arguments.map.of_no_map(figure),
     })?;
     let origin = Origin::of_summary(&results.summary).unwrap_or_default();
-    let place = place.locked_for(Writer::merge(kind), &origin, quiet)?;
+    let writer = Writer::merge(kind);
+    let place = place.locked_for(writer, &origin, quiet)?;
+    // Samples are merged into a folder inside that of their command.
+    let around = place.path().parent();
+    let around = around.filter(|_| place.path().ends_with(kind.name()) && !quiet);
+    if let Some(around) = around {
+        super::warn(&writer.warnings(around, &origin));
+    }
     place.prepare(&results)?;
     place.publish()?;
     show(&results, &place, arguments.format, quiet)

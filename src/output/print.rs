@@ -22,7 +22,7 @@ pub enum PictureFormat {
 pub enum PrintError {
     /// The program was built without.
     #[error(
-        "this archrock was built without PDF and PNG: build it with cargo install --features print, or take the picture as SVG"
+        "this archrock was built without PDF and PNG: build it with `cargo install --path . --features print`, or choose SVG"
     )]
     NotBuilt,
     /// There is no such format.

@@ -123,6 +123,15 @@ impl Drawing {
         self.paragraph(&lines, Vector2::new(0.5 * self.figure.width_px(), 26.0))
     }
 
+    /// Centred text below a title that ends at `top`; left out with the title. Returns the position of its lower end.
+    pub fn subtitle(&mut self, top: f64, text: &str) -> f64 {
+        if self.figure.has_title() {
+            self.caption(top + 11.0, text)
+        } else {
+            top
+        }
+    }
+
     /// Centred text, its first baseline at `y`, in as many lines as it needs; returns the position of its lower end.
     pub fn caption(&mut self, y: f64, text: &str) -> f64 {
         let middle = Vector2::new(0.5 * self.figure.width_px(), y);

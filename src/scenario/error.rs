@@ -92,16 +92,18 @@ impl ScenarioErrors {
                     },
                 };
             }
+            // Keys may hold control characters.
+            let message = shown(&fault.message);
             match behind.at(fault.offset) {
                 Some(assignment) => ScenarioError {
                     file: format!("--set {}", excerpt(assignment)),
                     place: None,
-                    message: fault.message,
+                    message,
                 },
                 None => ScenarioError {
                     file: source.name.clone(),
                     place: Some(place),
-                    message: fault.message,
+                    message,
                 },
             }
         });

@@ -459,6 +459,10 @@ impl<'a> Table<'a> {
     }
 
     fn reject_unknown_keys(&mut self) {
+        // A reader that refused the whole table has not asked for its keys.
+        if self.known.is_empty() && !self.faults.is_empty() {
+            return;
+        }
         for key in self.entries.keys() {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
             if !self.known.iter().any(|known| known == name) {

@@ -8,9 +8,11 @@ use crate::dynamics::model::Model;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
 
-/// The strongest recorded ground accelerations are a little above 2 g, and people do not feel those below the lower
-/// limit. A value outside is probably in another unit.
-const PEAK_G: RangeInclusive<f64> = 1e-3..=3.0;
+/// The strongest recorded ground accelerations are a little above 2 g, and those below the lower limit move no masonry. A value outside is
+/// probably in another unit.
+const PEAK_G: RangeInclusive<f64> = 0.01..=3.0;
+/// Records have 50 to 200 samples a second. Longer steps than this are probably in another unit.
+const RECORD_STEP_S: f64 = 0.1;
 /// A pulse this many times as strong as the one that starts the structure would throw it.
 const PEAK_OVER_INCIPIENT: f64 = 20.0;
 /// The largest masonry arches span 140 m.
@@ -220,6 +222,14 @@ impl Series {
                 Scaling::PeakG(_) => "is `peak_g` in units of gravity?".to_owned(),
             };
             unlikely.push(format!("{name} peaks at {} g: {might_be}", plain(peak_g)));
+        }
+        let sampling = self.sampling();
+        let step_s = sampling.duration_s / (sampling.count - 1) as f64;
+        if step_s > RECORD_STEP_S {
+            unlikely.push(format!(
+                "{name} has a sample every {} s: are its times in milliseconds?",
+                plain(step_s)
+            ));
         }
         let mean_g = self.mean_g(gravity_m_s2);
         if self.layout.form == Form::Knet && mean_g.abs() > OFFSET * peak_g {

@@ -219,4 +219,5 @@ fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
         format!("{key}={value:?}")
     };
     text.parse()
+        .map_err(|_| format!("`{key}` names no number of another table, as \"arch.depth_m\" does"))
 }

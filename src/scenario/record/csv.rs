@@ -39,6 +39,7 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
         return Err(nothing(text));
     };
     let columns = Columns::find(layout, &first)?;
+    let unit_s = columns.time_unit_s(&first);
     let mut step_s = None;
     let mut samples: Samples = Vec::new();
     let mut last_line = first.line;
@@ -76,6 +77,7 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
                 0.0
             }
             Times::Column(_) => {
+                let time_s = time_s * unit_s;
                 check_time(time_s, samples.last().map(|sample| sample.0)).map_err(fault)?;
                 time_s
             }
@@ -182,12 +184,25 @@ impl Columns {
             has_names: by_name,
         };
         let mut cells = columns.all().filter_map(|index| names.get(index));
-        let has_names = by_name || cells.all(|cell| columns.number(cell).is_err());
+        let has_names = by_name || cells.all(|cell| names_column(cell, layout.decimal));
         drop(cells);
         Ok(Self {
             has_names,
             ..columns
         })
+    }
+
+    /// The unit of the times, which their name may give as in `time_ms` or `t [ms]`.
+    fn time_unit_s(&self, first: &Row<'_>) -> f64 {
+        let name = self.time.and_then(|index| first.cells().nth(index));
+        let name = name.filter(|_| self.has_names).unwrap_or_default();
+        let words = name.split(|c: char| !c.is_alphanumeric());
+        let units = words.filter_map(|word| match word.to_ascii_lowercase().as_str() {
+            "ms" | "msec" | "millisecond" | "milliseconds" => Some(1e-3),
+            "us" | "usec" | "microsecond" | "microseconds" | "\u{b5}s" | "\u{3bc}s" => Some(1e-6),
+            _ => None,
+        });
+        units.last().unwrap_or(1.0)
     }
 
     /// The columns that are read.
@@ -258,12 +273,23 @@ impl Decimal {
     }
 }
 
+/// Whether a cell of the first row names its column. A damaged number is no name: more than half of its characters are those of numbers, or
+/// half of them and the first one.
+fn names_column(cell: &str, decimal: Decimal) -> bool {
+    let is_of_numbers = |c: char| c.is_ascii_digit() || ".,+-".contains(c);
+    let of_numbers = cell.chars().filter(|c| is_of_numbers(*c)).count();
+    let is_damaged =
+        2 * of_numbers + usize::from(cell.starts_with(is_of_numbers)) > cell.chars().count();
+    let is_number = cell.parse::<f64>().is_ok() || decimal.number(cell).is_ok();
+    cell.is_empty() || cell.contains(char::is_alphabetic) && !is_number && !is_damaged
+}
+
 /// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
     let mut rows = Rows::new(text, Decimal::Point);
     let mut found = Vec::new();
     while let Some(row) = rows.next()? {
-        if found.is_empty() && row.cells().all(|cell| number(cell).is_err()) {
+        if found.is_empty() && row.cells().all(|cell| names_column(cell, Decimal::Point)) {
             continue;
         }
         let cells: Vec<&str> = row.cells().collect();

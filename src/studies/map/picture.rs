@@ -135,7 +135,7 @@ impl Sheet<'_> {
         let figure = look.figure;
         let mut drawing = Drawing::new(figure);
         let top = drawing.title(title);
-        let top = drawing.caption(top + 11.0, &caption(map.scenario(), &map.axes()));
+        let top = drawing.subtitle(top, &caption(map.scenario(), &map.axes()));
         let factors = self.factors();
         let [x_axis, y_axis] = map.axes();
         let (x, x_edges) = scale(x_axis, factors[0], figure);

@@ -2,7 +2,7 @@
 
 use super::super::layout::{Decimal, TableLayout, evenly};
 use super::super::{LineFault, MAX_SAMPLES, Samples, in_range};
-use super::{Row, Rows, nothing};
+use super::{Row, Rows, names_column, nothing};
 
 /// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
 /// shorter; or the total number of samples is given before the table (`text` includes the skipped lines), in a comment or in
@@ -98,7 +98,7 @@ fn is_of_numbers(row: &Row<'_>, decimal: Decimal) -> bool {
 }
 
 fn has_no_number(row: &Row<'_>, decimal: Decimal) -> bool {
-    row.cells().all(|cell| decimal.number(cell).is_err())
+    row.cells().all(|cell| names_column(cell, decimal))
 }
 
 #[cfg(test)]
