@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::model::Recorder;
+use archrock::dynamics::history::Summary;
+use archrock::dynamics::model::{Recorder, WithoutDemand};
 use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -588,4 +589,37 @@ fn lines_of_thrust_of_a_column_pass_through_its_toe() {
         }] += 1;
     }
     assert!(swayed.iter().all(|count| *count > 5), "{swayed:?}");
+}
+
+/// A recorder that does not want the demand gets the same motion without it.
+#[test]
+fn samples_without_demand_are_the_same() {
+    let arch = common::seven_voussoirs();
+    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.4 * GRAVITY, 0.1, 0.5).unwrap();
+    let request = sampled(3.0, 0.01);
+    let (mut with, mut without): (Vec<Sample>, Vec<Sample>) = Default::default();
+    let mut all = |sample: &Sample| {
+        with.push(sample.clone());
+        ControlFlow::Continue(())
+    };
+    let own = arch.simulate(&ground, &request, Some(&mut all)).unwrap();
+    let mut bare = WithoutDemand(|sample: &Sample| {
+        without.push(sample.clone());
+        ControlFlow::Continue(())
+    });
+    let spared = arch.simulate(&ground, &request, Some(&mut bare)).unwrap();
+    assert!(own.thrust.is_some() && spared.thrust.is_none());
+    assert_eq!(
+        own,
+        Summary {
+            thrust: own.thrust,
+            ..spared
+        }
+    );
+    assert!(without.iter().all(|sample| sample.demand == Demand::NONE));
+    assert!(with.iter().any(|sample| sample.demand.friction > 0.1));
+    for sample in &mut with {
+        sample.demand = Demand::NONE;
+    }
+    assert!(with == without);
 }

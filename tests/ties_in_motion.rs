@@ -533,7 +533,7 @@ fn a_tie_that_breaks_holds_no_more() {
         // It breaks as it is stretched to its strain: the force then, and the energy.
         let force_n = 1e7 * 5e-4 * whole.slack_length_m();
         assert!(
-            (told.peak_force_n / force_n - 1.0).abs() < 0.01,
+            (told.peak_force_n / force_n - 1.0).abs() < 1e-9,
             "{}",
             told.peak_force_n
         );

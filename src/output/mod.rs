@@ -109,3 +109,22 @@ pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ends_of_a_range_can_be_distinguished() {
+        for (ends, printed) in [
+            ([0.98791, 1.2], ["0.988", "1.200"]),
+            ([0.98791, 0.98794], ["0.98791", "0.98794"]),
+            ([1e-8, 2e-8], ["0.00000001", "0.00000002"]),
+            ([0.5, 0.5], ["0.500", "0.500"]),
+        ] {
+            assert_eq!(range_ends(ends, 3), printed);
+        }
+        // Neighbouring numbers end the search.
+        let _ = range_ends([1.0, 1.0 + f64::EPSILON], 3);
+    }
+}

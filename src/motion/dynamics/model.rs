@@ -457,6 +457,12 @@ pub trait Recorder {
         ControlFlow::Continue(())
     }
 
+    /// Whether samples need the thrust excess and the friction demand, which take most of the time of a history of four links. Without
+    /// them, the summary of mechanisms has no record of thrust.
+    fn wants_demand(&self) -> bool {
+        true
+    }
+
     /// Whether samples need the line of thrust, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false
@@ -480,5 +486,18 @@ pub trait Recorder {
 impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for F {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self(sample)
+    }
+}
+
+/// A function records samples without the demand of the line of thrust.
+pub struct WithoutDemand<F>(pub F);
+
+impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for WithoutDemand<F> {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        (self.0)(sample)
+    }
+
+    fn wants_demand(&self) -> bool {
+        false
     }
 }

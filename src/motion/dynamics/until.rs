@@ -83,6 +83,10 @@ impl UntilSafe {
 }
 
 impl Recorder for UntilSafe {
+    fn wants_demand(&self) -> bool {
+        false
+    }
+
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
         // A row that has slipped stands lower: its energy says nothing.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::statistics::{Share, band, quantile};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
-use crate::dynamics::model::Model;
+use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::spread::repeated;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
@@ -102,7 +102,7 @@ impl Histories {
             request.output_step_s = self.step_s;
         }
         let mut course_rad: Vec<f32> = Vec::with_capacity(self.times);
-        let mut record = |sample: &Sample| {
+        let mut record = WithoutDemand(|sample: &Sample| {
             // The rounding error of times is far below half an output step.
             let wanted = self.step_s * course_rad.len() as f64 - 0.5 * request.output_step_s;
             if sample.time_s >= wanted && course_rad.len() < self.times {
@@ -114,7 +114,7 @@ impl Histories {
                 course_rad.push(rotation.unwrap_or(0.0) as f32);
             }
             ControlFlow::Continue(())
-        };
+        });
         let failed = |error: String| NoAnswer::Failed(error);
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use super::film::Film;
 use crate::dynamics::history::{Sample, State};
+use crate::dynamics::model::WithoutDemand;
 use crate::output::envelope::Envelope;
 use crate::output::scene::Scene;
 use crate::scenario::Scenario;
@@ -59,7 +60,7 @@ fn history(scenario: &Scenario, body: usize) -> Option<Beside> {
         turning: Envelope::of_columns(COLUMNS),
         falls: false,
     };
-    let mut record = |sample: &Sample| {
+    let mut record = WithoutDemand(|sample: &Sample| {
         if matches!(sample.state, State::Overturned(_)) {
             beside.falls = true;
             return ControlFlow::Break(());
@@ -69,7 +70,7 @@ fn history(scenario: &Scenario, body: usize) -> Option<Beside> {
             beside.turning.push(sample.time_s, *rotation_rad);
         }
         ControlFlow::Continue(())
-    };
+    });
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     let summary = model.simulate(ground, &request, Some(&mut record));
     summary.ok()?;

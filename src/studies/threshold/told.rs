@@ -372,14 +372,19 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
             RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
             RangeEnd::Edge => (format!("to {to}"), ""),
         };
+        let all = if range.from == range.to && range.to_end != RangeEnd::Sampled {
+            format!("at factor {begins}{beyond}")
+        } else {
+            format!("from factor {begins} {ends}{beyond}")
+        };
         match (verdict, lines.last_mut()) {
             (Verdict::Overturns, _) => {
-                lines.push(format!("overturns from factor {begins} {ends}{beyond}"));
+                lines.push(format!("overturns {all}"));
             }
             (Verdict::Survives, None) => {}
             (verdict, None) => {
                 let what = verdict.name();
-                lines.push(format!("{what} from factor {begins} {ends}{beyond}"));
+                lines.push(format!("{what} {all}"));
             }
             (verdict, Some(line)) => {
                 let what = verdict.name();

@@ -21,7 +21,7 @@ use crate::dynamics::model::{
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
-use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
+use crate::mechanics::chain::{Demand, Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::four_link::arch::FourLinkArch;
@@ -198,10 +198,12 @@ fn history_of<C: MechanismChain + MechanismModel>(
         peak_over_critical: Some(peak_over_critical),
         peak_potential_over_barrier: None,
         energy_defect_ratio: tally.largest_defect / rocking.barrier(),
-        thrust: sampler.map(|sampler| match outcome {
-            Outcome::Overturned(_) => sampler.thrust_before_critical,
-            _ => sampler.thrust,
-        }),
+        thrust: sampler
+            .filter(|sampler| sampler.recorder.wants_demand())
+            .map(|sampler| match outcome {
+                Outcome::Overturned(_) => sampler.thrust_before_critical,
+                _ => sampler.thrust,
+            }),
         cost: finish.cost,
         row: None,
     })
@@ -688,7 +690,11 @@ impl<'r> Sampler<'r> {
             rates_rad_s,
             poses,
             hinges,
-            demand: rocking.demand(mode, piece, time_s, state),
+            demand: if self.recorder.wants_demand() {
+                rocking.demand(mode, piece, time_s, state)
+            } else {
+                Demand::NONE
+            },
             energy_j: energy * rocking.chain().joules_per_unit(),
             energy_ratio: Some(energy / barrier),
             rotation_over_critical: Some(rotation_over_critical),
