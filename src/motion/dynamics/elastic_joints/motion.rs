@@ -107,6 +107,8 @@ impl<R: Real> Bearing<R> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spent<R> {
     pub friction_j: R,
+    /// Energy that the balance misses by slip.
+    pub slip_balance_j: R,
     pub damped_j: R,
     pub crushed_j: R,
     /// What ties took as they yielded and broke.
@@ -225,6 +227,7 @@ impl<'a, const L: usize> Motion<'a, L> {
                 .collect(),
             spent: Spent {
                 friction_j: zero,
+                slip_balance_j: zero,
                 damped_j: zero,
                 crushed_j: zero,
                 ties_j: zero,
@@ -256,13 +259,22 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
         let Spent {
             friction_j,
+            slip_balance_j,
             damped_j,
             crushed_j,
             ties_j,
             ground_j,
             feet_j,
         } = &mut self.spent;
-        for energy in [friction_j, damped_j, crushed_j, ties_j, ground_j, feet_j] {
+        for energy in [
+            friction_j,
+            slip_balance_j,
+            damped_j,
+            crushed_j,
+            ties_j,
+            ground_j,
+            feet_j,
+        ] {
             energy.0[lane] = 0.0;
         }
     }
@@ -357,7 +369,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         let damps = structure.damping_time_s() > 0.0;
         let damping = if damps { Some(damping) } else { None };
         let (law, each) = (structure.law(), structure.fibres());
-        let (mut friction_j, mut damped_j, mut crushed_j) = (zero, zero, zero);
+        let (mut friction_j, mut balance_j, mut damped_j, mut crushed_j) = (zero, zero, zero, zero);
         for (part, joints) in structure.joints().chunks(TOGETHER).enumerate() {
             let first = part * TOGETHER;
             let memories = &mut self.memories[first..first + joints.len()];
@@ -381,6 +393,7 @@ impl<'a, const L: usize> Motion<'a, L> {
                 let (gap, edges_n) = (&bearing.gap, bearing.edges_n);
                 let rubbing = law.rub(joint, damping, gap, edges_n, memory);
                 friction_j += rubbing.friction_j;
+                balance_j += rubbing.balance_j;
                 damped_j += rubbing.damped_j;
                 bearing.shear_n = rubbing.shear_n;
             }
@@ -393,6 +406,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             }
         }
         self.spent.friction_j += friction_j;
+        self.spent.slip_balance_j += balance_j;
         self.spent.damped_j += damped_j;
         self.spent.crushed_j += crushed_j;
         self.pull();

@@ -351,8 +351,13 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.elastic.friction_j = of(spent.friction_j);
         lane.elastic.crushed_j = of(spent.crushed_j);
         lane.elastic.ties_j = of(spent.ties_j);
-        let joints_j = lane.elastic.damped_j + lane.elastic.friction_j + lane.elastic.crushed_j;
-        let taken = joints_j + lane.elastic.ties_j;
+        let taken_with = |friction_j: f64| {
+            let joints_j = lane.elastic.damped_j + friction_j + lane.elastic.crushed_j;
+            joints_j + lane.elastic.ties_j
+        };
+        // The balance closes with the slip of the discrete motion, of which the work of friction is an estimate.
+        let taken = taken_with(of(spent.slip_balance_j));
+        course.of_row.energy_taken_j = taken_with(lane.elastic.friction_j);
         lane.happened.clear();
         let bound = self.start.structure.ties().iter();
         for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
@@ -365,7 +370,6 @@ impl<'a, const L: usize> Group<'a, L> {
             lane.happened.extend(happened.map(|kind| (tie, kind)));
         }
         let of_row = &mut course.of_row;
-        of_row.energy_taken_j = taken;
         (of_row.ground_j, of_row.right_foot_j) = (of(spent.ground_j), of(spent.feet_j));
         let potential = stored - rest_j;
         let due = of_row.ground_j + of_row.right_foot_j - taken;

@@ -247,8 +247,12 @@ pub struct Rubbing<R> {
     pub shear_n: R,
     /// Energy taken in the step by damping, in J.
     pub damped_j: R,
-    /// By friction.
+    /// Energy taken in the step by friction, in J: the slip times the mean of the forces before and after, or times the force after
+    /// where the force before pulled the other way. Never negative.
     pub friction_j: R,
+    /// Energy that the balance of the discrete motion misses by slip, in J: the trapezoidal rule. Negative where the force reverses within
+    /// a step, which creates energy.
+    pub balance_j: R,
 }
 
 /// What all joints of a structure have in common.
@@ -338,7 +342,9 @@ impl Law {
         let trial = memory.shear_n + slid * kt;
         let elastic = clamped(trial, bound);
         let slipped = (trial - elastic) * (1.0 / kt);
-        let friction_j = (memory.shear_n + elastic) * slipped * 0.5;
+        let balance_j = (memory.shear_n + elastic) * slipped * 0.5;
+        let [before, after] = [memory.shear_n * slipped, elastic * slipped];
+        let friction_j = before.positive(balance_j, after);
         let (mut shear_n, mut damped_j) = (elastic, R::of(0.0));
         if let Some(damping) = damping {
             shear_n = clamped(elastic + slid * damping * kt, bound);
@@ -353,6 +359,7 @@ impl Law {
             shear_n,
             damped_j,
             friction_j,
+            balance_j,
         }
     }
 }
