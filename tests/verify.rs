@@ -7,7 +7,7 @@ use crate::common::{ARCH, COLUMN};
 use crate::program::{archrock, printed as print_of, refused, scenarios};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
-    ByDisplacement, Check, Method, NoCheck, SideCheck, to_json, words,
+    ByDisplacement, Check, Method, NoCheck, SideCheck, page, to_json, words,
 };
 use archrock::{Scenario, Sway};
 use serde_json::Value;
@@ -240,6 +240,24 @@ fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
     assert!((slv.margin.zeta_e - start_g / 0.25).abs() < 1e-12);
     let said = words(&check);
     assert!(said.contains("the activation counts"), "{said}");
+    assert!(said.contains("to either side, by activation"), "{said}");
+    let json = to_json(&parsed(&text), &check).unwrap();
+    assert_eq!(json["states"]["slv"]["method"], "activation");
+    assert_eq!(json["states"]["slv"]["side"], "either");
+    // The row of the page has the accelerations that are compared, not the displacements.
+    let html = page(&parsed(&text), &check, "2025-01-31");
+    let row = html
+        .split("<tr class=\"counts\">")
+        .find(|row| row.contains(">SLV<"));
+    let row = row.unwrap().split("</tr>").next().unwrap();
+    assert!(
+        row.contains(&format!("{:.4}</data> g</td>", start_g)),
+        "{row}"
+    );
+    assert!(
+        row.contains("0.2500</data> g</td>") && !row.contains(" m</td>"),
+        "{row}"
+    );
 }
 
 /// The table of the file; the code's own numbers for it are FC 1.35, 0.4 d0, 1.68, 8 %.
@@ -438,10 +456,10 @@ const LOCKS: &str = "[pointed_arch]\nspan_m = 2.02\nrise_m = 1.46\nthickness_m =
     [piers]\nheight_m = 2.62\nwidth_m = 2.09\nblocks = 2\n";
 const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
 
-/// A linkage that locks and a stack of drums: only the damage limit state and its multiple can be checked.
+/// A linkage that locks: only the damage limit state and its multiple can be checked.
 #[test]
 fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
-    for (structure, why) in [(LOCKS, "comes to the end of its way"), (DRUMS, "drums")] {
+    for (structure, why) in [(LOCKS, "comes to the end of its way")] {
         let check = check(&format!("{structure}{DEMAND}"));
         for mechanism in &check.mechanisms {
             assert!(mechanism.way.as_ref().unwrap_err().contains(why));
@@ -474,12 +492,70 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         assert!(matches!(error, NoCheck::NoCurve(_)));
         assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
     }
-    // A stack of drums that turns about its base is like the column.
-    let [drums, column] = [DRUMS, COLUMN].map(|structure| check(&format!("{structure}{DEMAND}")));
-    let (drums, column) = (&drums.mechanisms[0], &column.mechanisms[0]);
-    assert!((drums.alpha0 / column.alpha0 - 1.0).abs() < 1e-9);
-    assert_eq!(drums.bodies.len(), 1);
-    assert!((drums.bodies[0].displacement - column.bodies[0].displacement).norm() < 1e-9);
+}
+
+/// A column that is cut into drums, given as blocks or tapered turns about its toe as one block. Its curve is that of the block: with the
+/// centre of mass at the height `h` and the distance `b` from the toe, `alpha0 = b / h` and `d0 = b`, and `alpha` falls as the tangent of an
+/// angle.
+#[test]
+fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
+    let column = check(&format!("{COLUMN}{DEMAND}"));
+    let drums = check(&format!("{DRUMS}{DEMAND}"));
+    for state in [LimitState::Sld, LimitState::Slv, LimitState::Slc] {
+        for sway in [Sway::Right, Sway::Left] {
+            let [own, block] = [&drums, &column].map(|check| side(check, state, sway).governing());
+            let ((method, own), (same, block)) = (own.unwrap(), block.unwrap());
+            assert_eq!(method, same);
+            assert!((own.zeta_e / block.zeta_e - 1.0).abs() < 1e-9);
+        }
+    }
+    let (own, block) = (&drums.mechanisms[0], &column.mechanisms[0]);
+    assert_eq!(own.bodies.len(), 1);
+    assert!((own.bodies[0].displacement - block.bodies[0].displacement).norm() < 1e-9);
+    let crowns = [own, block].map(|one| {
+        let way = one.way.as_ref().unwrap();
+        assert!((way.friction_up_to(0.6) - 0.2).abs() < 1e-9);
+        way.crown.as_ref().unwrap().end().displacement_m
+    });
+    assert!((crowns[0] / crowns[1] - 1.0).abs() < 1e-9);
+
+    // A parallelogram of 3 m by 0.8 m that leans 0.2 m to the left, and a taper from 1 m to 0.6 m.
+    let folder = in_folder("[blocks]\njoints = 'lean.csv'\nsupports = 'left'\n", DEMAND);
+    std::fs::write(
+        folder.path().join("lean.csv"),
+        "-0.3,0,0.5,0\n-0.5,3,0.3,3\n",
+    )
+    .unwrap();
+    let leaning = Check::new(&Scenario::read(&folder.path().join("a.toml")).unwrap()).unwrap();
+    let taper = "[column]\nheight_m = 3\nwidth_m = 1\ntop_width_m = 0.6\n[free_hinges]\n";
+    let taper = check(&format!("{taper}{DEMAND}"));
+    let taper_centre_m = 3.0 * (1.0 + 2.0 * 0.6) / (3.0 * (1.0 + 0.6));
+    for (check, sway, b_m, h_m) in [
+        (&leaning, Sway::Right, 0.5, 1.5),
+        (&leaning, Sway::Left, 0.3, 1.5),
+        (&taper, Sway::Right, 0.5, taper_centre_m),
+        (&taper, Sway::Left, 0.5, taper_centre_m),
+    ] {
+        let mechanism = check.mechanism(sway).unwrap();
+        let way = mechanism.way.as_ref().unwrap();
+        let (alpha0, slenderness) = (b_m / h_m, f64::atan2(b_m, h_m));
+        assert!((mechanism.alpha0 / alpha0 - 1.0).abs() < 1e-9);
+        assert!((way.centre.end().oscillator_displacement_m / b_m - 1.0).abs() < 1e-9);
+        assert!((way.friction_up_to(1.0) / alpha0 - 1.0).abs() < 1e-9);
+        for point in &way.centre.curve {
+            let alpha = (slenderness - point.q_rad).tan();
+            assert!((point.oscillator_acceleration_g - alpha).abs() < 1e-9);
+            let radius_m = f64::hypot(b_m, h_m);
+            let d_m = b_m - radius_m * (slenderness - point.q_rad).sin();
+            assert!((point.oscillator_displacement_m - d_m).abs() < 1e-9);
+        }
+    }
+    let said = words(&leaning);
+    assert!(
+        said.contains("SLV  not passed: zeta_E 0.84538 to the left"),
+        "{said}"
+    );
+    assert!(words(&taper).contains("to either side, by displacement"));
 }
 
 /// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
@@ -502,6 +578,143 @@ fn c8_7_1_1_what_slides_before_is_no_mechanism() {
     assert!(!words(&check(&format!("{COLUMN}{DEMAND}"))).contains("warning"));
 }
 
+/// Friction is compared with the smaller of 0.577 and the coefficient of the scenario. If joints of that coefficient slide first, there is
+/// no check.
+#[test]
+fn c8_7_1_1_the_friction_of_the_scenario_counts() {
+    let squat = COLUMN.replace("width_m = 0.8", "width_m = 2");
+    let with = |coefficient: f64| {
+        format!("{squat}[free_hinges]\nfriction_coefficient = {coefficient}\n{DEMAND}")
+    };
+    let error = Check::new(&parsed(&with(0.3))).unwrap_err();
+    assert!(
+        matches!(error, NoCheck::Slides { coefficient, at_g, .. } if coefficient == 0.3 && (at_g - 0.3).abs() < 1e-9),
+        "{error}"
+    );
+    let enough = parsed(&with(0.52));
+    let check_enough = Check::new(&enough).unwrap();
+    assert_eq!(check_enough.warnings, Vec::<String>::new());
+    let json = to_json(&enough, &check_enough).unwrap();
+    assert_eq!(json["allowed_friction"], 0.52);
+    assert!(page(&enough, &check_enough, "").contains("the scenario has 0.52"));
+    assert_eq!(check(&with(0.8)).allowed_friction, 0.577);
+    // The mechanism needs 0.590, and it does not slide first at 0.588.
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\nvoussoirs = 20\n";
+    let slides = format!("{arch}[free_hinges]\nfriction_coefficient = 0.42\n{DEMAND}");
+    let error = Check::new(&parsed(&slides)).unwrap_err();
+    assert!(
+        error.to_string().contains("0.42 joints slide at 0.1204 g"),
+        "{error}"
+    );
+    let warned = check(&format!("{arch}{DEMAND}")).warnings;
+    assert!(
+        warned[0].contains(
+            "needs a friction coefficient of 0.590, and the Circolare has 0.577 for walls"
+        ),
+        "{warned:?}"
+    );
+}
+
+/// Sides with a number that differs are printed one by one: a tie that holds one side, a leaning stack, a demand that only words of the
+/// mechanism hide.
+#[test]
+fn sides_that_differ_are_both_on_the_page() {
+    let tied = "[[tie]]\nfrom_m = [0.0, 3.5]\nto_m = [-4.0, 3.5]\nstiffness_n_m = 1e6\nprestress_n = 5000\nto_block = 0\n";
+    let arch_tie = "[[tie]]\nfrom_m = [-4.2, 2.5]\nto_m = [-7.0, 0.0]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 1000\n";
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 36\n";
+    for (structure, sides) in [
+        (format!("{COLUMN}{tied}"), 2),
+        (format!("{arch}{arch_tie}"), 2),
+        (COLUMN.to_owned(), 1),
+        (arch.to_owned(), 1),
+        (DRUMS.to_owned(), 1),
+    ] {
+        let scenario = parsed(&format!("{structure}{DEMAND}"));
+        let check = Check::new(&scenario).unwrap();
+        let html = page(&scenario, &check, "2025-01-31");
+        assert_eq!(html.contains("mirror image"), sides == 1, "{structure}");
+        assert_eq!(html.contains("either side"), sides == 1, "{structure}");
+        for sway in ["right", "left"] {
+            assert_eq!(
+                html.matches(&format!("<h3>To the {sway}</h3>")).count(),
+                2 * (sides - 1)
+            );
+        }
+        if sides == 2 {
+            let worse = check.states[0].sides[1].activation.unwrap().margin.zeta_e;
+            assert!(html.contains(&format!("{worse:?}")), "{structure}");
+        }
+    }
+}
+
+/// Input that is unlikely or ignored is a warning in words, on the page and in the JSON; the building of the page is named by the hashes of
+/// its files.
+#[test]
+fn unlikely_and_ignored_input_is_warned_of() {
+    let floor = HEIGHT
+        .replace("damping_percent = 10", "damping_percent = 0.1")
+        .replace("gamma = 1.2857142857142858", "gamma = -1.2857142857142858");
+    let text = format!(
+        "{COLUMN}[simulation]\nduration_s = 1\ngravity_m_s2 = 9.8\n{DEMAND}{floor}[uncertain]\nsamples = 10\n'column.width_m' = {{ from = 0.7, to = 0.9 }}\n"
+    );
+    let scenario = parsed(&text);
+    let check = Check::new(&scenario).unwrap();
+    let html = page(&scenario, &check, "");
+    for words in ["0.1 %", "9.8 m/s2", "[uncertain] is ignored"] {
+        let mut given = check.warnings.iter();
+        assert!(
+            given.any(|one| one.contains(words)),
+            "{words}: {:?}",
+            check.warnings
+        );
+        assert!(html.contains(words), "{words}");
+    }
+    assert_eq!(check.warnings.len(), 3);
+    assert_eq!(check.top, "top");
+    assert!(html.contains("With the top as control point") && !html.contains("crown"));
+
+    let folder = in_folder("[blocks]\njoints = 'j.csv'\nsupports = 'left'\n", DEMAND);
+    let joints = "-0.4,0,0.4,0\n-0.4,4,0.4,4\n";
+    std::fs::write(folder.path().join("j.csv"), joints).unwrap();
+    let read = || {
+        print_of(folder.path(), &["verify", "a.toml", "--out", "out"]);
+        let json = std::fs::read_to_string(folder.path().join("out/verify.json")).unwrap();
+        let json: Value = serde_json::from_str(&json).unwrap();
+        let html = std::fs::read_to_string(folder.path().join("out/verify.html")).unwrap();
+        for file in json["files"].as_array().unwrap() {
+            assert!(html.contains(file["sha256"].as_str().unwrap()));
+        }
+        json["files"].clone()
+    };
+    let before = read();
+    let sha256 = |bytes: &[u8]| {
+        use sha2::{Digest as _, Sha256};
+        let digest = Sha256::digest(bytes);
+        digest
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect::<String>()
+    };
+    assert_eq!(before[0]["file"], "a.toml");
+    assert_eq!(
+        before[0]["sha256"],
+        sha256(&std::fs::read(folder.path().join("a.toml")).unwrap())
+    );
+    assert_eq!(before[1]["file"], "j.csv");
+    assert_eq!(before[1]["sha256"], sha256(joints.as_bytes()));
+    // The same joints in another file are another file.
+    std::fs::write(
+        folder.path().join("j.csv"),
+        joints.replace("4,0.4,4", "4.0,0.4,4"),
+    )
+    .unwrap();
+    let after = read();
+    assert_eq!(after[0], before[0]);
+    assert_ne!(after[1], before[1]);
+}
+
 #[test]
 fn what_does_not_stand_is_refused() {
     let thin = ARCH.replace("0.15", "0.08");
@@ -519,7 +732,8 @@ fn the_command_says_and_writes_the_check() {
     let folder = in_folder(ARCH, DEMAND);
     let said = print_of(folder.path(), &["verify", "a.toml"]);
     assert!(
-        said.contains("SLV  not passed: zeta_E 0.48659 to the right, by displacement"),
+        said.starts_with("The structure does not pass SLV (zeta_E 0.48659) or SLC (zeta_E 0.44541); it passes SLD (zeta_E 1.01604).\n")
+            && said.contains("SLV  not passed: zeta_E 0.48659 to either side, by displacement"),
         "{said}"
     );
     let output = archrock(folder.path(), &["verify", "a.toml", "--format", "json"]);

@@ -14,7 +14,7 @@ use super::{Failure, Format, show};
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioFile,
-    /// Control point in metres, such as `--point 0,5.4` [default: the crown].
+    /// Control point in metres, such as `--point 0,5.4` [default: the crown, or the top of a column].
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     point: Option<Vector2<f64>>,
     /// Folder for the results [default: results/<name of the scenario file>].

@@ -59,6 +59,15 @@ pub fn plain(x: f64) -> String {
     short(format!("{x:.5e}").parse().unwrap_or(x))
 }
 
+/// A number with this many decimals; zero has no sign.
+pub fn fixed(x: f64, decimals: usize) -> String {
+    let text = format!("{x:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(size) if text.parse() == Ok(0.0) => size.to_owned(),
+        _ => text,
+    }
+}
+
 /// Rounded up to four significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_up(x: f64) -> f64 {
     let unit = whole(x, 4.0);

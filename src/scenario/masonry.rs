@@ -110,6 +110,7 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
     let (joints_file, outlines_file) = (joints_file?, outlines_file?);
     let path = folder.join(&joints_file);
     let rows = read_numbers::<4>(&path).map_err(|wrong| table.wrong("joints", wrong))?;
+    table.note_file(folder, &joints_file);
     let wrong_line = |line, message| faulty(&path, &LineFault { line, message });
     if !(2..=MAX_BLOCKS + 1).contains(&rows.len()) {
         let wrong = format!(
@@ -150,6 +151,7 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
         let path = folder.join(file);
         given.outlines =
             read_outlines(&path, &given).map_err(|wrong| table.wrong("outlines", wrong))?;
+        table.note_file(folder, file);
     }
     // If the blocks do not form a row, the error names the line of the joint.
     let shape = Shape::Blocks(given.clone());

@@ -32,6 +32,7 @@ mod free_hinges;
 mod ground;
 mod impact;
 mod initial;
+mod input_file;
 mod listing;
 mod map;
 mod masonry;
@@ -73,6 +74,9 @@ pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use free_hinges::FreeTable;
 pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
+pub use input_file::InputFile;
+use input_file::InputFiles;
+pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
 pub use motion::{Hinges, Motion};
 pub use record::{
@@ -134,6 +138,7 @@ pub struct Scenario {
     uncertain: Option<Uncertain>,
     /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
     as_given: serde_json::Map<String, Value>,
+    files: InputFiles,
     /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
 }
@@ -257,6 +262,12 @@ impl Scenario {
         }
     }
 
+    /// The scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
+    #[must_use]
+    pub fn files(&self) -> &[InputFile] {
+        &self.files.0
+    }
+
     /// Acceleration of gravity, in m/s2.
     #[must_use]
     pub const fn gravity_m_s2(&self) -> f64 {
@@ -304,7 +315,13 @@ impl Scenario {
     pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
         table::read_text(text, changes.set, |table| {
-            Self::read_table(table, folder, changes.hinges)
+            let scenario = Self::read_table(table, folder, changes.hinges)?;
+            let mut files = vec![InputFile::of_scenario(&source.name, text)];
+            files.append(&mut table.noted_files());
+            Ok(Self {
+                files: InputFiles(files),
+                ..scenario
+            })
         })
         .map_err(|faults| ScenarioErrors::placed(source, changes.set, faults))
     }
@@ -400,6 +417,7 @@ impl Scenario {
             verify,
             uncertain: None,
             as_given: serde_json::Map::new(),
+            files: InputFiles::default(),
             ground_motion: Arc::new(GroundMotion::still()),
         };
         certain.ground_motion = Arc::new(certain.under_both_feet(ground_motion));

@@ -4,6 +4,7 @@
 
 use std::fmt;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
+use std::path::Path;
 
 use serde::Deserialize as _;
 use serde_json::Value;
@@ -12,6 +13,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use super::assignment::{Appended, Assignment};
 use super::error::{Fault, excerpt};
+use super::input_file::InputFile;
 use crate::argument::short;
 
 /// Stands for a value that could not be read; the reason is recorded as a [`Fault`].
@@ -50,6 +52,7 @@ pub(super) fn read_text<T>(
         legible: &legible,
         known: Vec::new(),
         faults,
+        files: Vec::new(),
     };
     let value = read(&mut table);
     table.reject_unknown_keys();
@@ -170,9 +173,22 @@ pub(super) struct Table<'a> {
     legible: &'a Legible,
     known: Vec<String>,
     faults: Vec<Fault>,
+    files: Vec<InputFile>,
 }
 
 impl<'a> Table<'a> {
+    /// Notes a file that the scenario names and that has been read.
+    pub(super) fn note_file(&mut self, folder: &Path, file: &str) {
+        if let Ok(bytes) = std::fs::read(folder.join(file)) {
+            self.files.push(InputFile::new(file, &bytes));
+        }
+    }
+
+    /// The files noted so far, of this table and those in it.
+    pub(super) fn noted_files(&mut self) -> Vec<InputFile> {
+        std::mem::take(&mut self.files)
+    }
+
     /// Gives it another name in messages.
     pub(super) fn rename(&mut self, name: &str) {
         name.clone_into(&mut self.name);
@@ -389,6 +405,10 @@ impl<'a> Table<'a> {
         let span = entry.span();
         let message = match entry.get_ref() {
             DeValue::Table(_) => format!("table `{key}` {message}"),
+            // The span of an array of tables is the first of their headers.
+            DeValue::Array(_) if self.legible.text[span.clone()] == format!("[[{key}]]") => {
+                format!("`[[{key}]]` {message}")
+            }
             _ => {
                 let value = excerpt(&self.legible.text[span.clone()]);
                 format!("`{key} = {value}` {message}")
@@ -451,10 +471,12 @@ impl<'a> Table<'a> {
             legible: self.legible,
             known: Vec::new(),
             faults: Vec::new(),
+            files: Vec::new(),
         };
         let value = read(&mut table);
         table.reject_unknown_keys();
         self.faults.append(&mut table.faults);
+        self.files.append(&mut table.files);
         value
     }
 

@@ -408,6 +408,5 @@ pub(super) fn tied_column(
     }
 }
 
-/// What is said of ties that pull over what stands without them.
-pub(super) const PULLS_OVER: &str =
-    "pulls over what stands without it: give less `prestress_n`, or tie other points";
+/// Message about ties whose prestress overturns a structure that stands without them.
+pub(super) const PULLS_OVER: &str = "overturns the structure, which stands without ties: give less `prestress_n`, or tie other points";

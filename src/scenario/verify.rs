@@ -176,6 +176,7 @@ impl Records {
         };
         let mut records = Self::default();
         for (key, series) in listing.series(table, folder, accept)? {
+            table.note_file(folder, &series.file);
             match key {
                 SLV_RECORDS => records.slv.push(series),
                 _ => records.slc.push(series),
@@ -433,7 +434,7 @@ pub struct Height {
 /// A mode of a building, with its vibration at each limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BuildingMode {
-    /// Participation factor.
+    /// Participation factor; its sign depends on that of the modal shape.
     pub gamma: f64,
     /// Modal shape at the height of the mechanism.
     pub psi: f64,
@@ -506,7 +507,7 @@ const TOPOGRAPHIC_FACTOR: ByClause = ByClause(
     Number(Included(1.0), Included(2.0)),
     "NTC 2018, Tab. 3.2.V has 1.0 to 1.4",
 );
-const GAMMA: Number = Number(Excluded(0.0), Included(10.0));
+const GAMMA: Number = Number(Included(-10.0), Included(10.0));
 const PSI: Number = Number(Included(-10.0), Included(10.0));
 /// At more damping than this the spectrum of a floor is no longer larger than its peak.
 const DAMPING_PERCENT: Number = Number(Excluded(0.0), Included(30.0));
@@ -700,6 +701,7 @@ impl PointDemand {
         let (spectrum, damping_percent) = (spectrum?, damping_percent?);
         let points = read_points(&folder.join(&spectrum), damping_percent)
             .map_err(|wrong| table.wrong("spectrum", wrong))?;
+        table.note_file(folder, &spectrum);
         Ok(Self {
             spectrum,
             damping_percent,

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::arch::Arch;
-use super::blocks::Row;
+use super::blocks::{Row, Supports};
 use super::column::Column;
 use super::geometry::ring::{Edge, Ring};
 
@@ -225,10 +225,17 @@ impl Parts for Row {
     }
 
     fn parts_in_words(&self) -> String {
-        format!("{} blocks", self.blocks().len())
+        match self.blocks().len() {
+            1 => "one block".to_owned(),
+            blocks => format!("{blocks} blocks"),
+        }
     }
 
+    /// Of a stack on one support, the middle of its top.
     fn crown(&self) -> (f64, Vector2<f64>) {
+        if let (Supports::Left, Some(top)) = (self.supports(), self.joints().last()) {
+            return (middle_of(self.blocks().len() - 1), top.middle_m());
+        }
         let outlines = self.outlines_m().iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {
             outline

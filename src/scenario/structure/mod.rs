@@ -24,7 +24,7 @@ use crate::dynamics::elastic_joints::ElasticJointsError;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::dynamics::model::{FourLinkModel, MechanismModel};
 use crate::mechanics::arch::{self, Arch};
-use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError};
+use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError, Supports};
 use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
@@ -184,6 +184,16 @@ impl Structure {
     #[must_use]
     pub const fn thrusts(&self) -> bool {
         !matches!(self, Self::Column(_))
+    }
+
+    /// Whether it stands on one support, as a column does.
+    #[must_use]
+    pub fn stands_on_one_support(&self) -> bool {
+        match self {
+            Self::Arch(_) => false,
+            Self::Column(_) => true,
+            Self::Masonry(masonry) => masonry.row().supports() == Supports::Left,
+        }
     }
 
     /// Whether it is symmetric whatever its dimensions.

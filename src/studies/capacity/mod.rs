@@ -14,7 +14,7 @@ use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::parts::Parts;
 use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::sway::Sway;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Structure};
 
 /// Why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -25,7 +25,7 @@ pub enum NoCapacity {
     /// It is no row of blocks.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// With its ties it is not held along one mechanism.
+    /// The row does not move along one mechanism.
     #[error(transparent)]
     Held(#[from] HeldError),
     /// The control point is not on the structure.
@@ -36,7 +36,7 @@ pub enum NoCapacity {
     Control(#[from] CapacityError),
 }
 
-/// The capacity to the right and to the left. The control point is the given one, or else the crown. It is in metres: x from the
+/// The capacity to the right and to the left. The control point is the given one, or else the crown, or the top of a column. It is in metres: x from the
 /// middle to the right, y as in the drawings, from the centre of a circular arch, otherwise from the springings or the base.
 ///
 /// # Errors
@@ -45,12 +45,8 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<[Capacity; 2], NoCapacity> {
-    if !scenario.structure().ties().is_empty() {
-        return with_ties(
-            &scenario.structure().row()?,
-            point_m,
-            scenario.gravity_m_s2(),
-        );
+    if let Some(row) = held_row(scenario.structure())? {
+        return of_row(&row, point_m, scenario.gravity_m_s2());
     }
     let model = scenario.mechanisms()?;
     let structure = scenario.structure().as_parts();
@@ -70,8 +66,21 @@ pub fn capacity(
     Ok([side(Sway::Right)?, side(Sway::Left)?])
 }
 
-/// The same of a row with ties, which change what its first mechanism bears along its way.
-fn with_ties(
+/// The blocks of a structure whose first mechanism is followed as a row: one with ties, or a stack on one support that is not
+/// Housner's block. `None` for structures that move as four links or as that block.
+fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
+    if !structure.ties().is_empty() {
+        return structure.row().map(Some);
+    }
+    let is_one_prism = matches!(structure, Structure::Column(column) if column.is_one_prism());
+    if structure.stands_on_one_support() && !is_one_prism {
+        return structure.row().map(Some);
+    }
+    Ok(None)
+}
+
+/// Capacity of a row, whose ties change the push that its first mechanism bears along its way.
+fn of_row(
     row: &Row,
     point_m: Option<Vector2<f64>>,
     gravity_m_s2: f64,
@@ -79,11 +88,7 @@ fn with_ties(
     let (place, at_m) = control(row, point_m)?;
     let side = |sway| -> Result<Capacity, NoCapacity> {
         let held = Held::new(row, sway)?;
-        let hinges = held
-            .hinges()
-            .iter()
-            .map(|hinge| place_of_joint(hinge.joint));
-        let carried = carried_by(hinges.collect(), held.bodies());
+        let carried = carried_by_held(&held);
         let masses = carried_masses(row, &carried);
         let control = Control::point(carried(place, at_m));
         let displaced = |part| held.displaced(part);
@@ -136,7 +141,20 @@ fn carrying(
     )
 }
 
-/// The same with hinges at these places.
+/// The crown of a row as a point of its first mechanism.
+pub(super) fn crown_of_row(row: &Row, held: &Held<'_>) -> Carried {
+    let (place, at_m) = row.crown();
+    carried_by_held(held)(place, at_m)
+}
+
+/// Assigns points of a row to the bodies of its first mechanism.
+fn carried_by_held(held: &Held<'_>) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
+    let hinges = held.hinges().iter();
+    let places = hinges.map(|hinge| place_of_joint(hinge.joint));
+    carried_by(places.collect(), held.bodies())
+}
+
+/// Assigns points to bodies that are separated by hinges at these places.
 fn carried_by(hinges: Vec<f64>, bodies: usize) -> impl Fn(f64, Vector2<f64>) -> Carried {
     move |place, at_m| {
         let before = hinges.iter().filter(|hinge| **hinge < place).count();

@@ -4,6 +4,8 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value, json};
 
+use super::held_row;
+use crate::argument::fixed;
 use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sway::Sway;
@@ -30,8 +32,8 @@ pub fn tell(
 ) -> Result<Results, OutputError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let title = scenario.title().unwrap_or("Capacity");
-    let masses = match scenario.structure().row() {
-        Ok(row) if !row.ties().is_empty() => row.parts_in_words(),
+    let masses = match held_row(scenario.structure()) {
+        Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure().as_parts().parts_in_words(),
     };
     let words = words(sides, &masses, gravity_m_s2);
@@ -144,15 +146,12 @@ fn draw(figure: Figure, title: &str, sides: &[Capacity; 2]) -> String {
 }
 
 fn words(sides: &[Capacity; 2], masses: &str, gravity_m_s2: f64) -> String {
-    // A crown that rounding moved off the middle is still in the middle.
-    let control = sides[0]
-        .control
-        .at_m
-        .map(|x| if x.abs() < 5e-5 { 0.0 } else { x });
+    let control = sides[0].control.at_m;
     let mut text = format!(
-        "quasi-static capacity of the first mechanism, control point at x {:.4} m, y {:.4} m\n\
+        "quasi-static capacity of the first mechanism, control point at x {} m, y {} m\n\
          masses at the centres of {masses}; `archrock verify` takes the rigid bodies of the mechanism\n",
-        control.x, control.y
+        fixed(control.x, 4),
+        fixed(control.y, 4)
     );
     for side in sides {
         let (start, end) = (side.start(), side.end());

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 pub(super) use self::ties::forces;
 use super::{Answer, NoLimit};
+use crate::argument::fixed;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
@@ -93,8 +94,10 @@ pub(super) fn openings_text(row: &Row, onset: &RowOnset) -> String {
             row.joints()[opening.joint].corner_m(opening.hinge.unwrap_or(Edge::Intrados));
         let _ = writeln!(
             text,
-            "  joint {:>3} at x {:>10.5} m, y {:>10.5} m, {edge}",
-            opening.joint, corner_m.x, corner_m.y
+            "  joint {:>3} at x {:>10} m, y {:>10} m, {edge}",
+            opening.joint,
+            fixed(corner_m.x, 5),
+            fixed(corner_m.y, 5)
         );
     }
     text

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::Shown;
 use super::feet::FeetApart;
 use super::verdict::{Evidence, no_verdict};
+use crate::argument::fixed;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
     ElasticSummary, Event, Impact, Outcome, RowSummary, Sliding, Stress, Summary, TieSummary,
@@ -565,10 +566,9 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
         farthest_s,
         last_m,
     } = apart;
-    // What is rounded to nothing has no sign.
-    let [right_m, up_m] = [last_m.x, last_m.y].map(|m| (1e5 * m).round() * 1e-5 + 0.0);
+    let [right_m, up_m] = [last_m.x, last_m.y].map(|m| fixed(m, 5));
     let mut text = format!(
-        "  the right foot goes {:.5} m away from where it was beside the left one (at {farthest_s:.4} s), and ends {:.5} m to the right and {:.5} m \
+        "  the right foot goes {:.5} m away from where it was beside the left one (at {farthest_s:.4} s), and ends {} m to the right and {} m \
          above it",
         farthest_m.norm(),
         right_m,

@@ -11,6 +11,7 @@ use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{EventKind, Outcome, State};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
+use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Scenario, Series, StateRule};
 use crate::studies::ensemble::statistics::{bootstrap, interval};
@@ -126,7 +127,15 @@ pub(super) fn histories(
     }
     let failed = |why: String| NoCheck::Histories { state, why };
     let model = scenario.mechanisms();
-    let model = model.map_err(|error| failed(error.to_string()))?;
+    let model = model.map_err(|error| match error {
+        // These errors recommend another model of motion.
+        FourLinkError::Stack | FourLinkError::Argument(_) | FourLinkError::Row { .. } => failed(format!(
+            "they are of four links or of Housner's block, and stacks, drums, tapers and other mechanisms are neither: leave {}_records \
+             out, and compute the records with `archrock suite`",
+            state.name()
+        )),
+        error => failed(error.to_string()),
+    })?;
     let ways: Result<Vec<(&Mechanism, &Way)>, String> = (check.mechanisms.iter())
         .map(|mechanism| Ok((mechanism, mechanism.way.as_ref().map_err(String::clone)?)))
         .collect();

@@ -6,17 +6,18 @@ use super::NoCheck;
 use super::notes::FRICTION;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::capacity::{Capacity, Carried, Control};
+use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control, Displaced};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::settling::Held;
 use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::{
     MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
-use crate::scenario::Structure;
+use crate::scenario::{Scenario, Structure};
 use crate::studies::capacity;
 
 /// A hinge with its position.
@@ -54,11 +55,48 @@ pub struct Mechanism {
 pub struct Way {
     /// With the common centre of its bodies as control point.
     pub centre: Capacity,
-    /// With the crown as control point; `None` if the crown does not move to that side.
+    /// With the crown (or the top) as control point; `None` if it does not move to that side.
     pub crown: Option<Capacity>,
 }
 
 impl Way {
+    /// The motion of bodies that are given by their positions at fractions of the way to the unstable equilibrium.
+    fn new(
+        sway: Sway,
+        displaced: impl Fn(f64) -> Displaced,
+        bodies: &[MovingBody],
+        crown: Carried,
+        gravity_m_s2: f64,
+    ) -> Result<Self, CapacityError> {
+        let masses = (0..).zip(bodies).map(|(index, body)| {
+            let (at_m, body_of) = (body.centre_m, Some(index));
+            let point = Carried {
+                at_m,
+                body: body_of,
+            };
+            (body.mass_kg, point)
+        });
+        let masses: Vec<(f64, Carried)> = masses.collect();
+        let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
+        Ok(Self {
+            centre: curve(Control::centre_of(&masses))?,
+            crown: curve(Control::point(crown)).ok(),
+        })
+    }
+
+    /// The motion of a row of blocks without ties, or why that is unknown.
+    fn of_row(
+        row: &Row,
+        sway: Sway,
+        bodies: &[MovingBody],
+        gravity_m_s2: f64,
+    ) -> Result<Self, String> {
+        let held = Held::new(row, sway).map_err(|error| error.to_string())?;
+        let crown = capacity::crown_of_row(row, &held);
+        let displaced = |part| held.displaced(part);
+        Self::new(sway, displaced, bodies, crown, gravity_m_s2).map_err(|error| error.to_string())
+    }
+
     /// The largest friction coefficient needed up to a fraction of the ultimate displacement.
     #[must_use]
     pub fn friction_up_to(&self, part: f64) -> f64 {
@@ -115,34 +153,13 @@ impl Mechanism {
             .zip(at_rest.hinges_m)
             .map(|(hinge, at_m)| PlacedHinge { hinge, at_m })
             .collect();
-        let masses: Vec<(f64, Carried)> = (0..)
-            .zip(&bodies)
-            .map(|(index, body)| {
-                let at_m = body.centre_m;
-                let body_of = Some(index);
-                (
-                    body.mass_kg,
-                    Carried {
-                        at_m,
-                        body: body_of,
-                    },
-                )
-            })
-            .collect();
-        let curve = |control| {
-            let displaced = |part| {
-                let displaced = model.displaced(sway, part);
-                displaced.expect("a structure has its first mechanism")
-            };
-            Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
+        let displaced = |part| {
+            let displaced = model.displaced(sway, part);
+            displaced.expect("a structure has its first mechanism")
         };
         let crown = capacity::crown_of(structure.as_parts(), model, sway);
-        let way = curve(Control::centre_of(&masses))
-            .map(|centre| Way {
-                centre,
-                crown: curve(Control::point(crown)).ok(),
-            })
-            .map_err(|error| error.to_string());
+        let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
+        let way = way.map_err(|error| error.to_string());
         Some(Self::new(
             sway,
             hinges,
@@ -152,8 +169,8 @@ impl Mechanism {
         ))
     }
 
-    /// The mechanism of a row at rest, from limit analysis.
-    fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, why_no_way: &str) -> Self {
+    /// The mechanism of a row at rest, from limit analysis, and its motion if the row has no ties.
+    fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, gravity_m_s2: f64) -> Self {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
             let twist = onset.velocities[block];
@@ -192,6 +209,7 @@ impl Mechanism {
                 rotation: -sway.sign() * twist.rate,
             }
         });
+        let bodies: Vec<MovingBody> = bodies.collect();
         let hinges = onset.openings.iter().map(|open| PlacedHinge {
             hinge: Hinge::Joint {
                 joint: open.joint,
@@ -204,61 +222,76 @@ impl Mechanism {
             force_kg: tie.prestress_n / row.gravity_m_s2(),
             lengthening: *lengthening,
         });
+        let way = if row.ties().is_empty() {
+            Way::of_row(row, sway, &bodies, gravity_m_s2)
+        } else {
+            Err(
+                "the forces of ties change as the structure moves; `archrock verify` does not follow them, `archrock capacity` does"
+                    .to_owned(),
+            )
+        };
         Self::new(
             sway,
             hinges.collect(),
-            (bodies.collect(), ties.collect()),
+            (bodies, ties.collect()),
             body_of_block,
-            Err(why_no_way.to_owned()),
+            way,
         )
     }
 }
 
-/// The acceleration at which the joints of a row slide to one side, by the associated bound, if they slide before any of them
+/// The acceleration in g at which the joints of a row slide to one side, by the associated bound, if they slide before any of them
 /// opens; zero if they slide under the weight of the row.
-fn slides_at_g(row: &Row, sway: Sway) -> Option<f64> {
-    match friction::onset(row, FRICTION, sway) {
+fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
+    match friction::onset(row, coefficient, sway) {
         Ok(Some(onset)) => onset.sliding_governs().then_some(onset.acceleration_g),
         Err(FrictionError::CannotStand(_)) => Some(0.0),
         Ok(None) | Err(_) => None,
     }
 }
 
+/// Friction coefficient with which the friction that a mechanism needs is compared: that of the Circolare for walls, or that of the
+/// scenario if it is smaller.
+pub(super) fn allowed_friction(scenario: &Scenario) -> f64 {
+    let own = scenario.motion().friction_coefficient();
+    own.map_or(FRICTION, |own| own.min(FRICTION))
+}
+
 /// The mechanisms of a structure to these sides.
 ///
 /// # Errors
-/// When the structure does not stand, no acceleration moves it to a side, or, if it has no curve, joints slide first.
-pub(super) fn mechanisms(
-    structure: &Structure,
-    sides: &[Sway],
-    gravity_m_s2: f64,
-) -> Result<Vec<Mechanism>, NoCheck> {
+/// When the structure does not stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario
+/// has a friction coefficient, or if there is no curve along which the required friction is known.
+pub(super) fn mechanisms(scenario: &Scenario, sides: &[Sway]) -> Result<Vec<Mechanism>, NoCheck> {
+    let (structure, gravity_m_s2) = (scenario.structure(), scenario.gravity_m_s2());
+    let coefficient = allowed_friction(scenario);
+    let slips = scenario.motion().friction_coefficient().is_some();
     let none =
         |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
-    let why = match structure.model(ImpactModel::MaxRestitution) {
-        Ok(model) => {
-            let of = |sway: &Sway| {
-                Mechanism::of_model(structure, &*model, *sway, gravity_m_s2)
-                    .ok_or_else(|| none(*sway))
-            };
-            return sides.iter().map(of).collect();
-        }
-        Err(why) => why.to_string(),
-    };
-    let why = if structure.ties().is_empty() {
-        why
-    } else {
-        "what ties pull with changes along the way, which the verification does not follow; `archrock capacity` does".to_owned()
-    };
-    let row = structure.row();
-    let row = &row.map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+    let model = structure.model(ImpactModel::MaxRestitution);
+    let row = structure
+        .row()
+        .map_err(|error| NoCheck::NoMechanism(error.to_string()));
     let of = |sway: &Sway| {
-        let found = onset(row, *sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
-        let found = found.ok_or_else(|| none(*sway))?;
-        let mechanism = Mechanism::of_onset(row, *sway, &found, &why);
-        match slides_at_g(row, *sway) {
+        let mechanism = if let Ok(model) = &model {
+            Mechanism::of_model(structure, &**model, *sway, gravity_m_s2)
+                .ok_or_else(|| none(*sway))?
+        } else {
+            let row = row.as_ref().map_err(NoCheck::clone)?;
+            let found =
+                onset(row, *sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+            let found = found.ok_or_else(|| none(*sway))?;
+            Mechanism::of_onset(row, *sway, &found, gravity_m_s2)
+        };
+        let may_slide = row
+            .as_ref()
+            .ok()
+            .filter(|_| slips || mechanism.way.is_err());
+        let slides = may_slide.and_then(|row| slides_at_g(row, coefficient, *sway));
+        match slides {
             Some(at_g) => Err(NoCheck::Slides {
                 sway: *sway,
+                coefficient,
                 at_g,
                 alpha0: mechanism.alpha0,
             }),

@@ -44,14 +44,16 @@ pub enum NoCheck {
     NoMechanism(String),
     /// Sliding has a smaller multiplier than the mechanism without sliding.
     #[error(
-        "no check is possible to the {}: with a friction coefficient of {} joints slide at {at_g:.4} g at most (associated \
+        "no check is possible to the {}: with a friction coefficient of {coefficient} joints slide at {at_g:.4} g at most (associated \
          bound), before a mechanism without sliding forms at {alpha0:.4} g, and the least multiplier counts. Check the other \
          side alone with `sides`, or another structure",
-        .sway.name(), notes::FRICTION
+        .sway.name()
     )]
     Slides {
         /// The side.
         sway: Sway,
+        /// The friction coefficient.
+        coefficient: f64,
         /// The acceleration at which joints slide, in g.
         at_g: f64,
         /// Load multiplier of the mechanism without sliding.
@@ -262,6 +264,17 @@ pub struct ByDisplacement {
     pub zeta_e_crown: Option<f64>,
 }
 
+impl ByDisplacement {
+    /// Displacement, or activation if motion starts later than the displacement is reached.
+    #[must_use]
+    pub const fn method(&self) -> Method {
+        match self.activation_ag_g {
+            Some(_) => Method::Activation,
+            None => Method::Displacement,
+        }
+    }
+}
+
 /// The checks of a limit state to one side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SideCheck {
@@ -288,12 +301,10 @@ named! {
 }
 
 impl SideCheck {
-    /// The check that governs: by displacements, if there is a curve.
+    /// The check that governs: by displacements, if there is a curve, or the activation if it is later.
     #[must_use]
     pub fn governing(&self) -> Option<(Method, Margin)> {
-        let displacement = self
-            .displacement
-            .map(|one| (Method::Displacement, one.margin));
+        let displacement = self.displacement.map(|one| (one.method(), one.margin));
         let simplified = self.simplified.map(|one| (Method::Simplified, one.margin));
         let activation = self.activation.map(|one| (Method::Activation, one.margin));
         displacement.or(simplified).or(activation)
@@ -326,8 +337,24 @@ impl StateCheck {
                 Some((side.sway, method, margin))
             })
             .collect();
-        let worst = |a: &(_, _, Margin), b: &(_, _, Margin)| a.2.zeta_e.total_cmp(&b.2.zeta_e);
-        checked?.into_iter().min_by(worst)
+        let worse = |worst: (_, _, Margin), one: (_, _, Margin)| {
+            let is_worse = one.2.zeta_e < worst.2.zeta_e && !alike(one.2.zeta_e, worst.2.zeta_e);
+            if is_worse { one } else { worst }
+        };
+        checked?.into_iter().reduce(worse)
+    }
+
+    /// Name of the governing side: `right`, `left`, or `either` if both sides have the same method and result; `None` if the state
+    /// cannot be checked.
+    #[must_use]
+    pub fn governing_side(&self) -> Option<&'static str> {
+        let (sway, method, margin) = self.governing()?;
+        let equals = |side: &SideCheck| {
+            side.governing()
+                .is_some_and(|(own, one)| own == method && alike(one.zeta_e, margin.zeta_e))
+        };
+        let either = self.sides.len() > 1 && self.sides.iter().all(equals);
+        Some(if either { EITHER } else { sway.name() })
     }
 }
 
@@ -346,6 +373,20 @@ pub struct Check {
     pub mechanisms: Vec<Mechanism>,
     /// The limit states of the demand.
     pub states: Vec<StateCheck>,
+    /// Largest friction coefficient that joints may need: that of the Circolare, or that of the scenario if it is smaller.
+    pub allowed_friction: f64,
+    /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
+    pub top: &'static str,
+    /// Assumptions that do not hold, and input that is unlikely or ignored.
+    pub warnings: Vec<String>,
+}
+
+/// Name of the governing side if both sides are equal.
+const EITHER: &str = "either";
+
+/// Whether two numbers that describe mirrored sides differ by rounding only.
+fn alike(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }
 
 impl Check {
@@ -362,7 +403,7 @@ impl Check {
             Sides::Right => &[Sway::Right],
             Sides::Left => &[Sway::Left],
         };
-        let mechanisms = mechanism::mechanisms(scenario.structure(), sides, gravity_m_s2)?;
+        let mechanisms = mechanism::mechanisms(scenario, sides)?;
         let (_, density_kg_m3) = scenario.structure().depth_and_density();
         let free = settings.free_standing.as_ref();
         let t0_s = free.map(|free| free.period_s(density_kg_m3));
@@ -373,6 +414,13 @@ impl Check {
             t0_s,
             mechanisms,
             states: Vec::new(),
+            allowed_friction: mechanism::allowed_friction(scenario),
+            top: if scenario.structure().stands_on_one_support() {
+                "top"
+            } else {
+                "crown"
+            },
+            warnings: Vec::new(),
         };
         for state in check.demand.states().collect::<Vec<_>>() {
             let one = check.state(scenario, state)?;
@@ -390,6 +438,7 @@ impl Check {
             let why = whys.into_iter().next().cloned().unwrap_or_default();
             return Err(NoCheck::NoCurve(why));
         }
+        check.warnings = notes::warnings(scenario, &check);
         Ok(check)
     }
 
@@ -399,7 +448,13 @@ impl Check {
         matches!(self.demand, Demand::Code(_))
     }
 
-    /// The least `zeta_E` of all limit states.
+    /// The limit states with a result.
+    pub fn checked(&self) -> impl Iterator<Item = LimitState> {
+        let checked = self.states.iter().filter(|one| one.governing().is_some());
+        checked.map(|one| one.state)
+    }
+
+    /// The least `zeta_E` of the limit states with a result.
     #[must_use]
     pub fn zeta_e(&self) -> f64 {
         let states = self.states.iter().filter_map(StateCheck::governing);

@@ -1,11 +1,15 @@
 //! The decisions and assumptions of a check, and what it leaves out, in the words of its page.
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
-use super::{Check, Spectrum};
+use super::{Check, Spectrum, StateCheck};
 use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides};
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
+/// Gravity of the codes, in m/s2.
+const GRAVITY_M_S2: f64 = 9.81;
+/// A smaller damping is probably a fraction instead of per cent.
+const LEAST_DAMPING_PERCENT: f64 = 1.0;
 
 /// The decisions where the text leaves a choice, each with its name.
 #[must_use]
@@ -21,9 +25,11 @@ pub fn decisions(check: &Check) -> Vec<(&'static str, String)> {
     if has_curve {
         notes.push((
             "D2",
-            "The control point is the common centre of the masses that move, so that d = d_C/e*. The ratio with the crown (or \
-             the top) as control point is printed beside."
-                .to_owned(),
+            format!(
+                "The control point is the common centre of the masses that move, so that d = d_C/e*. The ratio with the {} as control \
+                 point is printed beside.",
+                check.top
+            ),
         ));
     }
     if !check.by_the_code() {
@@ -148,28 +154,43 @@ pub fn assumptions(check: &Check) -> Vec<String> {
         match &one.way {
             Ok(way) => {
                 let friction = way.friction_up_to(check.furthest_part());
-                format!("No joint slides: to the {side} that needs a friction coefficient of {friction:.3}; the Circolare has {FRICTION} for walls.")
+                format!("No joint slides: to the {side} that needs a friction coefficient of {friction:.3}; {}.", allowed(check))
             }
-            Err(_) => format!("No joint slides: to the {side} none does with a friction coefficient of {FRICTION} (associated bound)."),
+            Err(_) => format!(
+                "No joint slides: to the {side} none does with a friction coefficient of {} (associated bound).",
+                check.allowed_friction
+            ),
         }
     }));
     lines
 }
 
-/// The warnings where an assumption does not hold.
+/// Warnings of assumptions that do not hold, and of input that is unlikely or ignored.
 #[must_use]
-pub fn warnings(check: &Check) -> Vec<String> {
+pub fn warnings(scenario: &Scenario, check: &Check) -> Vec<String> {
     let slides = check.mechanisms.iter().filter_map(|one| {
         let friction = one.way.as_ref().ok()?.friction_up_to(check.furthest_part());
-        (friction > FRICTION).then(|| {
+        (friction > check.allowed_friction).then(|| {
             format!(
-                "To the {} the mechanism needs a friction coefficient of {friction:.3}, above the {FRICTION} of the Circolare: \
-                 joints may slide before, which is not checked.",
-                one.sway.name()
+                "To the {} the mechanism needs a friction coefficient of {friction:.3}, and {}: joints may slide before, which is \
+                 not checked.",
+                one.sway.name(),
+                allowed(check)
             )
         })
     });
     let mut warnings: Vec<String> = slides.collect();
+    if check.gravity_m_s2 != GRAVITY_M_S2 {
+        warnings.push(format!(
+            "Gravity is {} m/s2, not the {GRAVITY_M_S2} m/s2 of the codes.",
+            check.gravity_m_s2
+        ));
+    }
+    if scenario.uncertain().is_some() {
+        warnings
+            .push("[uncertain] is ignored: the check is of the scenario as written.".to_owned());
+    }
+    warnings.extend(check.states.iter().flat_map(small_dampings));
     for one in &check.states {
         let Some(histories) = &one.histories else {
             continue;
@@ -195,10 +216,46 @@ pub fn warnings(check: &Check) -> Vec<String> {
     warnings
 }
 
+/// The friction coefficient that is allowed, with its source.
+fn allowed(check: &Check) -> String {
+    if check.allowed_friction < FRICTION {
+        format!("the scenario has {}", check.allowed_friction)
+    } else {
+        format!("the Circolare has {FRICTION} for walls")
+    }
+}
+
+/// Warnings of dampings of a limit state that are probably fractions instead of per cent.
+fn small_dampings(one: &StateCheck) -> Vec<String> {
+    let mut given: Vec<(&str, f64)> = match &one.spectrum {
+        Spectrum::Ground(_) => Vec::new(),
+        Spectrum::Floor(_, floor) => {
+            let modes = floor.modes().iter();
+            modes
+                .map(|mode| ("a mode of the building", mode.damping_percent))
+                .collect()
+        }
+        Spectrum::Points(points) => vec![("the spectrum", points.damping_percent)],
+    };
+    given.extend(one.rule.map(|rule| ("the mechanism", rule.damping_percent)));
+    let small = given
+        .into_iter()
+        .filter(|(_, percent)| *percent < LEAST_DAMPING_PERCENT);
+    small
+        .map(|(of, percent)| {
+            format!(
+                "{}: the damping of {of} is {percent} %, which is unlikely: give it in per cent, 5 for 5 %.",
+                super::words::name(one.state)
+            )
+        })
+        .collect()
+}
+
 /// What the check does not cover.
 #[must_use]
 pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
-    let vertical = match (check.by_the_code(), scenario.structure().thrusts()) {
+    let thrusts = !scenario.structure().stands_on_one_support();
+    let vertical = match (check.by_the_code(), thrusts) {
         (false, _) => "Vertical ground motion.",
         (true, false) => "Vertical ground motion: C8.7.1.2.1 has no vertical term.",
         (true, true) => {
@@ -209,7 +266,7 @@ pub fn not_covered(scenario: &Scenario, check: &Check) -> Vec<String> {
     let ties = if scenario.structure().ties().is_empty() {
         "Thrust of fill (its weight counts where it is given), crushing, soil and foundations, torsional hinges."
     } else {
-        "What ties pull with beyond their force at rest, and their anchorages; thrust of fill (its weight counts where it is \
+        "The forces of ties beyond those at rest, and their anchorages; thrust of fill (its weight counts where it is \
          given), crushing, soil and foundations, torsional hinges."
     };
     [

@@ -5,12 +5,13 @@
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::histories::{Histories, HistorySide, Peak};
-use super::summary::{Sums, scenario_sha256, to_json};
-use super::words::{in_passes, name, of_method, words};
+use super::summary::{Sums, is_symmetric, scenario_sha256, to_json};
+use super::words::{in_passes, name, names, of_method, verdict_sentence, words};
 use super::{
-    Activation, ByDisplacement, Check, Margin, Mechanism, Method, SideCheck, Simplified, Spectrum,
-    StateCheck, Way, notes, picture,
+    Activation, ByDisplacement, Check, EITHER, Margin, Mechanism, Method, SideCheck, Simplified,
+    Spectrum, StateCheck, Way, notes, picture,
 };
+use crate::argument::fixed;
 use crate::dynamics::demand::damping_factor;
 use crate::dynamics::demand::ground::GroundSpectrum;
 use crate::mechanics::chain::Hinge;
@@ -18,7 +19,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::page::{escaped, filled};
 use crate::output::{Figure, OutputError, pretty};
-use crate::scenario::{LimitState, Scenario, StateRule};
+use crate::scenario::{LimitState, Scenario, StateRule, shown};
 use crate::studies::results::Results;
 
 /// Names of the files, the seal last.
@@ -59,7 +60,11 @@ pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
             "Computed with spectra and limits given by the engineer, who answers for the applicability.",
         )
     };
-    let writer = Writer { scenario, check };
+    let writer = Writer {
+        scenario,
+        check,
+        is_symmetric: is_symmetric(check),
+    };
     let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
     filled(
         include_str!("page/page.html"),
@@ -68,6 +73,7 @@ pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
             ("STYLE", include_str!("page/page.css")),
             ("TITLE", &escaped(title)),
             ("BY", by),
+            ("FILES", &writer.files()),
             ("HASH", &scenario_sha256(scenario)),
             ("DATE", &escaped(date)),
             ("RESULT", &writer.result()),
@@ -113,10 +119,7 @@ fn date_of(mut days: u64) -> String {
 
 /// A number with this many decimals, and its full value.
 fn n(value: f64, decimals: usize) -> String {
-    let mut text = format!("{value:.decimals$}");
-    if text.parse() == Ok(0.0) {
-        text = text.trim_start_matches('-').to_owned();
-    }
+    let text = fixed(value, decimals);
     // Adding zero makes a negative zero positive.
     format!("<data value=\"{:?}\">{text}</data>", value + 0.0)
 }
@@ -180,6 +183,8 @@ fn formula(text: &str) -> String {
 struct Writer<'a> {
     scenario: &'a Scenario,
     check: &'a Check,
+    /// Whether the left side is the mirror image of the right side.
+    is_symmetric: bool,
 }
 
 impl Writer<'_> {
@@ -192,24 +197,22 @@ impl Writer<'_> {
         }
     }
 
-    /// Whether the left side is the mirror image of the right side.
-    fn is_symmetric(&self) -> bool {
-        let [right, left] = &self.check.mechanisms[..] else {
-            return false;
-        };
-        let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6);
-        let mut bodies = right.bodies.iter().zip(left.bodies.iter().rev());
-        right.bodies.len() == left.bodies.len()
-            && bodies.all(|(a, b)| {
-                near(a.mass_kg, b.mass_kg)
-                    && near(a.centre_m.x, -b.centre_m.x)
-                    && near(a.displacement.x, b.displacement.x)
-            })
+    /// The files from which the scenario was read, with their hashes.
+    fn files(&self) -> String {
+        let files = self.scenario.files().iter();
+        let lines = files.map(|one| {
+            format!(
+                "<span class=\"hash\">{}: SHA-256 {}</span>",
+                escaped(&shown(&one.file)),
+                one.sha256
+            )
+        });
+        lines.collect()
     }
 
     /// The reports on each side; for a symmetric structure, on the right side only.
     fn sides(&self, tell: fn(&Self, &Mechanism, Figure) -> String) -> String {
-        let one = self.is_symmetric() || self.check.mechanisms.len() == 1;
+        let one = self.is_symmetric || self.check.mechanisms.len() == 1;
         let figure = if one { "78mm" } else { "90mm" };
         let figure: Figure = figure.parse().expect("a width of a figure");
         let shown = if one { 1 } else { self.check.mechanisms.len() };
@@ -226,7 +229,7 @@ impl Writer<'_> {
             };
         }
         let class = if one { "pair one" } else { "pair" };
-        let mirror = if self.is_symmetric() {
+        let mirror = if self.is_symmetric {
             "<p class=\"before\">To the right. To the left it is the mirror image, with the same numbers.</p>\n"
         } else {
             ""
@@ -240,7 +243,8 @@ impl Writer<'_> {
         let mut body = String::new();
         for state in &self.check.states {
             let counts = state.governing();
-            let sides = &state.sides[..if self.is_symmetric() {
+            let either = state.governing_side() == Some(EITHER);
+            let sides = &state.sides[..if self.is_symmetric {
                 1
             } else {
                 state.sides.len()
@@ -248,7 +252,7 @@ impl Writer<'_> {
             for side in sides {
                 for (method, margin, what) in rows_of(side) {
                     let is_it = counts.is_some_and(|(sway, counted, _)| {
-                        counted == method && (self.is_symmetric() || sway == side.sway)
+                        counted == method && (either || sway == side.sway)
                     });
                     body += &self.result_row(state, side.sway, method, &margin, &what, is_it);
                 }
@@ -271,9 +275,12 @@ impl Writer<'_> {
                     <th>Capacity</th><th>Demand</th><th>a<sub>g</sub> borne (g)</th><th>a<sub>g</sub> (g)</th>\
                     <th>\u{3b6}<sub>E</sub></th><th class=\"word\"></th></tr>";
         let least = n(self.check.zeta_e(), 3);
+        let number = |zeta_e| format!("\u{3b6}<sub>E</sub> = {}", n(zeta_e, 3));
         let mut text = format!(
-            "<table><thead>{head}</thead>\n<tbody>\n{body}</tbody></table>\n\
-             <p>Bold: what counts for the state. Least of the states asked for: \u{3b6}<sub>E</sub> = <b>{least}</b>."
+            "<p class=\"sentence\">{}</p>\n<table><thead>{head}</thead>\n<tbody>\n{body}</tbody></table>\n\
+             <p>Bold: the governing result of a state. Least of the checked states, {}: \u{3b6}<sub>E</sub> = <b>{least}</b>.",
+            verdict_sentence(self.check, number),
+            names(self.check.checked())
         );
         if self.check.by_the_code() {
             text += " SLV or SLC suffices (C8.7.1, \u{a7} 8.3); SLD is asked for in use class IV (\u{a7} 8.3).";
@@ -287,21 +294,20 @@ impl Writer<'_> {
             }
         }
         text += "</p>\n";
-        let warnings = notes::warnings(self.check).into_iter();
-        let warnings =
-            warnings.map(|line| format!("<p class=\"warning\">{}</p>\n", typeset(&line)));
+        let warnings = self.check.warnings.iter();
+        let warnings = warnings.map(|line| format!("<p class=\"warning\">{}</p>\n", typeset(line)));
         text + &warnings.collect::<String>()
     }
 
     fn histories_rows(&self, state: LimitState, histories: &Histories) -> String {
-        let sides = &histories.sides[..if self.is_symmetric() {
+        let sides = &histories.sides[..if self.is_symmetric {
             1
         } else {
             histories.sides.len()
         }];
         let rows = sides.iter().map(|side| {
             let class = if side.passes[1] { "verdict" } else { "verdict no" };
-            let to = if self.is_symmetric() { "either side" } else { side.sway.name() };
+            let to = if self.is_symmetric { "either side" } else { side.sway.name() };
             let demand = side.demand_m.map_or("overturns".to_owned(), |demand_m| n(demand_m, 4) + " m");
             format!(
                 "<tr><td class=\"word\">{}</td><td class=\"word\">histories{}</td><td class=\"word\">{to}</td><td>{} m</td>\
@@ -324,12 +330,12 @@ impl Writer<'_> {
         (capacity, demand): &(String, String),
         counts: bool,
     ) -> String {
-        let clause = match method {
-            Method::Activation => "C8.7.1.2.1.5",
-            Method::Simplified => "C8.7.1.2.1.7",
-            Method::Displacement => "C8.7.1.2.1.8",
+        let clause = match (method, state.state) {
+            (Method::Activation, LimitState::Sld) => "C8.7.1.2.1.5",
+            (Method::Simplified, _) => "C8.7.1.2.1.7",
+            (Method::Activation | Method::Displacement, _) => "C8.7.1.2.1.8",
         };
-        let side = if self.is_symmetric() {
+        let side = if self.is_symmetric {
             "either side"
         } else {
             sway.name()
@@ -422,7 +428,7 @@ impl Writer<'_> {
             );
         }
         table(&["tie", "F (kN)", "\u{3b4}<sub>l</sub>"], &body)
-            + "<p>What ties pull with at rest, and by how much they lengthen.</p>\n"
+            + "<p>Forces of the ties at rest, and their lengthening.</p>\n"
     }
 
     fn activation_formulas(&self, mechanism: &Mechanism) -> String {
@@ -434,7 +440,11 @@ impl Writer<'_> {
         } else {
             (
                 "(\u{2211}P\u{3b4}<sub>y</sub> + \u{2211}F\u{3b4}<sub>l</sub>)",
-                format!("({} + {})", n(sums.rise_kn, 4), n(sums.held_kn, 4)),
+                if sums.held_kn < 0.0 {
+                    format!("({} + ({}))", n(sums.rise_kn, 4), n(sums.held_kn, 4))
+                } else {
+                    format!("({} + {})", n(sums.rise_kn, 4), n(sums.held_kn, 4))
+                },
             )
         };
         let mut text = formula(&format!(
@@ -480,7 +490,8 @@ impl Writer<'_> {
         ));
         if let Some(crown) = &way.crown {
             text += &formula(&format!(
-                "With the crown as control point d<sub>C0</sub> = {} m, d<sub>0</sub> = {} m.",
+                "With the {} as control point d<sub>C0</sub> = {} m, d<sub>0</sub> = {} m.",
+                self.check.top,
                 n(crown.end().displacement_m, 5),
                 n(crown.end().oscillator_displacement_m, 5)
             ));
@@ -757,7 +768,7 @@ impl Writer<'_> {
                 )
             });
         let crown = one.zeta_e_crown.map_or(String::new(), |zeta_e| {
-            format!("; at the crown {}", n(zeta_e, 4))
+            format!("; at the {} {}", self.check.top, n(zeta_e, 4))
         });
         text += &formula(&format!(
             "{borne}\u{3b6}<sub>E</sub> = {} / {} = <b>{}</b>{crown}",
@@ -892,8 +903,11 @@ fn rows_of(side: &SideCheck) -> Vec<(Method, Margin, (String, String))> {
         rows.push((Method::Activation, one.margin, what));
     }
     if let Some(one) = &side.displacement {
-        let what = (n(one.capacity_m, 4) + " m", n(one.demand_m, 4) + " m");
-        rows.push((Method::Displacement, one.margin, what));
+        let what = match (one.activation_ag_g, one.margin.ag_g) {
+            (Some(start_g), Some(ag_g)) => (n(start_g, 4) + " g", n(ag_g, 4) + " g"),
+            _ => (n(one.capacity_m, 4) + " m", n(one.demand_m, 4) + " m"),
+        };
+        rows.push((one.method(), one.margin, what));
     }
     if let Some(one) = &side.simplified {
         rows.push((

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 use super::histories::{Histories, Peak};
 use super::{
     Activation, ByDisplacement, Check, Margin, Mechanism, SideCheck, Simplified, Spectrum,
-    StateCheck, notes,
+    StateCheck, alike, notes,
 };
 use crate::dynamics::demand::ground::GroundSpectrum;
 use crate::mechanics::chain::Hinge;
@@ -47,6 +47,7 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
         "title": scenario.title(),
         "formulas": check.by_the_code().then_some("Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018"),
         "scenario_sha256": scenario_sha256(scenario),
+        "files": scenario.files(),
         "zeta_e": zeta_e,
         "verdict": check.states.iter().map(|one| (one.state.name().to_owned(), verdict(one).into())).collect::<Map<_, _>>(),
         "confidence_factor": check.settings.confidence_factor,
@@ -54,9 +55,10 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
         "sides": check.settings.sides.name(),
         "t0_s": check.t0_s,
         "gravity_m_s2": check.gravity_m_s2,
+        "allowed_friction": check.allowed_friction,
         "mechanisms": mechanisms,
         "states": states,
-        "warnings": notes::warnings(check),
+        "warnings": check.warnings,
         "decisions": decisions,
         "assumptions": notes::assumptions(check),
         "not_covered": notes::not_covered(scenario, check),
@@ -67,9 +69,7 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
 /// SHA-256 of the scenario with every default written out, as `archrock check` prints it.
 #[must_use]
 pub fn scenario_sha256(scenario: &Scenario) -> String {
-    use sha2::{Digest as _, Sha256};
-    let digest = Sha256::digest(scenario.to_toml().as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+    crate::scenario::sha256(scenario.to_toml().as_bytes())
 }
 
 /// The verdict in a word.
@@ -189,6 +189,58 @@ fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
     })
 }
 
+/// Whether the left side is the mirror image of the right one, with all their numbers.
+pub(super) fn is_symmetric(check: &Check) -> bool {
+    let [right, left] = &check.mechanisms[..] else {
+        return false;
+    };
+    let mut mirrored = mechanism(check, left);
+    let mut own = mechanism(check, right);
+    for list in ["hinges", "bodies"] {
+        for value in [&mut own, &mut mirrored] {
+            for place in value[list].as_array_mut().into_iter().flatten() {
+                // The position of a hinge says which joint or angle it is.
+                for name in ["angle_deg", "edge", "toe", "joint"] {
+                    place.as_object_mut().map(|place| place.remove(name));
+                }
+            }
+        }
+        if let Some(places) = mirrored[list].as_array_mut() {
+            places.reverse();
+            for place in places {
+                place["x_m"] = (-place["x_m"].as_f64().unwrap_or(f64::NAN)).into();
+            }
+        }
+    }
+    let states = check.states.iter().all(|one| {
+        let [right, left] = &one.sides[..] else {
+            return false;
+        };
+        let histories = one.histories.as_ref().map(histories);
+        let histories = histories.is_none_or(|all| are_alike(&all["right"], &all["left"]));
+        are_alike(&side(right), &side(left)) && histories
+    });
+    states && are_alike(&own, &mirrored)
+}
+
+/// Whether two values have the same numbers, up to rounding; texts may name a side.
+fn are_alike(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => {
+            a.as_f64().zip(b.as_f64()).is_some_and(|(a, b)| alike(a, b))
+        }
+        (Value::String(_), Value::String(_)) => true,
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| are_alike(a, b))
+        }
+        (Value::Object(a), Value::Object(b)) => {
+            let same = |(key, a): (&String, &Value)| b.get(key).is_some_and(|b| are_alike(a, b));
+            a.len() == b.len() && a.iter().all(same)
+        }
+        _ => a == b,
+    }
+}
+
 fn state(check: &Check, one: &StateCheck) -> Value {
     let sides = one
         .sides
@@ -197,7 +249,7 @@ fn state(check: &Check, one: &StateCheck) -> Value {
     let mut state = json!({
         "verdict": verdict(one),
         "zeta_e": one.governing().map(|(.., margin)| margin.zeta_e),
-        "side": one.governing().map(|(sway, ..)| sway.name()),
+        "side": one.governing_side(),
         "method": one.governing().map(|(_, method, _)| method.name()),
         "demand": demand(check, one),
         "rule": one.rule,

@@ -3,14 +3,14 @@
 use std::fmt::Write as _;
 
 use super::summary::verdict;
-use super::{Check, Histories, Method, StateCheck, notes};
+use super::{Check, EITHER, Histories, Method, StateCheck};
 use crate::mechanics::sway::Sway;
 use crate::scenario::LimitState;
 
-/// The result for each limit state, with the governing side.
+/// The verdict in a sentence, then the result for each limit state, with the governing side.
 #[must_use]
 pub fn words(check: &Check) -> String {
-    let mut text = String::new();
+    let mut text = verdict_sentence(check, |zeta_e| format!("zeta_E {zeta_e:.5}")) + "\n\n";
     if check.by_the_code() {
         text += "local mechanisms by Circolare 7/2019, C8.7.1.2.1, spectra of NTC 2018\n";
     } else {
@@ -40,13 +40,57 @@ pub fn words(check: &Check) -> String {
     }
     let _ = writeln!(
         text,
-        "zeta_E {:.5}, the least of the states asked for",
-        check.zeta_e()
+        "zeta_E {:.5}, the least of the checked states: {}",
+        check.zeta_e(),
+        names(check.checked())
     );
-    for warning in notes::warnings(check) {
+    for warning in &check.warnings {
         let _ = writeln!(text, "warning: {warning}");
     }
     text
+}
+
+/// Which states pass, which do not and which are not checked, each with its `zeta_E` in the given form.
+pub(super) fn verdict_sentence(check: &Check, number: impl Fn(f64) -> String) -> String {
+    let list = |wanted: &str| {
+        let states = check.states.iter().filter(|one| verdict(one) == wanted);
+        let named = states.map(|one| {
+            let zeta_e = one.governing().map(|(.., margin)| number(margin.zeta_e));
+            name(one.state) + &zeta_e.map_or(String::new(), |zeta_e| format!(" ({zeta_e})"))
+        });
+        enumerated(
+            named.collect(),
+            if wanted == "not_passed" { "or" } else { "and" },
+        )
+    };
+    let clauses = [
+        (list("not_passed"), "does not pass "),
+        (list("passed"), "passes "),
+    ];
+    let clauses: Vec<String> = clauses
+        .into_iter()
+        .filter_map(|(list, does)| Some(does.to_owned() + &list?))
+        .collect();
+    let mut sentence = format!("The structure {}.", clauses.join("; it "));
+    if let Some(rest) = list("not_checked") {
+        sentence += &format!(" Not checked: {rest}.");
+    }
+    sentence
+}
+
+/// Names of limit states in a list.
+pub(super) fn names(states: impl Iterator<Item = LimitState>) -> String {
+    enumerated(states.map(name).collect(), "and").unwrap_or_default()
+}
+
+/// Items with commas and a last `and` or `or`; `None` without any.
+fn enumerated(mut items: Vec<String>, last_link: &str) -> Option<String> {
+    let last = items.pop()?;
+    Some(if items.is_empty() {
+        last
+    } else {
+        format!("{} {last_link} {last}", items.join(", "))
+    })
 }
 
 /// Name of a limit state as engineers write it.
@@ -63,7 +107,7 @@ fn passed(verdict: &str) -> &'static str {
     }
 }
 
-/// The clause of a method, or what the method does.
+/// Name of a method in words.
 pub(super) const fn of_method(method: Method) -> &'static str {
     match method {
         Method::Activation => "activation",
@@ -74,14 +118,19 @@ pub(super) const fn of_method(method: Method) -> &'static str {
 
 fn state_in_words(state: &StateCheck) -> String {
     let name = name(state.state);
-    let Some((worse, method, margin)) = state.governing() else {
+    let (Some((_, method, margin)), Some(side)) = (state.governing(), state.governing_side())
+    else {
         return format!("{name}  not checked: there is no capacity curve\n");
     };
     let mut text = format!(
-        "{name}  {}: zeta_E {:.5} to the {}, by {}\n",
+        "{name}  {}: zeta_E {:.5} to {}, by {}\n",
         passed(verdict(state)),
         margin.zeta_e,
-        worse.name(),
+        if side == EITHER {
+            "either side".to_owned()
+        } else {
+            format!("the {side}")
+        },
         of_method(method)
     );
     for side in &state.sides {
@@ -99,10 +148,10 @@ fn state_in_words(state: &StateCheck) -> String {
                 "  to the {to:5}  displacement: d {:.5} m, T {:.4} s, demand {:.5} m, zeta_E {:.5}",
                 one.capacity_m, one.period_s, one.demand_m, one.displacement.zeta_e
             );
-            if one.activation_ag_g.is_some() {
+            if let (Some(start_g), Some(ag_g)) = (one.activation_ag_g, one.margin.ag_g) {
                 let _ = write!(
                     text,
-                    "; the activation counts, zeta_E {:.5}",
+                    "; the activation counts: a_g {start_g:.5} g, demand {ag_g:.5} g, zeta_E {:.5}",
                     one.margin.zeta_e
                 );
             }

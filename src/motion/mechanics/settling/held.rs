@@ -1,7 +1,8 @@
-//! The first mechanism of a row with ties, held at finite displacements: what push it bears there.
+//! The first mechanism of a row, held at finite displacements by a push: a row on one support, or one with ties.
 //!
 //! Its hinges are those that a push opens while the ties pull with their prestress. They stay where they are; a tie pulls by how far the
-//! mechanism has stretched it, yields and breaks.
+//! mechanism has stretched it, yields and breaks. A stack without ties that starts as one block about a toe moves as that block up to
+//! its unstable equilibrium: the push and the weight keep their direction relative to the block, so no other joint opens.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,7 +13,7 @@ use super::pins::{Pins, Pulls, side, two_bodies};
 use super::{Condition, Hinge};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::capacity::{Displaced, GivesWay};
+use crate::mechanics::capacity::{CapacityError, Displaced, GivesWay};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stability::{RowOnset, StabilityError, onset};
@@ -42,6 +43,9 @@ pub enum HeldError {
         /// How many joints open.
         hinges: usize,
     },
+    /// Without ties, its bodies come to the end of their way.
+    #[error(transparent)]
+    Locks(#[from] CapacityError),
     /// Its ties hold it, or its bodies come to the end of their way.
     #[error(
         "the mechanism that sways to the {side} comes to the end of its way before it loses its strength, which its ties keep: it has no \
@@ -95,7 +99,11 @@ impl<'a> Held<'a> {
                 return Ok(held);
             }
         }
-        Err(HeldError::Holds(sway))
+        Err(if row.ties().is_empty() {
+            CapacityError::Locks { sway }.into()
+        } else {
+            HeldError::Holds(sway)
+        })
     }
 
     /// Its hinges.

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::{openings_json, openings_text};
+use crate::argument::fixed;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::stability::{StabilityError, TiedLimit, limit_with_yielding_ties, onset};
 use crate::mechanics::sway::Sway;
@@ -115,7 +116,7 @@ fn ties(ties: &[Tie]) -> &'static str {
 /// Forces of ties, in words.
 pub fn forces(forces_n: impl Iterator<Item = f64>) -> String {
     let each: Vec<String> = forces_n
-        .map(|force_n| format!("{:.6} kN", 1e-3 * force_n))
+        .map(|force_n| format!("{} kN", fixed(1e-3 * force_n, 6)))
         .collect();
     each.join(", ")
 }
