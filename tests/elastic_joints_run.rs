@@ -232,13 +232,12 @@ fn friction_is_needed_where_a_joint_presses() {
     for joint in 0..=36 {
         let normals_n = joints.numbers(&format!("normal_{joint}_n"));
         let shears_n = joints.numbers(&format!("shear_{joint}_n"));
-        let samples = normals_n.iter().zip(&shears_n).zip(&times_s);
-        // It overturns: what it needs is what it needs up to then.
-        for ((normal_n, shear_n), _) in samples.filter(|(_, time_s)| **time_s <= until_s) {
+        for ((normal_n, shear_n), time_s) in normals_n.iter().zip(&shears_n).zip(&times_s) {
             if *normal_n > 0.0 {
                 of_all = of_all.max(shear_n.abs() / normal_n);
             }
-            if *normal_n > 0.01 * weight_n {
+            // It overturns: what happens while it falls does not count.
+            if *normal_n > 0.01 * weight_n && *time_s <= until_s {
                 needed = needed.max(shear_n.abs() / normal_n);
             }
         }

@@ -156,7 +156,7 @@ fn simulate<R: Recorder + Send>(
     recorder: &mut R,
     raised: impl FnOnce(&mut R) -> Option<PyErr>,
 ) -> PyResult<Summary> {
-    let request = scenario.request();
+    let request = scenario.request_under(ground);
     let simulated = py.detach(|| {
         catch_unwind(AssertUnwindSafe(|| {
             model.simulate(ground, &request, Some(&mut *recorder))
@@ -193,7 +193,7 @@ impl History {
         let scene = run::scene(inner, &**model);
         let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
         let point = point.transpose()?;
-        let (shape, most_samples) = (model.shape(), inner.request().most_samples(motion));
+        let (shape, most_samples) = (model.shape(), inner.request_under(motion).most_samples(motion));
         let recording = Recording::new(shape, most_samples, memory_bytes).map_err(too_large)?;
         let mut watched = Watched {
             recording,

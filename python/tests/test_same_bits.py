@@ -243,7 +243,8 @@ def test_defaults_are_those_of_the_program(arch: Arch, pulse: Pulse) -> None:
         for name, parameter in inspect.signature(simulate).parameters.items()
         if name in plain.tables["simulation"]
     }
-    assert defaults == plain.tables["simulation"] and len(defaults) == 5
+    assert defaults == plain.tables["simulation"] and len(defaults) == 4
+    assert inspect.signature(simulate).parameters["duration_s"].default is None
     assert simulate(arch, pulse) == plain.run()
 
 

@@ -565,9 +565,15 @@ impl Scenario {
     /// The request for the simulation, with samples at every output step.
     #[must_use]
     pub fn request(&self) -> Request {
+        self.request_under(&self.ground_motion)
+    }
+
+    /// The request for the simulation on another ground motion than its own.
+    #[must_use]
+    pub fn request_under(&self, ground: &GroundMotion) -> Request {
         Request {
             initial: self.initial,
-            ..self.request_on(&self.ground_motion, &self.structure)
+            ..self.request_on(ground, &self.structure)
         }
     }
 

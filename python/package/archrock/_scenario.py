@@ -309,7 +309,7 @@ def simulate(
     damping_time_s: float | None = None,
     compressive_strength_mpa: float | None = None,
     contact_points: int | None = None,
-    duration_s: float = 10.0,
+    duration_s: float | None = None,
     output_step_s: float = 0.005,
     relative_tolerance: float = 1e-9,
     rest_energy_ratio: float = 1e-8,
@@ -348,7 +348,8 @@ def simulate(
         damping_time_s: damping forces are this time multiplied by the rates of the elastic forces; ``None``: the default, 1e-4.
         compressive_strength_mpa: stress at which elastic joints crush; ``None``: they do not crush.
         contact_points: number of points that carry the stress of a joint; ``None``: the whole joint does.
-        duration_s: longest time to simulate.
+        duration_s: longest time to simulate; ``None``: until the end of the ground motion, and then for the larger of 10 s and
+            20 times the square root of size over gravity.
         output_step_s: time between samples.
         relative_tolerance: error that the integrator of four links may make in a step.
         rest_energy_ratio: the structure is at rest when its energy falls below this fraction of the energy barrier.
