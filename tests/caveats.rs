@@ -96,6 +96,14 @@ fn the_summary_lists_the_warnings() {
         assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
         assert!(stderr(&output).contains(&format!("warning: {unlikely}")));
     }
+    // Statics warn of them too.
+    for command in ["limit", "capacity"] {
+        let said = stderr(&archrock(at, &[command, "s.toml"]));
+        assert!(
+            said.contains("warning: the mean radius is 500 m"),
+            "{command}: {said}"
+        );
+    }
     // A column that hardly rocks has none.
     fs::write(
         at.join("s.toml"),

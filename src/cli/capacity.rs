@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::figure::FigureOption;
 use super::kept::CAPACITY;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, show};
+use super::{Failure, Format, show, warn};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -42,6 +42,9 @@ fn point(text: &str) -> Result<Vector2<f64>, String> {
 pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read_as_built()?;
+    if !quiet {
+        warn(&scenario.unlikely());
+    }
     let sides = capacities(&scenario, arguments.point)
         .map_err(|error| Failure::Input(error.to_string()))?;
     let place = arguments

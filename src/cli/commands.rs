@@ -17,7 +17,7 @@ use archrock::studies::results::Answer;
 
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, print};
+use super::{Failure, Format, print, warn};
 
 /// The model of a scenario.
 pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
@@ -29,6 +29,7 @@ pub fn limit(
     file: &ScenarioFile,
     format: Format,
     plot: Option<(&Path, FigureOption, Sway)>,
+    quiet: bool,
 ) -> Result<(), Failure> {
     let input = file.open()?;
     let scenario = if plot.is_some() {
@@ -36,6 +37,9 @@ pub fn limit(
     } else {
         input.read(None)?
     };
+    if !quiet {
+        warn(&scenario.unlikely());
+    }
     if let Some((plot, figure, first)) = plot {
         let model = four_links(&scenario, "--plot is")?;
         write_picture(

@@ -180,7 +180,7 @@ pub fn main() -> ExitCode {
         } => {
             let plot = plot.as_deref();
             let plot = plot.map(|path| (path, figure, first.get()));
-            commands::limit(&scenario, format, plot)
+            commands::limit(&scenario, format, plot, arguments.quiet)
         }
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),

@@ -8,7 +8,7 @@ use clap::ValueEnum;
 use super::figure::FigureOption;
 use super::kept::SPREAD;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, show};
+use super::{Failure, Format, show, warn};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -53,6 +53,9 @@ impl From<NoSpread> for Failure {
 pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.read(None)?;
+    if !quiet {
+        warn(&scenario.unlikely());
+    }
     let springing = match arguments.springing {
         Side::Left => Springing::Left,
         Side::Right => Springing::Right,
