@@ -441,7 +441,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
     ] {
         assert!(picture.contains(&format!("data-name=\"{name}\"")), "{name}");
     }
-    assert!(picture.contains(">Energy / barrier<"));
+    assert!(picture.contains(">Total energy / barrier<"));
     assert!(picture.contains(">block 5, which turns most<"));
     // For two drums no barrier is known.
     let column = format!("[column]\ndrums = 2\n{SHAKEN_COLUMN}[free_hinges]\n");

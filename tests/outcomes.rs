@@ -183,7 +183,7 @@ fn what_does_not_open_does_not_rock() {
     fs::write(folder.path().join("s.toml"), block).unwrap();
     let said = printed(folder.path(), &["run", "s.toml", "--out", "o"]);
     assert!(
-        !said.contains("slides") && said.contains("peak energy below 1 %"),
+        !said.contains("slides") && said.contains("peak potential energy below 1 %"),
         "{said}"
     );
 }

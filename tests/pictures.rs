@@ -417,7 +417,7 @@ fn run_draws_the_history() {
     for label in [
         "Ground (g)",
         "Rotation (rad)",
-        "Energy / barrier",
+        "Total energy / barrier",
         "Time (s)",
     ] {
         assert!(texts(&document).iter().any(|text| text == label), "{label}");

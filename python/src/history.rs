@@ -443,6 +443,11 @@ impl History {
         self.model.bodies()
     }
 
+    /// Index of the body that turns most.
+    fn largest_body(&self) -> usize {
+        self.summary.largest_body()
+    }
+
     /// How it ended.
     fn outcome(&self) -> &'static str {
         self.summary.outcome.name()

@@ -84,7 +84,16 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
         let picture = figure.fitted(|figure| elevation::draw(figure, title, &scene, &text));
         commands::write_picture(plot, &picture)?;
     }
-    Ok((scenario.to_resolved_toml(), scenario.to_resolved_json()))
+    let structure = scenario.structure();
+    let mut notes = structure.ties_in_words();
+    if !notes.is_empty() {
+        notes.insert(0, structure.origin());
+    }
+    let notes: String = notes.iter().map(|note| format!("# {note}\n")).collect();
+    Ok((
+        notes + &scenario.to_resolved_toml(),
+        scenario.to_resolved_json(),
+    ))
 }
 
 /// The blocks of the structure, as its model of motion has them where that has any; on supports that have moved, where they stand as time

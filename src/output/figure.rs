@@ -401,6 +401,11 @@ pub fn text_px(text: &str) -> f64 {
     TEXT_PX * f64::from(thousandths) / 1000.0
 }
 
+/// Whether the width of this text is known: of other scripts it is a guess.
+pub(crate) fn is_measured(text: &str) -> bool {
+    !text.is_empty() && text.chars().all(|character| character <= '\u{24f}')
+}
+
 /// How far a character goes, in thousandths of the size of the text.
 const fn advance(character: char) -> u32 {
     match character {

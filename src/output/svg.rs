@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 pub use super::figure::Figure;
-use super::figure::{LINE_PX, TEXT_PX, lines, text_px};
+use super::figure::{self, LINE_PX, TEXT_PX, lines, text_px};
 use crate::scenario::shown_lines;
 
 /// Colours that colour-blind people can tell apart (Okabe and Ito), the dark ones.
@@ -292,9 +292,17 @@ impl Drawing {
                 -turn_deg, at.x, at.y
             )
         };
+        // Where no font has the measures of Helvetica the text is drawn with the measured length all the same.
+        let long = match figure::is_measured(text) {
+            true => format!(
+                " textLength=\"{:.2}\" lengthAdjust=\"spacingAndGlyphs\"",
+                text_px(text)
+            ),
+            false => String::new(),
+        };
         let _ = writeln!(
             self.text,
-            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\"{turn}>{}</text>",
+            "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\"{turn}{long}>{}</text>",
             at.x,
             at.y,
             escaped(text),
@@ -319,6 +327,21 @@ impl Drawing {
                 Sign::Line(stroke) => {
                     let half = Vector2::new(0.5 * KEY_PX, 0.0);
                     self.line(middle - half, middle + half, stroke);
+                }
+                Sign::LineOn(fill, name, stroke) => {
+                    let frame = Frame {
+                        left: x,
+                        top: y - 7.0,
+                        width: KEY_PX,
+                        height: 14.0,
+                    };
+                    self.band("key", &frame, fill, 1.0);
+                    let half = Vector2::new(0.5 * KEY_PX, 0.0);
+                    self.curve(
+                        &format!("key {name}"),
+                        [middle - half, middle + half],
+                        stroke,
+                    );
                 }
                 Sign::Band(fill, opacity) => {
                     let frame = Frame {
@@ -372,6 +395,8 @@ pub type Key<'a> = (&'a str, Sign);
 pub enum Sign {
     /// A line.
     Line(Stroke),
+    /// A line on an area of this colour, with the name of what it marks: on dark pages both keep their colours.
+    LineOn(&'static str, &'static str, Stroke),
     /// An area of this colour and opacity.
     Band(&'static str, f64),
     /// A circle of this radius in pixels.

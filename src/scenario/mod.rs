@@ -88,6 +88,7 @@ pub use sequence::{Sequence, Spacing};
 pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
+use span::Circular;
 pub use spectrum::Spectrum;
 pub(crate) use spectrum::block;
 pub(crate) use structure::four_digits;
@@ -139,6 +140,8 @@ pub struct Scenario {
     /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
     as_given: serde_json::Map<String, Value>,
     files: InputFiles,
+    /// Keys of the shape of a circular arch as they were given, if the file gives its span.
+    given_shape: serde_json::Map<String, Value>,
     /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
 }
@@ -400,6 +403,7 @@ impl Scenario {
             let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
             return Err(table.wrong("initial", wrong));
         }
+        let given_shape = Circular::given(table);
         let mut certain = Self {
             title: title?.map(|title| shown(&title)),
             structure,
@@ -418,13 +422,14 @@ impl Scenario {
             uncertain: None,
             as_given: serde_json::Map::new(),
             files: InputFiles::default(),
+            given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
         certain.ground_motion = Arc::new(certain.under_both_feet(ground_motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
         let uncertain = uncertain?.map(|uncertain| {
-            let resolved = certain.to_json();
+            let resolved = certain.resolved();
             certain.as_given = uncertain.as_given(table, &resolved);
             uncertain.check(table, &certain, &resolved)
         });
@@ -630,6 +635,18 @@ impl Scenario {
     /// motion: it would not follow another one.
     #[must_use]
     pub fn to_json(&self) -> Value {
+        let mut table = self.resolved();
+        if !self.as_given.contains_key("arch")
+            && let Some(arch) = table.get_mut("arch")
+        {
+            Circular::put_given(arch, &self.given_shape);
+        }
+        table
+    }
+
+    /// The scenario as JSON in which a circular arch has its mean radius, the ratio of its thickness and its embrace angle, whatever keys
+    /// the file gives.
+    pub(crate) fn resolved(&self) -> Value {
         fn json(value: &impl Serialize) -> Value {
             serde_json::to_value(value).expect("a scenario consists of tables of numbers and texts")
         }

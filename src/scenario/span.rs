@@ -8,44 +8,38 @@
 //! measured_at = "intrados"    # the line whose span and rise these are: "intrados", "mean" or "extrados"
 //! ```
 
+use std::mem;
 use std::ops::Bound::{Excluded, Included, Unbounded};
+
+use serde_json::{Map, Value};
 
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::table::{Number, OneOf, Reading, Table};
 use crate::argument::plain;
+use crate::mechanics::arch::MeasuredAt;
 
+/// Keys that give the shape in a resolved scenario.
+const RESOLVED: [&str; 3] = ["mean_radius_m", "thickness_ratio", "embrace_deg"];
+/// Keys that give it by the span.
+const GIVEN: [&str; 6] = [
+    "span_m",
+    "rise_m",
+    "embrace_deg",
+    "measured_at",
+    "thickness_m",
+    "thickness_ratio",
+];
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
 /// Spans and rises may be smaller than any radius.
 const LENGTH: Number = Number(Included(1e-6), Included(1e6));
-
-named! {
-    /// A line of an arch along which lengths are measured.
-    pub enum MeasuredAt {
-        /// The lower side: the clear span.
-        Intrados = "intrados",
-        /// The middle line.
-        Mean = "mean",
-        /// The upper side.
-        Extrados = "extrados",
-    }
-}
-
-impl MeasuredAt {
-    /// The distance outwards from this line to the mean line, in thicknesses.
-    const fn to_mean(self) -> f64 {
-        match self {
-            Self::Intrados => 0.5,
-            Self::Mean => 0.0,
-            Self::Extrados => -0.5,
-        }
-    }
-}
 
 /// The shape of a circular arch.
 pub(super) struct Circular {
     pub(super) mean_radius_m: f64,
     pub(super) thickness_ratio: f64,
     pub(super) embrace_deg: f64,
+    /// The line whose span the scenario gives, if it gives one.
+    pub(super) measured_at: Option<MeasuredAt>,
 }
 
 /// The thickness of the arch.
@@ -124,7 +118,40 @@ impl Circular {
             height
         };
         let radius_m = 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin();
-        Self::around(table, radius_m, measured_at, thickness, embrace_deg)
+        let shape = Self::around(table, radius_m, measured_at, thickness, embrace_deg)?;
+        Ok(Self {
+            measured_at: Some(measured_at),
+            ..shape
+        })
+    }
+
+    /// The keys of the shape as the file gives them, if it gives the span.
+    pub(super) fn given(table: &Table<'_>) -> Map<String, Value> {
+        let Some(Value::Object(mut given)) = table.as_given("arch") else {
+            return Map::new();
+        };
+        if !given.contains_key("span_m") {
+            return Map::new();
+        }
+        given.retain(|key, _| GIVEN.contains(&key.as_str()));
+        for value in given.values_mut() {
+            // A length may be written without a point.
+            if let Some(number) = value.as_f64() {
+                *value = Value::from(number);
+            }
+        }
+        given
+    }
+
+    /// Puts the given keys of the shape in the place of the resolved ones.
+    pub(super) fn put_given(arch: &mut Value, given: &Map<String, Value>) {
+        if let Value::Object(resolved) = arch
+            && !given.is_empty()
+        {
+            let others = mem::take(resolved).into_iter();
+            let others = others.filter(|(key, _)| !RESOLVED.contains(&key.as_str()));
+            *resolved = given.clone().into_iter().chain(others).collect();
+        }
     }
 
     /// The ring of which this line has this radius.
@@ -164,6 +191,7 @@ impl Circular {
             mean_radius_m,
             thickness_ratio,
             embrace_deg,
+            measured_at: None,
         })
     }
 }

@@ -38,7 +38,7 @@ impl Scenario {
             .into_iter()
             .map(|(key, value)| assignment(key, value))
             .collect::<Result<Vec<_>, _>>()?;
-        let mut table = self.to_json();
+        let mut table = self.resolved();
         if let Value::Object(table) = &mut table {
             for left_out in STUDIES.iter().chain(&CHECK) {
                 table.shift_remove(*left_out);

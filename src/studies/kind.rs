@@ -41,9 +41,9 @@ impl Kind {
 
     /// In the order of the legend.
     pub(crate) const ALL: [Self; 21] = [
-        kind("never_moved", "never moves", "#e4e4e4"),
+        kind("never_moved", "never moves", "#b0b0b0"),
         kind("vibrates", "vibrates without opening", "#dfe8c8"),
-        kind("rest", "comes to rest", "#bcdcf0"),
+        kind("rest", "comes to rest", "#a9d3f5"),
         SURVIVED[0],
         SURVIVED[1],
         SURVIVED[2],
@@ -90,6 +90,50 @@ pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Lightness, and how far a colour is from grey towards red and towards yellow (CIELAB, D65).
+    fn lab(fill: &str) -> [f64; 3] {
+        let channel = |at: usize| {
+            let value = f64::from(u8::from_str_radix(&fill[at..at + 2], 16).unwrap()) / 255.0;
+            if value <= 0.040_45 {
+                value / 12.92
+            } else {
+                ((value + 0.055) / 1.055).powf(2.4)
+            }
+        };
+        let [r, g, b] = [1, 3, 5].map(channel);
+        let part = |value: f64| {
+            if value > 0.008_856 {
+                value.cbrt()
+            } else {
+                7.787 * value + 16.0 / 116.0
+            }
+        };
+        let x = part((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505);
+        let y = part(0.2126 * r + 0.7152 * g + 0.0722 * b);
+        let z = part((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    /// Kinds that lie side by side in maps differ in colour by more than the eye overlooks.
+    #[test]
+    fn outcomes_without_overturning_differ_in_colour() {
+        let quiet = [
+            "never_moved",
+            "vibrates",
+            "rest",
+            "still_rocking",
+            "incomplete",
+        ];
+        let labs = quiet.map(|name| lab(Kind::of(name, None).fill));
+        for (index, one) in labs.iter().enumerate() {
+            for (other, name) in labs[..index].iter().zip(quiet) {
+                let squares = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b));
+                let apart = squares.sum::<f64>().sqrt();
+                assert!(apart > 18.0, "{} {name}: {apart}", quiet[index]);
+            }
+        }
+    }
 
     #[test]
     fn no_colour_means_two_outcomes() {

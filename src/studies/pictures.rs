@@ -396,6 +396,8 @@ fn sizes_px(scene: Option<&Scene>, side: DimensionSide) -> f64 {
     scene.map_or(0.0, |scene| room_px(scene, side))
 }
 
+/// Room beside an arch for the letter of a hinge at its springing, in pixels.
+const LETTER_PX: f64 = 32.0;
 /// Space above an arch, for its hinges and a body that rises.
 const ABOVE_PX: f64 = 42.0;
 
@@ -436,7 +438,7 @@ impl<'a> Cells<'a> {
     }
 
     fn place(&self, middle: f64, top: f64) -> (Place<'a>, f64) {
-        let [left, right] = self.beside;
+        let [left, right] = self.beside.map(|room_px| room_px.max(LETTER_PX));
         let width = (0.8 * self.width).min(self.width - left - right);
         let width = self.figure.squeezed_px(width);
         let shifted = middle + 0.5 * (left - right);

@@ -322,6 +322,12 @@ class History:
         return bodies
 
     @property
+    def largest_body(self) -> int:
+        """Index in :attr:`bodies` of the body that turns most, of all time steps; the last one if several turn as far."""
+        index: int = self._once("largest_body", lambda native: native.largest_body())
+        return index
+
+    @property
     def outcome(self) -> str:
         """How it ended.
 
@@ -457,7 +463,7 @@ class History:
 
     def _plot_rotations(self, ax: Axes) -> None:
         few = len(self.bodies) <= 6
-        largest = int(np.argmax(np.abs(self.rotations).max(axis=0)))
+        largest = self.largest_body
         for index, body in enumerate(self.bodies):
             label: str | None = body or "rotation"
             if not few:
@@ -532,6 +538,7 @@ class History:
         kept = {
             "columns": {name: self._column(name) for name in _native.History.COLUMNS},
             "bodies": self.bodies,
+            "largest_body": self.largest_body,
             "outcome": self.outcome,
             "overturning_sway": self.overturning_sway,
             "outcome_time_s": self.outcome_time_s,

@@ -33,6 +33,40 @@ pub const DEPTH_M: f64 = 1.0;
 /// Density where none is given.
 pub const DENSITY_KG_M3: f64 = 2000.0;
 
+named! {
+    /// A line of an arch along which lengths are measured.
+    pub enum MeasuredAt {
+        /// The lower side: the clear span.
+        Intrados = "intrados",
+        /// The middle line.
+        Mean = "mean",
+        /// The upper side.
+        Extrados = "extrados",
+    }
+}
+
+impl MeasuredAt {
+    /// Where lengths along this line are measured, in words.
+    #[must_use]
+    pub const fn in_words(self) -> &'static str {
+        match self {
+            Self::Intrados => "at the intrados",
+            Self::Mean => "at the middle line",
+            Self::Extrados => "at the extrados",
+        }
+    }
+
+    /// The distance outwards from this line to the mean line, in thicknesses.
+    #[must_use]
+    pub const fn to_mean(self) -> f64 {
+        match self {
+            Self::Intrados => 0.5,
+            Self::Mean => 0.0,
+            Self::Extrados => -0.5,
+        }
+    }
+}
+
 /// A circular arch of constant thickness.
 ///
 /// ```
@@ -51,6 +85,9 @@ pub struct Arch {
     density_kg_m3: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     voussoirs: Option<usize>,
+    /// The line whose span and rise are its dimensions in drawings; `None`: the middle line, and captions give the mean radius.
+    #[serde(skip)]
+    measured_at: Option<MeasuredAt>,
     /// Onset of rocking, computed on the first request. It depends on the shape alone, so arches of the
     /// same shape share it.
     #[serde(skip)]
@@ -95,6 +132,7 @@ impl Arch {
             depth_m: DEPTH_M,
             density_kg_m3: DENSITY_KG_M3,
             voussoirs: None,
+            measured_at: None,
             incipient: Arc::default(),
         };
         arch.reshaped()
@@ -194,6 +232,36 @@ impl Arch {
             density_kg_m3: within("density_kg_m3", density_kg_m3, MAGNITUDE)?,
             ..self
         })
+    }
+
+    /// The same arch, whose drawings and captions give span and rise of this line.
+    #[must_use]
+    pub const fn with_measured_at(mut self, line: Option<MeasuredAt>) -> Self {
+        self.measured_at = line;
+        self
+    }
+
+    /// The line whose span and rise drawings and captions give, if it was set.
+    #[must_use]
+    pub const fn measured_at(&self) -> Option<MeasuredAt> {
+        self.measured_at
+    }
+
+    /// Radius of a line, in metres.
+    #[must_use]
+    pub fn radius_at_m(&self, line: MeasuredAt) -> f64 {
+        self.mean_radius_m * (1.0 - line.to_mean() * self.thickness_ratio)
+    }
+
+    /// Span and rise of a line, in metres.
+    #[must_use]
+    pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
+        let radius_m = self.radius_at_m(line);
+        let half_rad = 0.5 * self.embrace_deg.to_radians();
+        [
+            2.0 * radius_m * half_rad.sin(),
+            radius_m * (1.0 - half_rad.cos()),
+        ]
     }
 
     /// Radius of the middle line, in metres.

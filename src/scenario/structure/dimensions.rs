@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Structure;
-use crate::mechanics::arch::Arch;
+use crate::mechanics::arch::{Arch, MeasuredAt};
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::{FillLevel, Masonry, Pier, Shape};
 
@@ -97,6 +97,7 @@ impl Structure {
                 if let Some(voussoirs) = arch.voussoirs() {
                     parts.push(format!("{voussoirs} voussoirs"));
                 }
+                parts.extend(measured(arch));
             }
             Self::Column(_) => parts.push("column".to_owned()),
             Self::Masonry(masonry) => parts.extend(of_masonry_in_words(masonry)),
@@ -106,18 +107,44 @@ impl Structure {
             metres(depth_m),
             metres(density_kg_m3)
         ));
+        parts.push(self.origin());
+        parts.extend(self.ties_in_words());
         parts.join("; ")
     }
 }
 
+/// Where its span and rise are measured, if the scenario gives them.
+fn measured(arch: &Arch) -> Option<String> {
+    let line = arch.measured_at()?;
+    Some(format!("span and rise {}", line.in_words()))
+}
+
 fn of_arch(arch: &Arch) -> Vec<Dimension> {
-    let (ring, radius_m) = (arch.ring(), arch.mean_radius_m());
+    let ring = arch.ring();
+    let line = arch.measured_at().unwrap_or(MeasuredAt::Mean);
+    let radius_m = arch.radius_at_m(line);
     let ends = [0.0, ring.embrace_rad()].map(|angle_rad| ring.radial(angle_rad) * radius_m);
-    let crown = Vector2::new(ends[0].x, radius_m);
-    vec![
+    span_and_rise(ends, radius_m, arch.measured_at()).into()
+}
+
+/// Span and rise between the ends of a line and the height of its crown. The words name the line if it was set.
+fn span_and_rise(
+    ends: [Vector2<f64>; 2],
+    crown_m: f64,
+    line: Option<MeasuredAt>,
+) -> [Dimension; 2] {
+    let crown = Vector2::new(ends[0].x, crown_m);
+    [
         Dimension::named(DimensionSide::Below, ends, "span"),
         Dimension::named(DimensionSide::Left, [ends[0], crown], "rise"),
     ]
+    .map(|dimension| match line {
+        None => dimension,
+        Some(line) => Dimension {
+            words: format!("{} {}", dimension.words, line.in_words()),
+            ..dimension
+        },
+    })
 }
 
 fn of_column(column: &Column) -> Vec<Dimension> {
@@ -150,21 +177,30 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
             ),
         ];
     };
-    let ends = [left.middle_m(), right.middle_m()];
-    let thickness_m = (left.extrados_m - left.intrados_m).norm();
-    let top_m = outlines().map(|corner| corner.y).fold(ends[0].y, f64::max);
-    // The thickness at the crown is that at the springing, and normal to what is level there.
+    let circular = match masonry.shape() {
+        Shape::Circular(circular) => Some(&circular.arch),
+        _ => None,
+    };
+    let line = circular.and_then(Arch::measured_at);
+    let ends = [left, right].map(|joint| match line {
+        Some(MeasuredAt::Intrados) => joint.intrados_m,
+        Some(MeasuredAt::Extrados) => joint.extrados_m,
+        Some(MeasuredAt::Mean) | None => joint.middle_m(),
+    });
     let rise_m = match masonry.shape() {
         Shape::PointedArch(arch) => arch.dimensions.rise_m,
         Shape::EllipticArch(arch) => arch.dimensions.rise_m,
         Shape::BasketArch(arch) => arch.dimensions.rise_m,
-        Shape::Circular(_) | Shape::Blocks(_) => top_m - 0.5 * thickness_m - ends[0].y,
+        Shape::Circular(circular) => {
+            let [_, rise_m] = circular
+                .arch
+                .span_and_rise_m(line.unwrap_or(MeasuredAt::Mean));
+            rise_m
+        }
+        // Blocks have no springings.
+        Shape::Blocks(_) => 0.0,
     };
-    let crown = Vector2::new(ends[0].x, ends[0].y + rise_m);
-    let mut dimensions = vec![
-        Dimension::named(DimensionSide::Below, ends, "span"),
-        Dimension::named(DimensionSide::Left, [ends[0], crown], "rise"),
-    ];
+    let mut dimensions = Vec::from(span_and_rise(ends, ends[0].y + rise_m, line));
     let piers = [
         (masonry.piers().left, left.intrados_m, DimensionSide::Left),
         (
@@ -221,6 +257,9 @@ fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
         }
         None => name.to_owned(),
     }];
+    if let Shape::Circular(circular) = masonry.shape() {
+        parts.extend(measured(&circular.arch));
+    }
     parts.push(format!("{} blocks", masonry.row().blocks().len()));
     if let Some(fill) = masonry.fill() {
         let level = match fill.level {

@@ -2,6 +2,7 @@
 
 mod caption;
 mod dimensions;
+mod origin;
 
 pub(crate) use caption::four_digits;
 pub use dimensions::{Dimension, DimensionSide, metres};
@@ -302,6 +303,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
         mean_radius_m,
         thickness_ratio,
         embrace_deg,
+        measured_at,
     } = circular?;
     let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg)
         .and_then(|arch| arch.with_depth_m(depth_m))
@@ -310,7 +312,8 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
             Some(voussoirs) => arch.with_voussoirs(voussoirs),
             None => Ok(arch),
         })
-        .expect("the ranges of the keys are those of an arch");
+        .expect("the ranges of the keys are those of an arch")
+        .with_measured_at(measured_at);
     if joints_deg.is_some() && voussoirs.is_some() {
         let wrong = "cannot be combined with `voussoirs`, which are equal; give one of them";
         return Err(table.wrong("joints_deg", wrong));

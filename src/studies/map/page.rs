@@ -150,7 +150,7 @@ fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario();
     // A cell alone, without samples.
-    let mut table = scenario.clone().without_uncertain().to_json();
+    let mut table = scenario.clone().without_uncertain().resolved();
     for study in ["map", "suite", "spectrum", "demand", "verify"] {
         if let Some(table) = table.as_object_mut() {
             table.shift_remove(study);

@@ -259,6 +259,8 @@ fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow
     }
 }
 
+/// Light, as most cells: lines are drawn on cells, so the legend draws them on this.
+const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
 const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
@@ -274,7 +276,7 @@ fn legend(
     let mut keys = kind::keys(kinds);
     if map.has_spread() {
         let words = "another outcome in a repetition";
-        keys.push((words, Sign::Line(DOUBTFUL)));
+        keys.push((words, Sign::LineOn(CELL, "spread", DOUBTFUL)));
     }
     let shown = |value: fn(&Boundary) -> Option<f64>| {
         let mut values = boundaries
@@ -288,11 +290,11 @@ fn legend(
         } else {
             "incipient acceleration"
         };
-        keys.push((incipient, Sign::Line(INCIPIENT)));
+        keys.push((incipient, Sign::LineOn(CELL, "incipient", INCIPIENT)));
     }
     if shown(|boundary| boundary.impact_free_g) {
         let words = "least amplitude that overturns without impact";
-        keys.push((words, Sign::Line(IMPACT_FREE)));
+        keys.push((words, Sign::LineOn(CELL, "no-impact", IMPACT_FREE)));
     }
     keys
 }

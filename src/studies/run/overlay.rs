@@ -34,16 +34,16 @@ impl Curves {
             .iter()
             .fold(0.0_f64, |most, rotation| most.max(rotation.abs()));
         let rotation_rad = match sample.state.sway() {
-            Some(Sway::Left) => -largest_rad,
-            Some(Sway::Right) | None => largest_rad,
+            Some(Sway::Right) => -largest_rad,
+            Some(Sway::Left) | None => largest_rad,
         };
         self.rotation_rad.push(time_s, rotation_rad);
         self.energy_j.push(time_s, sample.energy_j);
     }
 }
 
-/// The picture of named histories: the ground, the largest rotation of a body, and the energy. The rotation is drawn upwards
-/// while the structure sways right, and downwards while it sways left.
+/// The picture of named histories: the ground, the largest rotation of a body, and the energy. The rotation is positive while the
+/// structure sways left, which is anticlockwise, as rotations are positive everywhere, and negative while it sways right.
 #[must_use]
 pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);
@@ -58,11 +58,37 @@ pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]
             .collect()
     };
     let rotations = each(|curves| &curves.rotation_rad);
-    panels.curves("Largest rotation (rad)", 280.0, &rotations, None);
+    panels.curves(
+        "Largest rotation (rad), swaying left positive",
+        280.0,
+        &rotations,
+        None,
+    );
     panels.curves("Energy (J)", 120.0, &each(|curves| &curves.energy_j), None);
     let names = histories.iter().map(|(name, _)| *name).zip(CURVES);
     let keys: Vec<Key<'_>> = names
         .map(|(name, stroke)| (name, Sign::Line(stroke)))
         .collect();
     panels.finish(&keys, false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::history::State;
+
+    /// A column that sways right turns clockwise: its rotation is negative here as in its table and on its page.
+    #[test]
+    fn a_sway_to_the_right_is_negative_as_everywhere() {
+        for (sway, rotation_rad) in [(Sway::Right, -0.02), (Sway::Left, 0.03)] {
+            let mut curves = Curves::new();
+            curves.push(&Sample {
+                state: State::Rocking(sway),
+                rotations_rad: vec![rotation_rad],
+                ..Sample::at_rest(0.0)
+            });
+            let drawn: Vec<(f64, f64)> = curves.rotation_rad.points().collect();
+            assert_eq!(drawn, [(0.0, rotation_rad)]);
+        }
+    }
 }

@@ -197,7 +197,7 @@ impl Picture for Timeline {
         let more = [
             (
                 Panel::Energy,
-                "Energy / barrier",
+                "Total energy / barrier",
                 "energy",
                 &self.energy_ratio,
             ),

@@ -253,8 +253,8 @@ impl Report {
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
         let energy_label = if self.in_barriers {
             match history.row {
-                None => "Energy (1: gravity alone overturns the mechanism that moves)",
-                Some(_) => "Energy (1: gravity alone overturns the first mechanism)",
+                None => "Kinetic and potential energy over the barrier of the mechanism that moves",
+                Some(_) => "Kinetic and potential energy over the barrier of the first mechanism",
             }
         } else {
             "Energy (J)"

@@ -191,7 +191,7 @@ impl Picture for RowTimeline {
         let energy = Curve::new("energy", self.energy.points(), MAIN);
         if shows(Panel::Energy) && !energy.is_flat() {
             let label = if self.in_barriers {
-                "Energy / barrier"
+                "Total energy / barrier"
             } else {
                 "Energy (J)"
             };

@@ -98,7 +98,7 @@ impl Evidence<'_> {
                     (None, Some(part)) if part < 1.0 => {
                         let percent = in_percent(part);
                         let rigid = if elastic { " with rigid joints" } else { "" };
-                        format!("survives: peak energy {percent} of overturning{rigid}")
+                        format!("survives: peak potential energy {percent} of overturning{rigid}")
                     }
                     _ => "survives".to_owned(),
                 }

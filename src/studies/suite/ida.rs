@@ -49,8 +49,11 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         ));
     }
     keys.extend(FRACTILES.map(|(name, stroke)| (name, Sign::Line(stroke))));
-    top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let over_critical = over_critical(results);
+    if over_critical {
+        keys.push(("critical rotation", Sign::Line(CRITICAL)));
+    }
+    top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let survived = results.cases.iter().filter(|case| !goes_over(case));
     let largest = survived.filter_map(peak).fold(0.0, f64::max);
     let largest = if over_critical {
@@ -71,7 +74,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     axes.draw(&mut drawing, Some(label), intensity_label(results.measure));
     if over_critical {
         let [low, high] = [axes.y.low, axes.y.high].map(|y| axes.place(1.0, y));
-        drawing.line(low, high, CRITICAL);
+        drawing.curve("critical", [low, high], CRITICAL);
     }
     let overturned = axes.x.at(OVERTURNED);
     let looks = (0..).map(|index: usize| {
@@ -194,7 +197,8 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
         })
         .collect()
 }
-const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
+/// Grey, since dashed black lines are fractiles.
+const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
 /// How far all cases rocked, by record, to be compared with other models of motion.
