@@ -359,3 +359,68 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
         "{error}"
     );
 }
+
+/// Drums with flush faces turn about the base as one block does.
+#[test]
+fn drums_have_the_capacity_of_a_block() {
+    let curve = |drums: &str| {
+        let text = format!("[column]\nheight_m = 4.0\nwidth_m = 0.8\n{drums}[free_hinges]\n");
+        capacity(&parsed(&text), Some(Vector2::new(0.0, 3.9))).unwrap()
+    };
+    for (drums, block) in curve("drums = 5\n").iter().zip(&curve("")) {
+        assert_eq!(drums.curve.len(), block.curve.len());
+        for (drums, block) in drums.curve.iter().zip(&block.curve) {
+            assert!((drums.acceleration_g - block.acceleration_g).abs() < 1e-12);
+            assert!((drums.displacement_m - block.displacement_m).abs() < 1e-9);
+        }
+    }
+}
+
+/// Statics need no motion: the records of the ground may be missing, and drums and moved springings need no model of motion. Whatever moves the
+/// structure still does.
+#[test]
+fn statics_need_no_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let record = "[ground.record]\nfile = \"nowhere.at2\"\n";
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n";
+    let drums = "[column]\nheight_m = 4.0\nwidth_m = 1.0\ndrums = 5\n";
+    let moved = "[supports]\nright = { spread_m = 0.05 }\n";
+    let write = |name: &str, text: &str| {
+        std::fs::write(path.join(format!("{name}.toml")), text).unwrap();
+        format!("{name}.toml")
+    };
+    let missing = "cannot be read";
+    let of_arch = write("arch", &format!("{arch}{record}"));
+    let of_drums = write("drums", &format!("{drums}{record}"));
+    let of_moved = write("moved", &format!("{arch}{moved}{record}"));
+    for (command, file) in [
+        ("limit", &of_arch),
+        ("spread", &of_arch),
+        ("capacity", &of_arch),
+        ("limit", &of_drums),
+        ("capacity", &of_drums),
+        ("limit", &of_moved),
+        ("spread", &of_moved),
+    ] {
+        program::printed(path, &[command, file]);
+        program::refused(path, &["run", file], &[missing]);
+    }
+    for file in [&of_arch, &of_drums, &of_moved] {
+        let output = program::archrock(path, &["check", file]);
+        assert!(output.status.success());
+        let warned = String::from_utf8(output.stderr).unwrap();
+        assert!(warned.contains(missing), "{warned}");
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert!(printed.contains("file = \"nowhere.at2\""), "{printed}");
+    }
+    // What is wrong with the scenario itself is an error in all of them.
+    let wrong = write("wrong", &format!("{arch}{record}scael = 2.0\n"));
+    for command in ["limit", "check"] {
+        program::refused(path, &[command, &wrong], &["unknown key `scael`"]);
+    }
+    // The same numbers with a model of motion.
+    let free = write("free", &format!("{arch}{moved}[free_hinges]\n"));
+    let numbers = |file: &str| program::printed(path, &["limit", file, "--format", "json"]);
+    assert_eq!(numbers(&of_moved), numbers(&free));
+}

@@ -473,6 +473,7 @@ fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
     let changes = Changes {
         hinges: Some(hinges),
         set: &[],
+        ..Changes::default()
     };
     Scenario::of(&Source::of_file(file)?, &changes)
 }

@@ -230,16 +230,16 @@ fn a_map_does_not_cut_pulses_off() {
     };
     // Ricker wavelets last four durations.
     for axis in ["duration_s = [1, 2.25]", "frequency_hz = [0.44, 1]"] {
-        let whole = Scenario::parse(&text(axis), "s.toml");
+        let scenario = parsed(&text(axis));
+        let whole = OverturningMap::of(&scenario);
         assert_eq!(whole.is_ok(), axis.contains("2.25"), "{axis}");
     }
-    let errors = Scenario::parse(&text("duration_s = [1, 2.5]"), "s.toml").unwrap_err();
-    assert!(
-        errors
-            .to_string()
-            .contains("s.toml:11:1: [map] has pulses that last until 11 s"),
-        "{errors}"
-    );
+    let scenario = parsed(&text("duration_s = [1, 2.5]"));
+    let Err(error) = OverturningMap::of(&scenario) else {
+        panic!("its pulses are cut off");
+    };
+    let words = "[map] has pulses that last until 11 s";
+    assert!(error.contains(words), "{error}");
 }
 
 /// Above amplitudes that overturn there are some that do not; bisection would never find them. At a tolerance
@@ -757,11 +757,12 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
         errors.to_string().contains("applies to a circular [arch]"),
         "{errors}"
     );
-    let errors = Scenario::parse(&format!("{ARCH}{map}"), "s.toml").unwrap_err();
-    assert!(
-        errors.to_string().contains("[map] needs a ground motion"),
-        "{errors}"
-    );
+    let still = parsed(&format!("{ARCH}{map}"));
+    let Err(error) = OverturningMap::of(&still) else {
+        panic!("a map without a ground motion");
+    };
+    assert!(error.contains("[map] needs a ground motion"), "{error}");
+    assert!(OverturningMap::new(&still).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

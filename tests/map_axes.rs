@@ -123,6 +123,25 @@ fn any_number_of_the_scenario_can_be_an_axis() {
     assert_eq!(stdout(&archrock(path, &["check", "t.toml"])), resolved);
 }
 
+/// A map of pulses may stand beside the record of `run`: only `map` refuses it.
+#[test]
+fn a_map_of_pulses_may_stand_beside_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::copy(scenarios().join("records/wave-1.at2"), path.join("r.at2")).unwrap();
+    let text = format!(
+        "{COLUMN}[ground.record]\nfile = 'r.at2'\n[map]\nduration_s = [0.2, 0.4]\namplitude_g = [0.5, 1.0]\n"
+    );
+    let said = refused(path, &text, &[]);
+    assert!(
+        said.contains("`duration_s` in [map] goes with a pulse, and [ground] has a record"),
+        "{said}"
+    );
+    assert_eq!(run(path, &[])["outcome"], "rest");
+    let checked = stdout(&archrock(path, &["check", "s.toml"]));
+    assert!(checked.contains("duration_s = [0.2, 0.4]"), "{checked}");
+}
+
 #[test]
 fn axes_that_do_not_suit_are_refused() {
     let folder = tempfile::tempdir().unwrap();
@@ -148,7 +167,7 @@ fn axes_that_do_not_suit_are_refused() {
     );
     let said = refused(pulse, "scale = [1, 2]\nduration_s = [1, 2]");
     assert!(
-        said.contains("`scale = [1, 2]` goes with a record"),
+        said.contains("`scale` in [map] goes with a record"),
         "{said}"
     );
     let said = refused(
@@ -156,7 +175,7 @@ fn axes_that_do_not_suit_are_refused() {
         "thickness_ratio = [0.15, 0.2]\namplitude_g = [1, 2]",
     );
     assert!(
-        said.contains("`amplitude_g = [1, 2]` goes with a pulse"),
+        said.contains("`amplitude_g` in [map] goes with a pulse"),
         "{said}"
     );
     let said = refused("", "thickness_ratio = [0.15, 0.2]\nscale = [1, 2]");

@@ -19,6 +19,7 @@ fn read(set: &[&str]) -> Result<Scenario, String> {
     let changes = Changes {
         hinges: None,
         set: &set,
+        ..Changes::default()
     };
     Scenario::of(&Source::of_text(TEXT, "s.toml"), &changes).map_err(|errors| errors.to_string())
 }
@@ -118,6 +119,7 @@ fn a_wrong_assignment_is_refused_like_a_wrong_line() {
     let changes = Changes {
         hinges: None,
         set: &set,
+        ..Changes::default()
     };
     let errors = Scenario::of(&Source::of_text(&text, "s.toml"), &changes).unwrap_err();
     let errors = errors.to_string();
@@ -150,6 +152,7 @@ fn entries_of_lists_are_counted_from_one() {
         let changes = Changes {
             hinges: None,
             set: &set,
+            ..Changes::default()
         };
         Scenario::of(&Source::of_text(&text, "s.toml"), &changes)
     };

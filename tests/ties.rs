@@ -602,3 +602,40 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
         .unwrap();
     assert_eq!(stack.supports(), Supports::Left);
 }
+
+/// Two hundred ties side by side bear what one of their strength bears; one more, or a stiffer one, is refused with the limit.
+#[test]
+fn ties_have_limits_and_many_of_them_bear_what_one_bears() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";
+    let ties = |count: usize, force_n: f64| {
+        let tie =
+            format!("[[tie]]\nheight_m = 3.3\nstiffness_n_m = 1e10\nyield_force_n = {force_n:?}\n");
+        tie.repeat(count)
+    };
+    let push_g = |count: usize, force_n: f64| {
+        let answer = limit(&parsed(&format!("{arch}{}", ties(count, force_n)))).unwrap();
+        answer.json["ties"]["yielding"]["right"]["incipient_acceleration_g"]
+            .as_f64()
+            .unwrap_or_else(|| panic!("{}", answer.json))
+    };
+    let (one_g, many_g) = (push_g(1, 1e4), push_g(200, 50.0));
+    assert!(one_g > 0.17, "{one_g}");
+    assert!((many_g - one_g).abs() < 1e-8, "{many_g} {one_g}");
+    let wrong = |text: &str, words: &str| {
+        std::fs::write(folder.join("s.toml"), format!("{arch}{text}")).unwrap();
+        refused(folder, &["limit", "s.toml"], &[words]);
+    };
+    wrong(&ties(201, 50.0), "one of 201 ties; must be at most 200");
+    let stiff = ties(1, 50.0);
+    wrong(
+        &stiff.replace("1e10", "1.1e10"),
+        "must be a number from 0.001 to 1e10",
+    );
+    let section = "area_mm2 = 1e6\nmodulus_gpa = 210.0";
+    wrong(
+        &stiff.replace("stiffness_n_m = 1e10", section),
+        "must be at most 1e10 N/m: give a smaller `area_mm2` or `modulus_gpa`",
+    );
+}

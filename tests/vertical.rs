@@ -2,6 +2,8 @@
 
 use crate::common::{impact_times_s, pairs, parsed};
 use crate::motions::{G, Random, run, scaled, semicircle, synthetic};
+use crate::program::{archrock, refused, scenarios, stdout};
+use crate::results::Table;
 use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
@@ -253,5 +255,60 @@ proptest! {
         let (history, rows) = run(&arch, &ground, G, None, 15.0);
         prop_assert!(history.summary.energy_defect_ratio < 1e-6);
         prop_assert!(rows.iter().all(|row| row.rotations_rad.iter().all(|x| x.is_finite())));
+    }
+}
+
+/// No model follows a structure that the ground leaves: `run` refuses such ground, and `threshold` and `map` have no histories on it.
+#[test]
+fn ground_that_falls_away_has_no_history_in_any_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n\
+                [ground.half_sine]\namplitude_g = 0.3\nvertical_amplitude_g = -0.9\nduration_s = 0.3\n\
+                [map]\n'column.width_m' = [1.0]\nscale = [1.0, 8.0]\n\
+                [simulation]\nduration_s = 8.0\n";
+    std::fs::copy(scenarios().join("records/wave-1.at2"), path.join("r.at2")).unwrap();
+    for hinges in ["four", "free", "elastic"] {
+        let text = if hinges == "elastic" {
+            text.to_owned()
+        } else {
+            let joints = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n";
+            text.replace(
+                joints,
+                if hinges == "free" {
+                    "[free_hinges]\n"
+                } else {
+                    ""
+                },
+            )
+        };
+        std::fs::write(path.join("s.toml"), &text).unwrap();
+        let words = ["falls as fast as a free body at"];
+        refused(
+            path,
+            &["threshold", "s.toml", "--from", "2", "--to", "3"],
+            &words,
+        );
+        let falls = [
+            "run",
+            "s.toml",
+            "--set",
+            "ground.half_sine.vertical_amplitude_g=-1.8",
+        ];
+        refused(path, &falls, &["fall as fast as a free body at"]);
+        let pulse = "[ground.half_sine]\namplitude_g = 0.3\nvertical_amplitude_g = -0.9\nduration_s = 0.3\n";
+        let record = "[ground.record]\nfile = 'r.at2'\ncomponent = 'vertical'\n";
+        std::fs::write(path.join("s.toml"), text.replace(pulse, record)).unwrap();
+        refused(
+            path,
+            &["run", "s.toml", "--set", "ground.record.scale=8"],
+            &["fall as fast as a free body at"],
+        );
+        stdout(&archrock(path, &["map", "s.toml", "--out", hinges]));
+        let cells = Table::read(path.join(hinges).join("map.csv")).rows;
+        assert_ne!(cells[0]["outcome"], "failed", "{hinges}");
+        assert_eq!(cells[1]["outcome"], "failed", "{hinges}");
+        let summary = std::fs::read_to_string(path.join(hinges).join("map.json")).unwrap();
+        assert!(summary.contains(words[0]), "{hinges}: {summary}");
     }
 }

@@ -161,7 +161,12 @@ impl Scenario {
             .map_err(refused)?;
         let text = Text::new(text, name, &files)?;
         py.detach(|| {
-            text.read(|source| archrock::Scenario::of(source, &Changes { hinges, set: &set }))
+            let changes = Changes {
+                hinges,
+                set: &set,
+                ..Changes::default()
+            };
+            text.read(|source| archrock::Scenario::of(source, &changes))
         })
         .map(|scenario| Self::new(Arc::new(scenario)))
     }

@@ -41,7 +41,7 @@ fn point(text: &str) -> Result<Vector2<f64>, String> {
 
 pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read_as_built()?;
+    let scenario = input.as_built(input.read_statics()?)?;
     if !quiet {
         warn(&scenario.unlikely());
     }

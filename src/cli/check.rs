@@ -12,7 +12,7 @@ use archrock::scenario::{Form, Format, Layout, Recorded, Scenario, Series};
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;
-use super::scenario_file::SetOption;
+use super::scenario_file::{Input, SetOption};
 use super::{Failure, Format as Printed, commands, print, print_all};
 
 #[derive(clap::Args)]
@@ -69,7 +69,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
     if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments, quiet);
     }
-    let scenario = arguments.set.open(file)?.read(None)?;
+    let scenario = read(&arguments.set.open(file)?, quiet)?;
     if !quiet {
         super::warn(&scenario.unlikely());
     }
@@ -94,6 +94,23 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
         notes + &scenario.to_resolved_toml(),
         scenario.to_resolved_json(),
     ))
+}
+
+/// The scenario; with a warning also one that holds enough for statics alone.
+fn read(input: &Input<'_>, quiet: bool) -> Result<Scenario, Failure> {
+    let wrong = match input.read(None) {
+        Err(Failure::Input(wrong)) => wrong,
+        read => return read,
+    };
+    let Ok(scenario) = input.read_statics() else {
+        return Err(Failure::Input(wrong));
+    };
+    if !quiet {
+        super::warn(&[format!(
+            "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
+        )]);
+    }
+    Ok(scenario)
 }
 
 /// The blocks of the structure, as its model of motion has them where that has any; on supports that have moved, where they stand as time

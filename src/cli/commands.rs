@@ -33,9 +33,9 @@ pub fn limit(
 ) -> Result<(), Failure> {
     let input = file.open()?;
     let scenario = if plot.is_some() {
-        input.read_as_built()?
+        input.as_built(input.read_statics()?)?
     } else {
-        input.read(None)?
+        input.read_statics()?
     };
     if !quiet {
         warn(&scenario.unlikely());

@@ -115,8 +115,21 @@ pub struct Input<'a> {
 impl Input<'_> {
     /// The scenario with the model of motion that was asked for; with `None`, the one that it chooses itself.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
-        let set = self.set;
-        let scenario = Scenario::of(&self.source, &Changes { hinges, set })?;
+        self.read_for(hinges, false)
+    }
+
+    /// The scenario for what moves nothing: neither the records of its ground nor a model of motion need be there.
+    pub fn read_statics(&self) -> Result<Scenario, Failure> {
+        self.read_for(None, true)
+    }
+
+    fn read_for(&self, hinges: Option<Hinges>, statics: bool) -> Result<Scenario, Failure> {
+        let changes = Changes {
+            hinges,
+            set: self.set,
+            statics,
+        };
+        let scenario = Scenario::of(&self.source, &changes)?;
         Ok(if self.no_uncertain {
             scenario.without_uncertain()
         } else {
@@ -126,7 +139,11 @@ impl Input<'_> {
 
     /// The scenario for what is computed of a structure as it was built.
     pub fn read_as_built(&self) -> Result<Scenario, Failure> {
-        let scenario = self.read(None)?;
+        self.as_built(self.read(None)?)
+    }
+
+    /// The scenario, unless its springings have moved.
+    pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         if scenario.motion().supports().is_some() {
             let message = "this command is about the structure on the springings that were built: leave [supports] out; `archrock limit` and \
                            `archrock spread` tell what push it bears where they have moved";

@@ -52,7 +52,7 @@ impl From<NoSpread> for Failure {
 
 pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read(None)?;
+    let scenario = input.read_statics()?;
     if !quiet {
         warn(&scenario.unlikely());
     }

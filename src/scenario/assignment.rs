@@ -176,6 +176,7 @@ fn replace<'i>(
                 let Some(entry) = entry else {
                     return Err(Fault {
                         offset: span.start,
+                        of_file: false,
                         message: format!(
                             "`{name}` is a list, whose entries are `{name}.1` to `{name}.{}`: `{name}.{number}` is none",
                             entries.len()

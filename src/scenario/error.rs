@@ -130,6 +130,8 @@ impl std::error::Error for ScenarioErrors {}
 pub(super) struct Fault {
     pub(super) offset: usize,
     pub(super) message: String,
+    /// Whether it is the contents of a file that the text names, or its absence.
+    pub(super) of_file: bool,
 }
 
 /// An excerpt of the file for a message: its first line, shortened if it is long.

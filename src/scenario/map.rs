@@ -113,13 +113,12 @@ pub struct Map {
 const MAX_CELLS: usize = 1_000_000;
 
 impl Map {
-    /// Reads `[map]`, and checks it against those other tables that are valid.
+    /// Reads `[map]`, and checks it against those other tables that are valid. Whether its axes suit the ground is for [`Map::check`]: a map
+    /// of pulses may stand beside a record that other commands use.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
-        ground: Option<&Option<Ground>>,
-        simulation: Option<&Simulation>,
     ) -> Reading<Self> {
         let spread = read_spread(table, hinges);
         let read = Quantity::ALL
@@ -129,7 +128,6 @@ impl Map {
                 let sequence = Sequence::read(table, quantity.name(), quantity.range())?;
                 if sequence.is_some() {
                     suits(table, quantity, structure, (hinges, motion))?;
-                    check_ground(table, quantity, ground)?;
                 }
                 let key = quantity.name().to_owned();
                 Ok(sequence.map(|sequence| Axis {
@@ -171,31 +169,42 @@ impl Map {
                 "has {cells} cells; at most {MAX_CELLS} are allowed"
             )));
         }
-        if let Some(None) = ground {
-            return Err(table.wrong_itself(
-                "needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]",
-            ));
-        }
         let spread = spread?;
-        let map = Self { x, y, spread };
-        if let (Some(Some(ground)), Some(simulation)) = (ground, simulation) {
-            map.check_end(table, ground, simulation)?;
-        }
-        Ok(map)
+        Ok(Self { x, y, spread })
     }
 
-    /// Checks that every ground motion of the map ends within the simulation.
-    fn check_end(
+    /// Checks that its axes suit the ground, and that every ground motion ends within the simulation.
+    ///
+    /// # Errors
+    /// Explains what to change.
+    pub(crate) fn check(
         &self,
-        table: &mut Table<'_>,
-        ground: &Ground,
+        ground: Option<&Ground>,
         simulation: &Simulation,
-    ) -> Reading<()> {
+    ) -> Result<(), String> {
+        let Some(ground) = ground else {
+            return Err(
+                "[map] needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]"
+                    .to_owned(),
+            );
+        };
+        for axis in [&self.x, &self.y] {
+            let wrong = match (axis.quantity.is_of_records(), ground) {
+                (Some(true), Ground::Pulse(_)) => {
+                    "goes with a record, and [ground] has a pulse: the axis of its strength is `amplitude_g`"
+                }
+                (Some(false), Ground::Record(_)) => {
+                    "goes with a pulse, and [ground] has a record: the axes of its strength are `scale` and `peak_g`"
+                }
+                _ => continue,
+            };
+            return Err(format!("`{}` in [map] {wrong}", axis.key));
+        }
         let pulse = match ground {
             Ground::Pulse(pulse) => pulse,
             Ground::Record(record) => {
                 let end_s = record.end_s();
-                return self.check_end_s(table, "a record that lasts", end_s, simulation);
+                return ends_within("a record that lasts", end_s, simulation);
             }
         };
         let longest_s = [&self.x, &self.y].into_iter().find_map(|axis| {
@@ -211,26 +220,21 @@ impl Map {
             ..pulse.clone()
         };
         let end_s = longest.motion(1.0).end_s();
-        self.check_end_s(table, "pulses that last", end_s, simulation)
+        ends_within("pulses that last", end_s, simulation)
     }
+}
 
-    fn check_end_s(
-        &self,
-        table: &mut Table<'_>,
-        what: &str,
-        end_s: f64,
-        simulation: &Simulation,
-    ) -> Reading<()> {
-        let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
-        if end_s <= duration_s {
-            return Ok(());
-        }
-        Err(table.wrong_itself(format!(
-            "has {what} until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
-            plain(end_s),
-            plain(duration_s)
-        )))
+/// Refuses ground motion that goes on when the simulation ends.
+fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), String> {
+    let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
+    if end_s <= duration_s {
+        return Ok(());
     }
+    Err(format!(
+        "[map] has {what} until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
+        plain(end_s),
+        plain(duration_s)
+    ))
 }
 
 impl Serialize for Map {
@@ -245,24 +249,6 @@ impl Serialize for Map {
         }
         map.end()
     }
-}
-
-/// Refuses a quantity of pulses with a record, and a quantity of records with a pulse.
-fn check_ground(
-    table: &mut Table<'_>,
-    quantity: Quantity,
-    ground: Option<&Option<Ground>>,
-) -> Reading<()> {
-    let wrong = match (quantity.is_of_records(), ground) {
-        (Some(true), Some(Some(Ground::Pulse(_)))) => {
-            "goes with a record: of a pulse the axis is `amplitude_g`"
-        }
-        (Some(false), Some(Some(Ground::Record(_)))) => {
-            "goes with a pulse: of a record the axes are `scale` and `peak_g`"
-        }
-        _ => return Ok(()),
-    };
-    Err(table.wrong(quantity.name(), wrong))
 }
 
 const SPREAD: &str = "spread";

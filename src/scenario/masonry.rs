@@ -254,7 +254,7 @@ impl Additions {
         let piers = table.table("piers", read_piers);
         let fill = table.table("fill", read_fill);
         let loads = table.tables("load", read_load);
-        let ties = table.tables("tie", TieTable::read);
+        let ties = TieTable::read_all(table);
         Ok(Self {
             piers: piers?.unwrap_or_default(),
             fill: fill?,

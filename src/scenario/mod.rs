@@ -113,6 +113,9 @@ pub struct Changes<'a> {
     pub hinges: Option<Hinges>,
     /// Values that replace those in the text. If one key is set twice, the later value counts.
     pub set: &'a [Assignment],
+    /// True if nothing is to move: the files of `[ground]` may then be missing or faulty, which leaves the ground still, and drums or moved
+    /// springings without a model of motion are free hinges.
+    pub statics: bool,
 }
 
 /// What to simulate, with every default filled in.
@@ -128,6 +131,8 @@ pub struct Scenario {
     /// Whether the text has an `[impact]` that is ignored.
     ignores_impact: bool,
     ground: Option<Ground>,
+    /// `[ground]` as it was given, if its files are missing or faulty and nothing is to move.
+    unread_ground: Option<Value>,
     right_foot: Option<RightFoot>,
     initial: Option<Initial>,
     simulation: Simulation,
@@ -318,7 +323,7 @@ impl Scenario {
     pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
         table::read_text(text, changes.set, |table| {
-            let scenario = Self::read_table(table, folder, changes.hinges)?;
+            let scenario = Self::read_table(table, folder, changes)?;
             let mut files = vec![InputFile::of_scenario(&source.name, text)];
             files.append(&mut table.noted_files());
             Ok(Self {
@@ -330,9 +335,9 @@ impl Scenario {
     }
 
     /// Reads a scenario whose files are relative to `folder`.
-    fn read_table(table: &mut Table<'_>, folder: &Path, hinges: Option<Hinges>) -> Reading<Self> {
+    fn read_table(table: &mut Table<'_>, folder: &Path, changes: &Changes<'_>) -> Reading<Self> {
         let title = table.optional("title", &Text);
-        let motion = motion::Tables::read(table, hinges);
+        let motion = motion::Tables::read(table, changes.hinges, changes.statics);
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = match &simulation {
@@ -344,12 +349,18 @@ impl Scenario {
             Err(reported) => (Err(reported), Vec::new()),
         };
         let mut right_foot = Ok(None);
+        let faults = table.faults();
         let ground = table.table("ground", |table| {
             right_foot = table.table("right", |table| {
                 RightFoot::read(table, folder, gravity_m_s2)
             });
             Ground::read(table, folder, gravity_m_s2)
         });
+        let mut unread_ground = None;
+        if changes.statics && ground.is_err() && table.forgives_files(faults) {
+            unread_ground = table.as_given("ground");
+            right_foot = Ok(None);
+        }
         let (ground, ground_motion) = match ground {
             Ok(Some((ground, motion))) => (Ok(Some(ground)), motion),
             Ok(None) => (Ok(None), GroundMotion::still()),
@@ -363,10 +374,8 @@ impl Scenario {
             initial::read(table, structure.as_ref().ok(), hinges)
         });
         let map = table.table("map", |table| {
-            let (structure, ground) = (structure.as_ref().ok(), ground.as_ref().ok());
             let motion = motion.as_ref().ok().map(|(motion, _)| motion);
-            let simulation = simulation.as_ref().ok();
-            Map::read(table, structure, (hinges, motion), ground, simulation)
+            Map::read(table, structure.as_ref().ok(), (hinges, motion))
         });
         let spectrum = table.table("spectrum", |table| {
             let structure = structure.as_ref().ok();
@@ -410,7 +419,11 @@ impl Scenario {
             ties,
             motion,
             ignores_impact,
-            ground: ground?,
+            ground: match unread_ground {
+                Some(_) => None,
+                None => ground?,
+            },
+            unread_ground,
             right_foot: right_foot?,
             initial: initial?,
             simulation: simulation?,
@@ -431,6 +444,9 @@ impl Scenario {
         let uncertain = uncertain?.map(|uncertain| {
             let resolved = certain.resolved();
             certain.as_given = uncertain.as_given(table, &resolved);
+            if certain.unread_ground.is_some() {
+                return Ok(uncertain);
+            }
             uncertain.check(table, &certain, &resolved)
         });
         Ok(Self {
@@ -456,6 +472,7 @@ impl Scenario {
         .under_both_feet(motion);
         Self {
             ground,
+            unread_ground: None,
             right_foot,
             map: None,
             spectrum: None,
@@ -660,7 +677,10 @@ impl Scenario {
         };
         let supports = self.motion.supports();
         let supports = supports.map_or(Value::Null, |movements| json(&movements));
-        let mut ground = json(&self.ground);
+        let mut ground = match &self.unread_ground {
+            Some(given) => given.clone(),
+            None => json(&self.ground),
+        };
         if let (Value::Object(ground), Some(right)) = (&mut ground, &self.right_foot) {
             ground.insert("right".to_owned(), json(right));
         }

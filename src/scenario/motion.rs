@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
-use super::structure::{ModelError, Structure};
+use super::structure::{DRUM_KEYS, ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact, supports};
 use crate::dynamics::free_hinges::RowOptions;
@@ -236,6 +236,11 @@ impl Motion {
     }
 }
 
+/// Whether the scenario gives a structure that only models with joints can move: on springings that have moved, or of drums.
+fn needs_joints(table: &Table<'_>) -> bool {
+    table.gives("supports") || DRUM_KEYS.iter().any(|key| table.gives_in("column", key))
+}
+
 /// The tables of a scenario that concern its model of motion.
 pub(super) struct Tables {
     pub(super) hinges: Hinges,
@@ -246,14 +251,15 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Reads the tables of rows of blocks, which decide the model unless one is `asked` for.
-    pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>) -> Self {
+    /// Reads the tables of rows of blocks, which decide the model unless one is `asked` for. For statics, drums and moved springings need none
+    /// of them: they are free hinges.
+    pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>, statics: bool) -> Self {
         let free_hinges = table.table("free_hinges", free_hinges::read);
         let elastic_joints = table.table("elastic_joints", ElasticTable::read);
         let supports = table.table("supports", supports::read);
         let chosen = if table.gives_table("elastic_joints") {
             Hinges::Elastic
-        } else if table.gives_table("free_hinges") {
+        } else if table.gives_table("free_hinges") || (statics && needs_joints(table)) {
             Hinges::Free
         } else {
             Hinges::Four

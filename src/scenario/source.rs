@@ -80,6 +80,7 @@ impl Source {
             let fault = Fault {
                 offset: error.utf8_error().valid_up_to(),
                 message: "not UTF-8 text from here".to_owned(),
+                of_file: false,
             };
             ScenarioErrors::placed(&Self::of_text(&text, name), &[], vec![fault])
         })?;

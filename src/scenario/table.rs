@@ -103,6 +103,7 @@ impl Legible {
             let line = faulty_part(&legible.text, offset);
             legible.faults.push(Fault {
                 offset,
+                of_file: false,
                 message: match excerpt(&text[line.clone()]).as_str() {
                     "" => format!("not valid TOML: {}", first.message()),
                     line => format!("not valid TOML in `{line}`: {}", first.message()),
@@ -129,6 +130,7 @@ impl Legible {
         }
         Some(Fault {
             offset: first.offset,
+            of_file: false,
             message: format!(
                 "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; \
                  `archrock check` tells what is in it",
@@ -344,6 +346,29 @@ impl<'a> Table<'a> {
         self.entries.contains_key(key)
     }
 
+    /// How many faults were found so far.
+    pub(super) fn faults(&self) -> usize {
+        self.faults.len()
+    }
+
+    /// Takes back the faults found since there were so many, if all of them are faults of files that the text names; false where they are not.
+    pub(super) fn forgives_files(&mut self, since: usize) -> bool {
+        let forgives = self.faults[since..].iter().all(|fault| fault.of_file);
+        if forgives {
+            self.faults.truncate(since);
+        }
+        forgives
+    }
+
+    /// Records that the file which `key` names is missing or wrong: `message` continues the key and its value.
+    pub(super) fn wrong_file(&mut self, key: &str, message: impl fmt::Display) -> Reported {
+        let reported = self.wrong(key, message);
+        if let Some(fault) = self.faults.last_mut() {
+            fault.of_file = true;
+        }
+        reported
+    }
+
     /// Records that the given value of `key` is wrong: `message` continues the key and its value.
     pub(super) fn wrong(&mut self, key: &str, message: impl fmt::Display) -> Reported {
         self.wrong_entry(self.entries.get(key), key, message)
@@ -440,7 +465,11 @@ impl<'a> Table<'a> {
     }
 
     fn fault(&mut self, offset: usize, message: String) -> Reported {
-        self.faults.push(Fault { offset, message });
+        self.faults.push(Fault {
+            offset,
+            message,
+            of_file: false,
+        });
         Reported
     }
 
@@ -495,7 +524,11 @@ impl<'a> Table<'a> {
                     did_you_mean(name, &self.known),
                     self.known.join(", ")
                 );
-                self.faults.push(Fault { offset, message });
+                self.faults.push(Fault {
+                    offset,
+                    message,
+                    of_file: false,
+                });
             }
         }
     }

@@ -15,6 +15,7 @@ use serde::Serialize;
 
 use super::structure::Structure;
 use super::table::{Count, List, Number, OneOf, Reading, Table};
+use crate::argument::short;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row};
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::Masonry;
@@ -24,7 +25,11 @@ use crate::mechanics::tie::{Anchor, Tie, TieError};
 const COORDINATE_M: Number = Number::within(&(-1e6..=1e6));
 const AREA_MM2: Number = Number::within(&(1e-3..=1e9));
 const MODULUS_GPA: Number = Number::within(&(1e-4..=1e4));
-const STIFFNESS_N_M: Number = Number::within(&(1e-3..=1e15));
+/// The stiffest tie, in N/m: a steel bar of 30,000 mm2 that is 0.6 m long. Beyond it a tie is as good as rigid, and only costs time.
+const STIFFEST_N_M: f64 = 1e10;
+const STIFFNESS_N_M: Number = Number::within(&(1e-3..=STIFFEST_N_M));
+/// The most ties of a structure.
+const MOST_TIES: usize = 200;
 const PRESTRESS_N: Number = Number::within(&(0.0..=1e12));
 const YIELD_FORCE_N: Number = Number::within(&(1e-6..=1e12));
 const YIELD_STRESS_MPA: Number = Number::within(&(1e-3..=1e5));
@@ -90,7 +95,20 @@ pub struct TieTable {
 }
 
 impl TieTable {
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    /// Reads all of `[[tie]]`.
+    pub(super) fn read_all(table: &mut Table<'_>) -> Reading<Vec<Self>> {
+        let ties = table.tables("tie", Self::read)?;
+        if ties.len() > MOST_TIES {
+            let wrong = format!(
+                "is one of {} ties; must be at most {MOST_TIES}: join those that lie side by side",
+                ties.len()
+            );
+            return Err(table.wrong_element("tie", MOST_TIES, wrong));
+        }
+        Ok(ties)
+    }
+
+    fn read(table: &mut Table<'_>) -> Reading<Self> {
         let names = OneOf {
             all: Between::ALL,
             name: |between: Between| between.name(),
@@ -189,6 +207,14 @@ impl TieTable {
             (Some(area_mm2), Some(modulus_gpa), _) => 1e3 * area_mm2 * modulus_gpa / length_m,
             (_, _, stiffness_n_m) => stiffness_n_m.unwrap_or(0.0),
         };
+        if stiffness_n_m > STIFFEST_N_M {
+            return Err(format!(
+                "has a stiffness of {} N/m by its section and its length of {} m; must be at most {STIFFEST_N_M:e} N/m: give a smaller \
+                 `area_mm2` or `modulus_gpa`",
+                short(stiffness_n_m),
+                short(length_m)
+            ));
+        }
         let by_section = self.yield_stress_mpa.zip(self.area_mm2);
         let by_section = by_section.map(|(mpa, mm2)| mpa * mm2);
         let tie = Tie {

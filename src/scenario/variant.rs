@@ -43,7 +43,7 @@ impl Scenario {
             for left_out in STUDIES.iter().chain(&CHECK) {
                 table.shift_remove(*left_out);
             }
-            if record.is_some() {
+            if record.is_some() || self.unread_ground.is_some() {
                 table.shift_remove("ground");
             } else if let Some(Value::Object(ground)) = table.get_mut("ground") {
                 ground.shift_remove("right");
@@ -52,8 +52,8 @@ impl Scenario {
         make_room(&mut table, values);
         let text = table.as_object().map_or(String::new(), toml_text);
         let changes = Changes {
-            hinges: None,
             set: &set,
+            ..Changes::default()
         };
         let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
             .map_err(|errors| errors.as_slice()[0].message.clone())?;

@@ -368,6 +368,19 @@ impl Request {
         self.end_s - ground.start_s()
     }
 
+    /// Refuses numbers that no simulation on this ground can work with, and ground that falls away under the structure: no model follows a
+    /// structure that flies.
+    pub(in crate::dynamics) fn check_on(
+        &self,
+        ground: &GroundMotion,
+    ) -> Result<(), SimulationError> {
+        self.check(ground)?;
+        match ground.free_fall_s(self.gravity_m_s2) {
+            Some(time_s) => Err(SimulationError::FreeFall { time_s }),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses numbers that no simulation on this ground can work with.
     pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
         within("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2)?;
@@ -417,7 +430,7 @@ pub enum SimulationError {
     /// The ground falls away under the structure.
     #[error(
         "the ground falls as fast as a free body at {time_s:?} s and no longer carries the structure: \
-         this model needs vertical accelerations above -1 g"
+         vertical accelerations must stay above -1 g"
     )]
     FreeFall {
         /// When, in seconds.

@@ -136,10 +136,11 @@ pub fn limit_with_yielding_ties(
     let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
     let work_at_rest = work(row, undeformed.placement.centres_m(), &at_rest.velocities);
-    let mut planes = vec![Plane::new(row, work_at_rest, &at_rest.lengthening, sway)];
+    let mut highest = Highest::new(&most);
+    highest.add(&Plane::new(row, work_at_rest, &at_rest.lengthening, sway));
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
     for _ in 0..MOST_TRIALS {
-        let Some((highest_g, next)) = highest(&planes, &most) else {
+        let Some((highest_g, next)) = highest.find() else {
             break;
         };
         if (highest_g, &next) == (push_g, &forces) {
@@ -160,7 +161,7 @@ pub fn limit_with_yielding_ties(
             let lengthening = trial.lengthening();
             let plane = Plane::new(row, trial.work(), &lengthening, sway);
             let bound_g = plane.bound_g(&forces);
-            planes.push(plane);
+            highest.add(&plane);
             met += 1;
             match bound_g {
                 Some(bound_g) if bound_g >= 0.0 && bound_g < lower_g * (1.0 - 1e-14) => {
@@ -209,6 +210,8 @@ const LARGEST_PUSH: f64 = 1e6;
 const LESS_FORCE: f64 = 1e-9;
 /// Exchanges of constraints, at most.
 const MOST_EXCHANGES: usize = 10_000;
+/// After so many exchanges the inverse of the basis is computed anew.
+const EXACT_EXCHANGES: usize = 100;
 /// Part of its terms by which a constraint may be violated.
 const ROUNDING: f64 = 1e-14;
 /// Forces that are tried, at most.
@@ -245,59 +248,127 @@ impl Plane {
     }
 }
 
-/// The largest push below all planes, and the forces of the ties there; `None` if there is none.
+/// The largest push below all planes, and the forces of the ties there.
 ///
 /// The dual simplex method: from the corner of the bounds on it exchanges one of the constraints that meet there for the one that is
-/// violated most.
-fn highest(planes: &[Plane], most: &[f64]) -> Option<(f64, Vec<f64>)> {
-    let width = 1 + most.len();
-    let axis = |index: usize, value: f64| {
-        let mut row = DVector::zeros(width);
-        row[index] = value;
-        row
-    };
-    let mut constraints: Vec<(DVector<f64>, f64)> = vec![(axis(0, 1.0), LARGEST_PUSH)];
-    constraints.extend((1..).zip(most).map(|(tie, most)| (axis(tie, 1.0), *most)));
-    constraints.extend((0..width).map(|index| (axis(index, -1.0), 0.0)));
-    constraints.extend(planes.iter().map(|plane| {
+/// violated most. A further plane leaves that corner a start for the next search.
+struct Highest {
+    /// Largest forces of the ties.
+    most: Vec<f64>,
+    /// Slopes and bounds.
+    constraints: Vec<(DVector<f64>, f64)>,
+    /// Those that meet at the corner.
+    basis: Vec<usize>,
+    /// Inverse of the slopes of the basis, whose rows they are.
+    inverse: DMatrix<f64>,
+    goal: DVector<f64>,
+}
+
+impl Highest {
+    fn new(most: &[f64]) -> Self {
+        let width = 1 + most.len();
+        let axis = |index: usize, value: f64| {
+            let mut row = DVector::zeros(width);
+            row[index] = value;
+            row
+        };
+        let mut constraints = vec![(axis(0, 1.0), LARGEST_PUSH)];
+        constraints.extend((1..).zip(most).map(|(tie, most)| (axis(tie, 1.0), *most)));
+        constraints.extend((0..width).map(|index| (axis(index, -1.0), 0.0)));
+        // Of forces that are as good, the least.
+        let mut goal = DVector::repeat(width, -LESS_FORCE);
+        goal[0] = 1.0;
+        // The first corner has the largest push and no forces; its slopes are their own inverse.
+        let mut inverse = -DMatrix::identity(width, width);
+        inverse[(0, 0)] = 1.0;
+        Self {
+            most: most.to_vec(),
+            basis: [0].into_iter().chain(width + 1..2 * width).collect(),
+            constraints,
+            inverse,
+            goal,
+        }
+    }
+
+    fn add(&mut self, plane: &Plane) {
         let pulls = plane.pulls.iter().map(|pull| -pull);
         let row = [plane.push].into_iter().chain(pulls);
-        (DVector::from_iterator(width, row), plane.weight)
-    }));
-    // Of forces that are as good, the least.
-    let mut goal = DVector::repeat(width, -LESS_FORCE);
-    goal[0] = 1.0;
-    let mut basis: Vec<usize> = [0].into_iter().chain(width + 1..2 * width).collect();
-    for _ in 0..MOST_EXCHANGES {
-        let matrix = DMatrix::from_fn(width, width, |row, column| {
-            constraints[basis[row]].0[column]
-        });
-        let bounds = DVector::from_fn(width, |row, _| constraints[basis[row]].1);
-        let at = matrix.clone().lu().solve(&bounds)?;
-        let excess = |(row, bound): &(DVector<f64>, f64)| {
-            let terms = row.component_mul(&at);
-            (terms.sum() - bound) - ROUNDING * (terms.abs().sum() + bound.abs())
-        };
-        let worst = constraints
-            .iter()
-            .enumerate()
-            .map(|(index, constraint)| (index, excess(constraint)))
-            .filter(|(index, excess)| *excess > 0.0 && !basis.contains(index))
-            .max_by(|one, other| one.1.total_cmp(&other.1));
-        let Some((entering, _)) = worst else {
-            let forces = (0..most.len()).map(|tie| at[1 + tie].clamp(0.0, most[tie]));
-            return Some((at[0], forces.collect()));
-        };
-        let across = matrix.transpose().lu();
-        let multipliers = across.solve(&goal)?;
-        let shares = across.solve(&constraints[entering].0)?;
-        let leaving = (0..width)
+        let row = DVector::from_iterator(1 + self.most.len(), row);
+        self.constraints.push((row, plane.weight));
+    }
+
+    /// The push and the forces; `None` if there are none.
+    fn find(&mut self) -> Option<(f64, Vec<f64>)> {
+        for exchange in 1..=MOST_EXCHANGES {
+            if exchange % EXACT_EXCHANGES == 0 {
+                self.invert()?;
+            }
+            let at = self.corner();
+            let Some(entering) = self.most_violated(&at) else {
+                let ties = self.most.iter().enumerate();
+                let forces = ties.map(|(tie, most)| at[1 + tie].clamp(0.0, *most));
+                return Some((at[0], forces.collect()));
+            };
+            self.exchange(entering)?;
+        }
+        None
+    }
+
+    /// Where the constraints of the basis meet.
+    fn corner(&self) -> DVector<f64> {
+        let basis = || self.basis.iter().map(|index| &self.constraints[*index]);
+        let width = self.basis.len();
+        let bounds = DVector::from_iterator(width, basis().map(|(_, bound)| *bound));
+        let at = &self.inverse * bounds;
+        // The inverse has lost digits in exchanges.
+        let left = basis().map(|(row, bound)| bound - row.dot(&at));
+        let left = DVector::from_iterator(width, left);
+        at + &self.inverse * left
+    }
+
+    /// The constraint that a point violates most; `None` if there is none.
+    fn most_violated(&self, at: &DVector<f64>) -> Option<usize> {
+        let mut worst = (0.0, None);
+        for (index, (row, bound)) in self.constraints.iter().enumerate() {
+            let (mut sum, mut size) = (-bound, bound.abs());
+            for (slope, place) in row.iter().zip(at.iter()) {
+                sum += slope * place;
+                size += (slope * place).abs();
+            }
+            let excess = sum - ROUNDING * size;
+            if excess > worst.0 && !self.basis.contains(&index) {
+                worst = (excess, Some(index));
+            }
+        }
+        worst.1
+    }
+
+    /// Takes a constraint into the basis for one that leaves; `None` if none can.
+    fn exchange(&mut self, entering: usize) -> Option<()> {
+        let multipliers = self.inverse.tr_mul(&self.goal);
+        let shares = self.inverse.tr_mul(&self.constraints[entering].0);
+        let (leaving, _) = (0..shares.len())
             .filter(|index| shares[*index] > 1e-11)
             .map(|index| (index, multipliers[index].max(0.0) / shares[index]))
-            .min_by(|one, other| one.1.total_cmp(&other.1));
-        basis[leaving?.0] = entering;
+            .min_by(|one, other| one.1.total_cmp(&other.1))?;
+        self.basis[leaving] = entering;
+        let column = self.inverse.column(leaving) / shares[leaving];
+        for (index, mut other) in self.inverse.column_iter_mut().enumerate() {
+            other.axpy(-shares[index], &column, 1.0);
+        }
+        self.inverse.set_column(leaving, &column);
+        Some(())
     }
-    None
+
+    /// Inverts the slopes of the basis anew.
+    fn invert(&mut self) -> Option<()> {
+        let width = self.basis.len();
+        let slopes = DMatrix::from_fn(width, width, |row, column| {
+            self.constraints[self.basis[row]].0[column]
+        });
+        self.inverse = slopes.try_inverse()?;
+        Some(())
+    }
 }
 
 /// What a push does.

@@ -471,7 +471,7 @@ impl Series {
         let layout = Layout::read(table, format);
         let (file, scaling, layout) = (file?, scaling?, layout?);
         let series = Self::of_file(folder, file, layout)
-            .map_err(|wrong| table.wrong("file", wrong))?
+            .map_err(|wrong| table.wrong_file("file", wrong))?
             .scaled(scaling);
         series.check(table, start_s?, gravity_m_s2?)?;
         Ok(series)

@@ -388,6 +388,9 @@ const DRUMS: Count = Count {
     why: "each is a block",
 };
 
+/// Keys of `[column]` that only models with joints have.
+pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
+
 /// Reads `[column]`; drums and a taper are for models of blocks only.
 fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
@@ -399,7 +402,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &Switch, false);
     if !free_hinges {
-        for key in ["drums", "drum_heights_m", "top_width_m"] {
+        for key in DRUM_KEYS {
             if table.gives(key) {
                 let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
                 return Err(table.wrong(key, wrong));

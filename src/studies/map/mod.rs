@@ -150,6 +150,9 @@ impl<'a> OverturningMap<'a> {
     /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
+        if let Some(map) = scenario.map() {
+            map.check(scenario.ground(), scenario.simulation())?;
+        }
         let map = Self::new(scenario).ok_or_else(|| {
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
              [map]\n\
@@ -166,7 +169,11 @@ impl<'a> OverturningMap<'a> {
     /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {
-        Self::of_sample(scenario, scenario.clone())
+        let (ground, simulation) = (scenario.ground(), scenario.simulation());
+        let suits = scenario.map()?.check(ground, simulation);
+        suits
+            .ok()
+            .and_then(|()| Self::of_sample(scenario, scenario.clone()))
     }
 
     /// The cells of the map of a scenario, where all that its axes do not vary is as in another one, a sample of it.

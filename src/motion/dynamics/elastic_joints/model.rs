@@ -276,8 +276,8 @@ impl ElasticJoints {
         })
     }
 
-    fn check(&self, ground: &GroundMotion, request: &Request) -> Result<(), ArgumentError> {
-        request.check(ground)?;
+    fn check(&self, ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
+        request.check_on(ground)?;
         match request.initial {
             None => Ok(()),
             Some(initial) => Err(ArgumentError {
@@ -286,7 +286,8 @@ impl ElasticJoints {
                 allowed:
                     "left out: elastic joints start from rest under the weight of the structure"
                         .to_owned(),
-            }),
+            }
+            .into()),
         }
     }
 

@@ -273,7 +273,7 @@ impl Model for FreeHinges {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        request.check(ground)?;
+        request.check_on(ground)?;
         let settings = self.settings(request);
         let initial_rad = request
             .initial

@@ -235,7 +235,7 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     ground: &'a GroundMotion,
     request: &Request,
 ) -> Result<Rocking<'a, C>, SimulationError> {
-    request.check(ground)?;
+    request.check_on(ground)?;
     if let Some(initial) = request.initial {
         let limit_rad = chain.limit_towards_rad(initial.sway);
         if initial.rotation_rad >= limit_rad {
@@ -248,9 +248,6 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     }
     if ground.right_foot().is_some() {
         return Err(SimulationError::Feet);
-    }
-    if let Some(time_s) = ground.free_fall_s(request.gravity_m_s2) {
-        return Err(SimulationError::FreeFall { time_s });
     }
     Ok(Rocking::new(
         chain,

@@ -357,6 +357,28 @@ impl<'a> Descent<'a> {
         slopes
     }
 
+    /// By how much less the ties lack, each times its part of a way, for the whole of that way.
+    fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
+        let row = self.row;
+        let centres_m = step.stance.placement.centres_m();
+        self.free.fill(Twist::ZERO);
+        for (line, kg) in step.lines.iter().zip(way_kg) {
+            line.add_to(row.blocks(), centres_m, *kg, &mut self.free);
+        }
+        self.program.solve_alike(&Load {
+            free: &self.free,
+            jumps: &self.jumps,
+            touching: &self.touching,
+        });
+        let velocities = self.program.velocities();
+        let each = row.ties().iter().zip(&step.lines).zip(way_kg);
+        each.map(|((tie, line), kg)| {
+            let elastic_m = kg * row.gravity_m_s2() / tie.stiffness_n_m;
+            kg * (elastic_m - step.length * line.lengthening(velocities))
+        })
+        .sum()
+    }
+
     /// Changes the forces of ties on this way until one of them cannot go on, or until the energy of the step falls hardly more: at first it
     /// falls by so much.
     fn go_along(
@@ -390,7 +412,7 @@ impl<'a> Descent<'a> {
                 far = part;
             }
             // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
-            let next = part + left / way_kg.dot(&(self.slopes(step) * way_kg));
+            let next = part + left / self.slope_along(step, way_kg);
             part = if near < next && next < far {
                 next
             } else {
