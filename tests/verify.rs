@@ -485,6 +485,11 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
             said.contains("SLC  not checked: there is no capacity curve"),
             "{said}"
         );
+        // Its joints would slide first, which the page does not deny.
+        assert!(
+            said.contains("warning: To the right joints slide at 0.4288 g"),
+            "{said}"
+        );
         let only = DEMAND.split_once("[demand.slc]").unwrap().1;
         let only =
             format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
@@ -754,7 +759,7 @@ fn the_command_says_and_writes_the_check() {
     assert_eq!(json["states"]["slv"]["demand"]["s_s"], 1.16);
     // The hash is that of the output of `check`.
     let resolved = print_of(folder.path(), &["check", "a.toml"]);
-    assert_eq!(resolved, scenario.to_toml());
+    assert_eq!(resolved, scenario.to_resolved_toml());
     assert_eq!(json["scenario_sha256"].as_str().unwrap().len(), 64);
     // alpha0 by hand, from the table of the bodies.
     let bodies = json["mechanisms"]["right"]["bodies"].as_array().unwrap();

@@ -231,18 +231,16 @@ impl Parts for Row {
         }
     }
 
-    /// Of a stack on one support, the middle of its top.
+    /// Of a stack on one support with a level top, the middle of the top.
     fn crown(&self) -> (f64, Vector2<f64>) {
-        if let (Supports::Left, Some(top)) = (self.supports(), self.joints().last()) {
-            return (middle_of(self.blocks().len() - 1), top.middle_m());
-        }
         let outlines = self.outlines_m().iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {
             outline
                 .iter()
                 .map(move |corner| (middle_of(block), *corner))
         });
-        corners
+        let (place, highest_m) = corners
+            .clone()
             .reduce(|highest, next| {
                 if next.1.y > highest.1.y {
                     next
@@ -250,7 +248,17 @@ impl Parts for Row {
                     highest
                 }
             })
-            .expect("a row has blocks")
+            .expect("a row has blocks");
+        if self.supports() == Supports::Both {
+            return (place, highest_m);
+        }
+        let level_m = highest_m.y - 1e-9 * self.size_m();
+        let top = corners.filter(|corner| corner.0 == place && corner.1.y >= level_m);
+        let (low_m, high_m) = top.fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low_m, high_m), corner| (low_m.min(corner.1.x), high_m.max(corner.1.x)),
+        );
+        (place, Vector2::new(0.5 * (low_m + high_m), highest_m.y))
     }
 
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {

@@ -48,6 +48,9 @@ pub struct Mechanism {
     pub participation: Participation,
     /// Its motion up to the unstable equilibrium, or why that is unknown.
     pub way: Result<Way, String>,
+    /// The acceleration at which joints of the allowed friction coefficient slide first, in g, by the associated bound; `None` if they do
+    /// not, or if the motion is known.
+    pub slides_at_g: Option<f64>,
 }
 
 /// The motion of a mechanism up to its unstable equilibrium.
@@ -136,6 +139,7 @@ impl Mechanism {
             ties,
             body_of_block,
             way,
+            slides_at_g: None,
         }
     }
 
@@ -261,7 +265,8 @@ pub(super) fn allowed_friction(scenario: &Scenario) -> f64 {
 ///
 /// # Errors
 /// When the structure does not stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario
-/// has a friction coefficient, or if there is no curve along which the required friction is known.
+/// has a friction coefficient, or if there is no curve along which the required friction is known; a linkage that locks is then not
+/// refused, but has [`Mechanism::slides_at_g`].
 pub(super) fn mechanisms(scenario: &Scenario, sides: &[Sway]) -> Result<Vec<Mechanism>, NoCheck> {
     let (structure, gravity_m_s2) = (scenario.structure(), scenario.gravity_m_s2());
     let coefficient = allowed_friction(scenario);
@@ -289,13 +294,16 @@ pub(super) fn mechanisms(scenario: &Scenario, sides: &[Sway]) -> Result<Vec<Mech
             .filter(|_| slips || mechanism.way.is_err());
         let slides = may_slide.and_then(|row| slides_at_g(row, coefficient, *sway));
         match slides {
-            Some(at_g) => Err(NoCheck::Slides {
+            Some(at_g) if slips || model.is_err() => Err(NoCheck::Slides {
                 sway: *sway,
                 coefficient,
                 at_g,
                 alpha0: mechanism.alpha0,
             }),
-            None => Ok(mechanism),
+            slides_at_g => Ok(Mechanism {
+                slides_at_g,
+                ..mechanism
+            }),
         }
     };
     sides.iter().map(of).collect()

@@ -156,6 +156,7 @@ pub fn assumptions(check: &Check) -> Vec<String> {
                 let friction = way.friction_up_to(check.furthest_part());
                 format!("No joint slides: to the {side} that needs a friction coefficient of {friction:.3}; {}.", allowed(check))
             }
+            Err(_) if one.slides_at_g.is_some() => format!("No joint slides: to the {side} that does not hold, see the warning."),
             Err(_) => format!(
                 "No joint slides: to the {side} none does with a friction coefficient of {} (associated bound).",
                 check.allowed_friction
@@ -180,6 +181,14 @@ pub fn warnings(scenario: &Scenario, check: &Check) -> Vec<String> {
         })
     });
     let mut warnings: Vec<String> = slides.collect();
+    warnings.extend(check.mechanisms.iter().filter_map(|one| {
+        let (at_g, side) = (one.slides_at_g?, one.sway.name());
+        Some(format!(
+            "To the {side} joints slide at {at_g:.4} g at most with a friction coefficient of {} (associated bound), before the mechanism \
+             starts at {:.4} g: the check takes them not to slide.",
+            check.allowed_friction, one.alpha0
+        ))
+    }));
     if check.gravity_m_s2 != GRAVITY_M_S2 {
         warnings.push(format!(
             "Gravity is {} m/s2, not the {GRAVITY_M_S2} m/s2 of the codes.",

@@ -83,7 +83,7 @@ pub fn page(scenario: &Scenario, check: &Check, date: &str) -> String {
             ("HISTORIES", &writer.histories()),
             ("NOTES", &writer.notes()),
             ("FOOTER", footer),
-            ("SCENARIO", &escaped(&scenario.to_toml())),
+            ("SCENARIO", &escaped(&scenario.to_resolved_toml())),
         ],
     )
 }

@@ -69,7 +69,7 @@ pub fn to_json(scenario: &Scenario, check: &Check) -> Result<Value, OutputError>
 /// SHA-256 of the scenario with every default written out, as `archrock check` prints it.
 #[must_use]
 pub fn scenario_sha256(scenario: &Scenario) -> String {
-    crate::scenario::sha256(scenario.to_toml().as_bytes())
+    crate::scenario::sha256(scenario.to_resolved_toml().as_bytes())
 }
 
 /// The verdict in a word.
