@@ -1048,7 +1048,7 @@ fn all_numbers_may_be_uncertain() {
             let text = format!("{structure}{ground}");
             let scenario = parsed(&text);
             let given: serde_json::Value = toml::from_str(&text).unwrap();
-            let tables = [scenario.to_json(), given];
+            let tables = [scenario.to_resolved_json(), given];
             let tables = tables.iter().flat_map(|tables| tables.as_object().unwrap());
             let mut done = BTreeSet::new();
             for (table, keys) in tables {

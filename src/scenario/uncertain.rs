@@ -340,7 +340,7 @@ impl Uncertain {
         // Where the file gives another number, a length may be written without a point.
         let resolved = number(resolved, &key.key);
         let is_given = resolved.is_none();
-        let given = || value(&scenario.to_json(), &key.key).cloned();
+        let given = || value(&scenario.to_resolved_json(), &key.key).cloned();
         match resolved.or_else(given) {
             Some(Value::Number(number)) if number.is_f64() || is_given => {
                 key.own = number.as_f64();

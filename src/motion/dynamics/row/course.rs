@@ -24,7 +24,7 @@ use crate::mechanics::sway::Sway;
 pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
 /// Where no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
 /// from one turning point to the next.
-const RECENT_RATIO: f64 = 5.0;
+const RECENT_RATIO: f64 = 2.0;
 /// At rest, the kinetic energy is below this fraction of weight times size ...
 pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
 /// ... for this many times the square root of size over gravity: longer than at any turning point.
