@@ -346,7 +346,7 @@ fn chattering_on_a_pushing_ground_ends_in_rest() {
     let (alpha, theta_0) = (0.3, 0.01);
     let column = column(alpha);
     let push = 0.6;
-    let ground = pulse(Pulse::Rectangular, -push * alpha.tan(), 1e3);
+    let ground = pulse(Pulse::Rectangular, -push * alpha.tan(), 50.0);
     let history = run(&column, &ground, &released(Sway::Left, theta_0));
     assert_eq!(history.summary.outcome, Outcome::Rest);
     let energy = |theta: f64| {

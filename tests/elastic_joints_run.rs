@@ -342,7 +342,7 @@ fn a_run_says_what_it_hangs_on() {
     let arch = |joints: &str| {
         format!(
             "[arch]\nmean_radius_m = 4.0\nthickness_m = 0.5\nembrace_deg = 180.0\nvoussoirs = 17\ndensity_kg_m3 = 2700.0\n{joints}\n\
-             [ground.half_sine]\namplitude_g = -0.15\nduration_s = 0.25\n[simulation]\nduration_s = 1.5\n"
+             [ground.half_sine]\namplitude_g = -0.15\nduration_s = 0.25\n[simulation]\nduration_s = 4.0\n"
         )
     };
     let elastic = |stiffness: &str, contact: &str| {

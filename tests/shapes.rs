@@ -277,11 +277,11 @@ fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
         let summary = model
             .simulate(scenario.ground_motion(), &request, None)
             .unwrap();
-        // If it stands, its largest rotation, 0.197 rad, is before 4 s, and it sways by 0.05 rad at the end.
+        // If it stands, its largest rotation, 0.197 rad, is before 4 s. It sways by 0.05 rad at the end, with more than a quarter of its barrier.
         let expected = if overturns {
             Outcome::Overturned(Sway::Left)
         } else {
-            Outcome::StillRocking
+            Outcome::Incomplete
         };
         assert_eq!(summary.outcome, expected, "{amplitude_g}");
     }

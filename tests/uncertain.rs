@@ -97,7 +97,7 @@ fn the_probability_that_a_block_overturns_is_inside_the_interval() {
     for seed in 1..=200 {
         let scenario = parsed(&format!(
             "{COLUMN}[ground.rectangular]\namplitude_g = {push_g}\nduration_s = {duration_s}\n\
-             [simulation]\noutput_step_s = 0.1\n\
+             [simulation]\nduration_s = 40.0\noutput_step_s = 0.1\n\
              [uncertain]\nsamples = 24\nseed = {seed}\n'column.width_m' = {{ deviation = 0.03 }}\n"
         ));
         let rows = histories(&scenario, 2);
@@ -1172,6 +1172,7 @@ fn suites_tell_the_parts_of_fragility() {
     let text = format!(
         "{COLUMN}[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\n\
          peaks_g = {{ from = 0.15, to = 2.0, count = 12, spacing = 'logarithmic' }}\n\
+         [simulation]\nduration_s = 40.0\n\
          [uncertain]\nsamples = 24\n'column.width_m' = {{ deviation = 0.05 }}\n\
          'column.depth_m' = {{ from = 1.0, to = 2.0 }}\n"
     );

@@ -476,6 +476,8 @@ pub struct Cost {
 pub struct RowSummary {
     /// All half cycles, however small; [`Summary::half_cycles`] omits those that are no rocking.
     pub half_cycles: Vec<HalfCycle>,
+    /// Number of half cycles, with those of the fall after the row has overturned.
+    pub half_cycles_with_fall: usize,
     /// Slip; `None` where joints do not slip.
     pub sliding: Option<Sliding>,
     /// Energies and stresses of elastic joints; `None` where joints are rigid.

@@ -542,7 +542,7 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
         Outcome::Overturned(_) => own
             .row
             .as_ref()
-            .is_some_and(|row| row.half_cycles.len() <= 1),
+            .is_some_and(|row| row.half_cycles_with_fall <= 1),
         Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
             let row = own.row.as_ref();
             let elastic = row.and_then(|row| Some((row, row.elastic.as_ref()?)));

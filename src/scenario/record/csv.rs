@@ -281,7 +281,7 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
     let is_damaged =
         2 * of_numbers + usize::from(cell.starts_with(is_of_numbers)) > cell.chars().count();
     let is_number = cell.parse::<f64>().is_ok() || decimal.number(cell).is_ok();
-    cell.is_empty() || cell.contains(char::is_alphabetic) && !is_number && !is_damaged
+    cell.is_empty() || !is_number && !is_damaged
 }
 
 /// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
@@ -621,8 +621,8 @@ mod tests {
         assert_fault(
             text,
             &skipping(0),
-            2,
-            "`Date` is not a finite number; numbers begin on line 5: give `skip_rows = 4` if the table does",
+            1,
+            "`Station X` is not a finite number; numbers begin on line 5: give `skip_rows = 4` if the table does",
         );
         // Lines keep their numbers.
         let text = text.replace("-2", "x");

@@ -627,6 +627,7 @@ impl<'a> Course<'a> {
             },
             of_row: RowSummary {
                 half_cycles: Vec::new(),
+                half_cycles_with_fall: 0,
                 sliding: None,
                 elastic: None,
                 ties: Vec::new(),
@@ -998,6 +999,8 @@ impl<'a> Course<'a> {
 
     /// Makes the summary, and reports the end if the row rests or has overturned.
     pub(in crate::dynamics) fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
+        self.of_row.half_cycles_with_fall =
+            self.of_row.half_cycles.len() + usize::from(self.cycle.is_some());
         if let Outcome::Overturned(_) = outcome {
             self.take_back_the_fall();
         }

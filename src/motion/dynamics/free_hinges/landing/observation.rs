@@ -29,6 +29,9 @@ pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
+/// Kinetic energies below this fraction of weight times size are rounding.
+const LEAST_SWING_RATIO: f64 = 1e-18;
+
 impl LandingStepper<'_> {
     pub(super) fn height_energy(&self) -> f64 {
         self.gravity * self.rest.rise_kg_m(self.placement.centres_m())
@@ -59,11 +62,14 @@ impl LandingStepper<'_> {
     /// Reports the state after a step to the course of the motion.
     fn observe(&mut self) {
         let lies = self.lies_at_rest();
-        self.course.moved |= !lies;
         let potential = self.energy();
         // On hinges rounding leaves a little of it, which is no side.
         let sway = if lies { 0.0 } else { self.sway_kg_m() };
         let kinetic = kinetic(&self.pieces);
+        // On hinges a row may swing while the corners that touched go on touching.
+        let swings =
+            self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
+        self.course.moved |= !lies || swings;
         let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
