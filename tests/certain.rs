@@ -459,7 +459,8 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
                     least = on_its_way.fold(least, |least: f64, (_, j)| least.min(j / barrier_j));
                 }
             }
-            if cell.uncertain.is_some() {
+            // Neither of these claims that it stands.
+            if cell.uncertain.is_some() || cell.outcome == Outcome::Incomplete {
                 uncertain += 1;
                 continue;
             }

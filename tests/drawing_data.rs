@@ -207,7 +207,7 @@ fn snapshots_after_the_end_and_without_a_folder_are_told() {
             "--snapshots writes a file",
         ),
         (&["--rotations", "-", "--poses"], "--poses writes a file"),
-        (&["--snapshots", "-1"], "0.2,0.5,1.0"),
+        (&["--snapshots", "1e10"], "0.2,0.5,1.0"),
         (&["--snapshots", "nan"], "0.2,0.5,1.0"),
         (&["--snapshots", "1", "--exaggerate", "0"], "such as 10"),
         (&["--exaggerate", "3"], "--snapshots"),

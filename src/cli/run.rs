@@ -237,13 +237,6 @@ impl Job {
             figure: arguments.figure.get()?,
             quiet,
         };
-        let start_s = self.scenarios[0].ground_motion().start_s();
-        if let Some(early_s) = arguments.snapshots.iter().find(|time_s| **time_s < start_s) {
-            let message = format!(
-                "--snapshots {early_s}: the history begins at {start_s} s; give times from there on, such as 0.2,0.5,1.0"
-            );
-            return Err(Failure::Input(message));
-        }
         let mut pending = Pending::default();
         if samples.is_part(&self.scenarios)? {
             let (words, summary) = (String::new(), Value::Null);
