@@ -668,7 +668,6 @@ fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
         let summary = json(&root.path().join("out/summary.json"));
         assert_eq!(summary["outcome"], "never_moved");
         let told = summary["largest_friction_demand"].as_f64().unwrap();
-        println!("{share} {told}");
         assert!(
             told > 0.99 * needed && told < 1.35 * needed,
             "{share} {told}"

@@ -197,12 +197,12 @@ impl Columns {
         let name = self.time.and_then(|index| first.cells().nth(index));
         let name = name.filter(|_| self.has_names).unwrap_or_default();
         let words = name.split(|c: char| !c.is_alphanumeric());
-        let units = words.filter_map(|word| match word.to_ascii_lowercase().as_str() {
+        let mut units = words.filter_map(|word| match word.to_ascii_lowercase().as_str() {
             "ms" | "msec" | "millisecond" | "milliseconds" => Some(1e-3),
             "us" | "usec" | "microsecond" | "microseconds" | "\u{b5}s" | "\u{3bc}s" => Some(1e-6),
             _ => None,
         });
-        units.last().unwrap_or(1.0)
+        units.next_back().unwrap_or(1.0)
     }
 
     /// The columns that are read.

@@ -454,7 +454,7 @@ impl Notable {
     fn of(&self, history: &Summary) -> [Option<&(f64, Impact)>; 2] {
         let until_s = history.overturned_s().unwrap_or(f64::INFINITY);
         let before = || self.0.iter().filter(|(time_s, _)| *time_s <= until_s);
-        [before().next(), before().last()]
+        [before().next(), before().next_back()]
     }
 }
 
