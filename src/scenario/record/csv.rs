@@ -281,7 +281,9 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
     let is_damaged =
         2 * of_numbers + usize::from(cell.starts_with(is_of_numbers)) > cell.chars().count();
     let is_number = cell.parse::<f64>().is_ok() || decimal.number(cell).is_ok();
-    cell.is_empty() || !is_number && !is_damaged
+    // A unit or a number of samples may stand by itself, as in `acceleration (600)`.
+    let is_word = cell.contains(char::is_alphabetic) || cell.starts_with(['(', '[']);
+    cell.is_empty() || is_word && !is_number && !is_damaged
 }
 
 /// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.

@@ -464,13 +464,13 @@ impl<'a, const L: usize> Group<'a, L> {
 
 impl<'a> Lane<'a> {
     fn rests_since(&self) -> Option<f64> {
-        let quiet = self.course.is_quiet(self.quiet_since_s.max(self.quiet_s));
         // A row that never had more energy than at rest may rock all the same.
         let since_s = if self.course.moved {
             self.quiet_since_s
         } else {
             self.open_until_s
         };
+        let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
         quiet.then_some(since_s)
     }
 
