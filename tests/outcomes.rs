@@ -8,7 +8,7 @@ use archrock::scenario::Scenario;
 use archrock::{Outcome, Summary};
 use serde_json::Value;
 
-use crate::program::{printed, refused, stdout};
+use crate::program::{archrock, printed, refused, stderr, stdout};
 use crate::results::{Table, json, summary};
 
 /// An arch under a record that is quiet for `quiet_s` and then has two strong pulses.
@@ -84,7 +84,15 @@ fn a_run_that_ends_before_the_ground_has_no_verdict() {
         );
         assert_eq!(cut["lowest_factor"], Value::Null);
         assert_eq!(cut["incomplete"].as_array().unwrap().len(), 1);
+        assert!(warns_of_no_verdict(&at.join("t/threshold.json")));
     }
+}
+
+/// Whether the warnings of a study count histories without a verdict.
+fn warns_of_no_verdict(file: &Path) -> bool {
+    let file = json(file);
+    let mut warnings = file["warnings"].as_array().unwrap().iter();
+    warnings.any(|warning| warning.as_str().unwrap().starts_with("no verdict from "))
 }
 
 /// The records of a suite last as long as they do; a map counts cells without a verdict as such.
@@ -107,6 +115,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
             .collect()
     };
     assert_eq!(outcomes("m", "map.csv"), ["never_moved", "overturned"]);
+    assert!(!warns_of_no_verdict(&at.join("m/map.json")));
     let record = "[ground.record]\nfile = \"late.csv\"\nunit = \"g\"\n";
     let text = fs::read_to_string(at.join("s.toml")).unwrap();
     let (structure, _) = text.split_once(record).unwrap();
@@ -126,6 +135,14 @@ fn studies_follow_the_ground_motion_of_each_case() {
     fs::write(at.join("s.toml"), pulses).unwrap();
     printed(at, &["map", "s.toml", "--out", "p", "--quiet"]);
     assert_eq!(outcomes("p", "map.csv"), ["never_moved"; 2]);
+    // A map counts histories without a verdict in its warnings: here one has not yet lost three quarters of the energy barrier.
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.6\nduration_s = 0.2\n\
+                  [map]\nduration_s = [0.2]\namplitude_g = [0.1, 0.6]\n";
+    fs::write(at.join("k.toml"), column).unwrap();
+    let said = stderr(&archrock(at, &["map", "k.toml", "--out", "k"]));
+    assert!(said.contains("no verdict from 1 of 2 histories"), "{said}");
+    assert_eq!(outcomes("k", "map.csv"), ["never_moved", "incomplete"]);
+    assert!(warns_of_no_verdict(&at.join("k/map.json")));
     let large = ["check", "s.toml", "--set", "arch.mean_radius_m=98.1"];
     let said = printed(at, &large);
     assert!(said.contains("duration_s = 64.245"), "{said}");

@@ -209,7 +209,11 @@ impl Scenario {
     /// Largest memory that the samples of its history take, in bytes.
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
         let shape = self.model(py)?.shape();
-        Ok(shape.bytes(self.inner.request().most_samples(self.inner.ground_motion())))
+        Ok(shape.bytes(
+            self.inner
+                .request()
+                .most_samples(self.inner.ground_motion()),
+        ))
     }
 
     /// The acceleration that starts it to either side, as `archrock limit --format json`.

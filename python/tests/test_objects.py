@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import os
 import pickle
+import re
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -86,7 +87,11 @@ def test_other_shapes_by_their_tables(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", sorted(SCENARIOS.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_scenario_file_is_read_printed_and_sent(path: Path, program: Program) -> None:
     scenario = Scenario.read(path)
-    assert scenario.to_toml() == program("check", path).stdout
+    # The program also prints notes, and when a history ends if the file leaves that open.
+    checked = re.sub("^# .*\n", "", program("check", path).stdout, flags=re.MULTILINE)
+    if "duration_s" not in scenario.tables["simulation"]:
+        checked = re.sub(r"(\[simulation\]\n)duration_s = .*\n", r"\1", checked)
+    assert scenario.to_toml() == checked
     sent = pickle.loads(pickle.dumps(scenario))
     assert sent == scenario and hash(sent) == hash(scenario)
     assert sent.to_toml() == scenario.to_toml()
@@ -318,7 +323,8 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     ground, rotations = figure.axes
     assert [line.get_label() for line in rotations.get_lines()[:3]] == ["left", "middle", "right"]
     assert np.array_equal(rotations.get_lines()[2].get_ydata(), history.rotations[:, 2])
-    assert ground.get_title() == "still rocking at 1.0000 s without impact"
+    # It still has more than a quarter of the energy that overturns it.
+    assert ground.get_title() == "incomplete at 1.0000 s without impact"
     figure.savefig(tmp_path / "history.png")
     assert ground.get_legend() is not None and rotations.get_legend() is not None
     # Into axes of one's own.
@@ -333,7 +339,7 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     assert names == ["left", "middle", "right"]
     page = history.report_html()
     assert page.startswith("<!DOCTYPE html>") or page.lower().startswith("<!doctype html>")
-    assert "still rocking at 1.0000 s without impact" in page
+    assert "incomplete at 1.0000 s without impact" in page
     html = history._repr_html_()
     assert html.startswith("<iframe srcdoc=") and html.count("<iframe") == 1 and "<script" not in html
     history.save_report(tmp_path / "report.html")

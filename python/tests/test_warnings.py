@@ -79,7 +79,7 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
     records = [Record.read(ROOT / "scenarios" / "records" / "wave-1.at2")]
     studies: list[Callable[[Any], Any]] = [
         lambda of: overturning_map(of, WEAK, axes),
-        lambda of: threshold(of, WEAK, from_factor=0.5, to_factor=2.0, stride=0.5),
+        lambda of: threshold(of, WEAK, from_factor=0.5, to_factor=2.0, stride=0.5, duration_s=60.0),
         lambda of: spectrum(of, WEAK, p_t=[1.0, 2.0], acceleration_over_incipient=[1.5, 3.0]),
         lambda of: suite(of, records, peaks_g=[0.2, 0.8], duration_s=60.0),
     ]

@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde_json::{Value, json};
 
-use super::ending::{Ending, Steps};
+use super::ending::{Ending, Steps, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::scenario::{Hinges, Scenario};
 
@@ -34,6 +34,10 @@ pub struct Remarks {
     pub failures: Vec<Remark>,
     /// The cases for which it is uncertain whether they overturn, with the reasons.
     pub uncertain: Vec<Remark>,
+    /// Number of histories that were computed.
+    histories: usize,
+    /// Number of histories among them that ended too early for a verdict.
+    incomplete: usize,
     /// Smallest and largest, over the cases, of the longest step of a case, and of its shortest step, in seconds.
     steps_s: Option<[[f64; 2]; 2]>,
 }
@@ -48,11 +52,13 @@ impl Remarks {
         if let Some(reason) = &ending.uncertain {
             self.uncertain.push(Remark::new(case(), reason));
         }
-        self.note_steps(ending);
+        self.note_history(ending);
     }
 
-    /// Notes the lengths of the steps of a case.
-    pub(crate) fn note_steps(&mut self, ending: &Ending) {
+    /// Notes whether a history has a verdict, and the lengths of its steps.
+    pub(crate) fn note_history(&mut self, ending: &Ending) {
+        self.histories += 1;
+        self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
         if let Some(Steps {
             longest_s,
             shortest_s,
@@ -128,7 +134,7 @@ pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> V
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": scenario.to_json(),
-        "warnings": warnings(scenario),
+        "warnings": remarks.with_incomplete(warnings(scenario)),
         "record_checksums": scenario.record_checksums(),
         "cases": cases,
     });
@@ -137,6 +143,21 @@ pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> V
 }
 
 impl Remarks {
+    /// How many histories ended too early for a verdict, and what to do; `None` if none did.
+    pub(crate) fn incomplete_in_words(&self) -> Option<String> {
+        let (incomplete, histories) = (self.incomplete, self.histories);
+        (incomplete > 0).then(|| {
+            let what_to_do = Ending::INCOMPLETE;
+            format!("no verdict from {incomplete} of {histories} histories; {what_to_do}")
+        })
+    }
+
+    /// The warnings of a study, and one about histories without a verdict if there are any.
+    pub(crate) fn with_incomplete(&self, mut warnings: Vec<String>) -> Vec<String> {
+        warnings.extend(self.incomplete_in_words());
+        warnings
+    }
+
     /// How many cases failed, why the first one did, and which file lists the others; `None` if none failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
         let (count, first) = (self.failures.len(), self.failures.first()?);

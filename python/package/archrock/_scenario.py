@@ -201,7 +201,10 @@ class Scenario(Described):
         return Limit._of(json.loads(self._native.limit_json()))
 
     def to_toml(self) -> str:
-        """The scenario as the text of a file of the program, with every default written out."""
+        """The scenario as the text of a file of the program.
+
+        Every default is written out, except ``duration_s``, whose default follows the ground motion.
+        """
         return self._native.to_toml()
 
     def _read(self, tables: Tables, files: dict[str, bytes]) -> None:

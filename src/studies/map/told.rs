@@ -169,6 +169,7 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
         ));
     }
     lines.extend(remarks::rough_guide(map.scenario()).map(str::to_owned));
+    lines.extend(remarks.incomplete_in_words());
     lines.extend(remarks.uncertain_in_words(SUMMARY));
     lines.extend(remarks.failed_in_words(SUMMARY));
     lines.join("\n  ")

@@ -10,8 +10,8 @@ use crate::argument::plain;
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, finite, pretty};
 use crate::scenario::{Measure, Scenario, Spacing, Spectral, Suite, shown};
+use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, number, yes};
-use crate::studies::ending::{Ending, Verdict};
 use crate::studies::remarks::{Remarks, counts, in_words, rough_guide_of, warnings};
 use crate::studies::results::Results;
 use crate::studies::survival;
@@ -285,11 +285,12 @@ pub(super) fn records_in_words(results: &SuiteFragility) -> String {
 fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputError> {
     let total =
         |count: fn(&FragilityRow) -> usize| -> usize { results.levels.iter().map(count).sum() };
+    let remarks = remarks(results);
     let mut json = json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": heading.scenario,
-        "warnings": heading.warnings,
+        "warnings": remarks.with_incomplete(heading.warnings.clone()),
         "intensity": results.measure.column(),
     });
     let curve = curve_to_json(&results.fit)?;
@@ -330,7 +331,7 @@ fn to_json(heading: &Heading, results: &SuiteFragility) -> Result<Value, OutputE
     if results.has_uncertain() {
         json["with_uncertain_as_overturned"] = curve_to_json(&results.fit_with_uncertain)?;
     }
-    remarks(results).add_to(&mut json);
+    remarks.add_to(&mut json);
     Ok(json)
 }
 
@@ -460,18 +461,10 @@ fn words(heading: &Heading, results: &SuiteFragility) -> String {
     if results.cases.iter().any(CaseRow::still_rocking) {
         lines.push("those still rocking at the end count as not overturned".to_owned());
     }
-    let incomplete = results
-        .levels
-        .iter()
-        .map(|level| level.incomplete)
-        .sum::<usize>();
-    if incomplete > 0 {
-        lines.push(format!(
-            "{incomplete} histories do not count; {}",
-            Ending::INCOMPLETE
-        ));
-    }
     let remarks = remarks(results);
+    if let Some(words) = remarks.incomplete_in_words() {
+        lines.push(format!("{words}; they do not count"));
+    }
     lines.extend(remarks.uncertain_in_words(FRAGILITY));
     if let Some(words) = remarks.failed_in_words(FRAGILITY) {
         lines.push(format!("{words}; what failed does not count"));

@@ -184,11 +184,7 @@ fn to_json(
                 "uncertain": ranges(threshold.uncertain()),
                 "incomplete": ranges(threshold.incomplete()),
             });
-            let mut remarks = Remarks::default();
-            for ending in threshold.samples.iter().flat_map(|sample| &sample.result) {
-                remarks.note_steps(ending);
-            }
-            remarks.add_to(&mut model);
+            remarks(threshold).add_to(&mut model);
             if !threshold.varied.is_empty() {
                 model["variations"] = threshold
                     .varied
@@ -209,6 +205,8 @@ fn to_json(
             warnings.push(warning);
         }
     }
+    let incomplete = thresholds.iter().map(remarks);
+    warnings.extend(incomplete.filter_map(|remarks| remarks.incomplete_in_words()));
     Ok(json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
@@ -217,6 +215,15 @@ fn to_json(
         "warnings": warnings,
         "models": models,
     }))
+}
+
+/// The remarks on the histories of a model.
+fn remarks(threshold: &Threshold) -> Remarks {
+    let mut remarks = Remarks::default();
+    for ending in threshold.samples.iter().flat_map(|sample| &sample.result) {
+        remarks.note_history(ending);
+    }
+    remarks
 }
 
 fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
@@ -441,17 +448,8 @@ fn doubts(text: &mut String, threshold: &Threshold) {
             rounded(*factor)
         );
     }
-    let incomplete = samples
-        .iter()
-        .filter(|sample| sample.verdict() == Some(Verdict::Incomplete));
-    let incomplete = incomplete.count();
-    if incomplete > 0 {
-        let _ = writeln!(
-            text,
-            "  no verdict from {incomplete} of {} histories; {}",
-            samples.len(),
-            Ending::INCOMPLETE
-        );
+    if let Some(words) = remarks(threshold).incomplete_in_words() {
+        let _ = writeln!(text, "  {words}");
     }
     let rocking = samples.iter().filter(|sample| {
         let ending = sample.result.as_ref();
