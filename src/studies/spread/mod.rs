@@ -3,6 +3,9 @@
 mod picture;
 mod told;
 
+use rayon::iter::{
+    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
+};
 use thiserror::Error;
 
 pub use self::told::{FILES, tell};
@@ -204,7 +207,7 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
         Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
     };
     let mut follower = start;
-    let mut stages = vec![stage(&follower, 0.0)];
+    let mut places = vec![(follower.clone(), 0.0)];
     let mut here_m = 0.0;
     for step in 1..=STEPS {
         let next_m = end_m * f64::from(step) / f64::from(STEPS);
@@ -218,16 +221,19 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
                 break;
             }
         };
-        stages.push(stage(&follower, next_m));
+        places.push((follower.clone(), next_m));
         // Rounding may let it fall just before its end.
         if reached != Reached::End {
             break;
         }
         here_m = next_m;
     }
+    // The pushes of one place do not depend on those of another.
+    let stages = places.par_iter().with_max_len(1);
+    let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m));
     Ok(Path {
         way,
-        stages,
+        stages: stages.collect(),
         snaps: scout.snaps()[before..].to_vec(),
         falls_at_m,
         lost,

@@ -44,6 +44,8 @@ const MOST_ROUNDS: usize = 100;
 const MOST_TRIALS: usize = 60;
 /// A round goes on until the energy falls by less than this part of how it falls at the beginning.
 const FLAT: f64 = 0.1;
+/// A response to ties is rounding below this part of what they would do to free blocks.
+const NO_MOTION: f64 = 1e-9;
 /// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
 const LONGEST: f64 = 1e3;
 
@@ -112,7 +114,7 @@ impl<'a> Descent<'a> {
                 return Ok(true);
             }
             let fastest = if self.ties_kg.is_empty() {
-                let fastest = self.solve(stance, force_g, 1.0)?;
+                let fastest = self.solve(stance, &[], force_g, 1.0)?;
                 longest = STEP * size_m / fastest;
                 fastest
             } else {
@@ -173,7 +175,8 @@ impl<'a> Descent<'a> {
             self.jumps.fill(Twist::ZERO);
             self.jumps[0] = moved[0];
             self.jumps[last] = self.jumps[last] - moved[1];
-            self.solve(stance, force_g, self.row.size_m())?;
+            let lines: Vec<TieLine> = stance.lines(self.row).collect();
+            self.solve(stance, &lines, force_g, self.row.size_m())?;
             let (part, shut) = self.first_shut(&stance.placement, 1.0);
             here = match shut {
                 None => to.supports,
@@ -185,17 +188,18 @@ impl<'a> Descent<'a> {
         Ok(())
     }
 
-    /// Velocities where the row is, under so many times its load; the fastest of them.
+    /// Velocities where the row is, with ties that lie so, under so many times its load; the fastest of them.
     fn solve(
         &mut self,
         stance: &Stance,
+        lines: &[TieLine],
         force_g: Vector2<f64>,
         times: f64,
     ) -> Result<f64, ContactError> {
         let placement = &stance.placement;
         self.free.fill(Twist::translation(force_g * times));
         let (blocks, centres_m) = (self.row.blocks(), placement.centres_m());
-        for (line, kg) in stance.lines(self.row).zip(&self.ties_kg) {
+        for (line, kg) in lines.iter().zip(&self.ties_kg) {
             line.add_to(blocks, centres_m, kg * times, &mut self.free);
         }
         for (touching, gaps) in self.touching.iter_mut().zip(placement.gaps_m()) {
@@ -252,7 +256,7 @@ impl<'a> Descent<'a> {
             let [least_kg, most_kg] = self.bounds_kg(&step, tie);
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
-        self.solve(stance, force_g, 1.0)?;
+        self.solve(stance, &step.lines, force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
             let lacks_m = self.lacks_m(&step);
             let Some(way_kg) = self.way_kg(&step, &lacks_m) else {
@@ -262,7 +266,7 @@ impl<'a> Descent<'a> {
             let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * length);
             let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
             if left_kg <= FORCE * self.row.mass_kg() {
-                return Ok(self.solve(stance, force_g, 1.0)?);
+                return Ok(self.solve(stance, &step.lines, force_g, 1.0)?);
             }
             self.go_along(&step, &way_kg, lacks_m.dot(&way_kg))?;
         }
@@ -303,20 +307,26 @@ impl<'a> Descent<'a> {
 
     /// By how much the forces of ties have to change, over gravity, to lack nothing if the same corners went on pressing. Ties that pull with
     /// all or nothing, and would go beyond, stay. `None` where that is not determined.
+    ///
+    /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
     fn way_kg(&mut self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
-        let slopes = self.slopes(step);
+        let lengthen = self.lengthen(step);
+        let ties = self.row.ties().iter();
+        let kg_m = ties.map(|tie| tie.stiffness_n_m / self.row.gravity_m_s2());
+        let kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
         let mut goes = self.may_go(step, lacks_m);
         loop {
-            let equations = DMatrix::from_fn(goes.len(), goes.len(), |one, other| {
-                if goes[one] && goes[other] {
-                    slopes[(one, other)]
-                } else {
-                    f64::from(u8::from(one == other))
-                }
+            let kg_m = kg_m.zip_map(&goes, |kg_m, goes| if goes { kg_m } else { 0.0 });
+            let pulls = DMatrix::from_fn(lengthen.nrows(), lengthen.ncols(), |tie, mode| {
+                kg_m[tie] * lengthen[(tie, mode)]
             });
-            let sought_m =
-                lacks_m.zip_map(&goes, |lacks_m, goes| f64::from(u8::from(goes)) * lacks_m);
-            let way_kg = equations.lu().solve(&sought_m)?;
+            let mut equations = lengthen.tr_mul(&pulls) * step.length;
+            for mode in 0..lengthen.ncols() {
+                equations[(mode, mode)] += 1.0;
+            }
+            let speeds = equations.cholesky()?.solve(&pulls.tr_mul(lacks_m));
+            let left_m = lacks_m - &lengthen * speeds * step.length;
+            let way_kg = left_m.component_mul(&kg_m);
             let still = goes.zip_map(&self.may_go(step, &way_kg), |goes, may| goes && may);
             if still == goes {
                 return way_kg.iter().all(|kg| kg.is_finite()).then_some(way_kg);
@@ -334,43 +344,72 @@ impl<'a> Descent<'a> {
         )
     }
 
-    /// By how much less each tie lacks for what each pulls more, in m/kg, while the same corners press.
-    fn slopes(&mut self, step: &Step<'_>) -> DMatrix<f64> {
+    /// At which rates the ties (rows) lengthen in the motions (columns) that ties can give the row while the same corners press. The
+    /// motions have no kinetic energy in common, and each has that of a unit mass at unit speed.
+    ///
+    /// The response to any pulls is the part of the free motion that the joints allow. So the responses to arbitrary pulls at once span all
+    /// such motions as soon as one of them adds nothing.
+    fn lengthen(&mut self, step: &Step<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
-        let mut slopes = DMatrix::zeros(count, count);
         let centres_m = step.stance.placement.centres_m();
-        for (pulling, line) in step.lines.iter().enumerate() {
-            self.free.fill(Twist::ZERO);
-            line.add_to(row.blocks(), centres_m, 1.0, &mut self.free);
-            self.program.solve_alike(&Load {
-                free: &self.free,
-                jumps: &self.jumps,
-                touching: &self.touching,
-            });
-            for (lacking, other) in step.lines.iter().enumerate() {
-                let slower = other.lengthening(self.program.velocities());
-                slopes[(lacking, pulling)] = -step.length * slower;
+        let product = |one: &[Twist], other: &[Twist]| -> f64 {
+            let pairs = one
+                .iter()
+                .zip(other)
+                .zip(row.blocks().iter().zip(centres_m));
+            pairs
+                .map(|((one, other), (block, centre_m))| {
+                    block.mass_kg * one.at(*centre_m).dot(&other.at(*centre_m))
+                        + block.inertia_kg_m2 * one.rate * other.rate
+                })
+                .sum()
+        };
+        let mut motions: Vec<Vec<Twist>> = Vec::new();
+        while motions.len() < count {
+            // No two ties, and no two trials, have parts in a simple ratio.
+            let phase = 1.0 + f64::sqrt(2.0) * motions.len() as f64;
+            self.respond(step, |tie| (phase * (1.0 + tie as f64)).sin());
+            let mut motion = self.program.velocities().to_vec();
+            // Twice, so that rounding leaves nothing in common.
+            for known in motions.iter().chain(&motions) {
+                let part = product(known, &motion);
+                for (twist, known) in motion.iter_mut().zip(known) {
+                    *twist = *twist - *known * part;
+                }
             }
-            let tie = &row.ties()[pulling];
-            slopes[(pulling, pulling)] += row.gravity_m_s2() / tie.stiffness_n_m;
+            let size = product(&motion, &motion).sqrt();
+            // A response that is no number adds nothing either.
+            if size.is_nan() || size <= NO_MOTION * product(&self.free, &self.free).sqrt() {
+                break;
+            }
+            for twist in &mut motion {
+                *twist = *twist * (1.0 / size);
+            }
+            motions.push(motion);
         }
-        slopes
+        DMatrix::from_fn(count, motions.len(), |tie, motion| {
+            step.lines[tie].lengthening(&motions[motion])
+        })
     }
 
-    /// By how much less the ties lack, each times its part of a way, for the whole of that way.
-    fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
-        let row = self.row;
+    /// Velocities that ties alone give the row while the same corners press, each with so much over gravity.
+    fn respond(&mut self, step: &Step<'_>, kg: impl Fn(usize) -> f64) {
         let centres_m = step.stance.placement.centres_m();
         self.free.fill(Twist::ZERO);
-        for (line, kg) in step.lines.iter().zip(way_kg) {
-            line.add_to(row.blocks(), centres_m, *kg, &mut self.free);
+        for (tie, line) in step.lines.iter().enumerate() {
+            line.add_to(self.row.blocks(), centres_m, kg(tie), &mut self.free);
         }
         self.program.solve_alike(&Load {
             free: &self.free,
             jumps: &self.jumps,
             touching: &self.touching,
         });
-        let velocities = self.program.velocities();
+    }
+
+    /// By how much less the ties lack, each times its part of a way, for the whole of that way.
+    fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
+        self.respond(step, |tie| way_kg[tie]);
+        let (row, velocities) = (self.row, self.program.velocities());
         let each = row.ties().iter().zip(&step.lines).zip(way_kg);
         each.map(|((tie, line), kg)| {
             let elastic_m = kg * row.gravity_m_s2() / tie.stiffness_n_m;
@@ -401,7 +440,7 @@ impl<'a> Descent<'a> {
                     from_kg + part * way_kg[tie]
                 };
             }
-            self.solve(step.stance, step.force_g, 1.0)?;
+            self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
             let left = self.lacks_m(step).dot(way_kg);
             if left.abs() <= FLAT * falls || (part == whole && left > 0.0) {
                 break;
@@ -519,6 +558,35 @@ mod tests {
                 (kg - then_kg).abs() < FORCE * row.mass_kg(),
                 "{kg} {then_kg}"
             );
+        }
+    }
+
+    /// However many ties there are, what they do to each other follows from the few motions that they can give the row: for each, the rates
+    /// add up to its response to that tie alone.
+    #[test]
+    fn many_ties_depend_on_each_other_through_few_motions() {
+        let ties: Vec<(usize, f64)> = (0..200).map(|tie| (tie % 4, 1e4)).collect();
+        let row = tied(&ties);
+        let stance = Stance::undeformed(&row);
+        let mut descent = Descent::new(&row);
+        let force_g = Vector2::new(2.0, -1.0);
+        descent.balance_ties(&stance, force_g, 0.01).unwrap();
+        let step = Step {
+            stance: &stance,
+            lines: stance.lines(&row).collect(),
+            force_g,
+            length: 0.01,
+        };
+        let lengthen = descent.lengthen(&step);
+        assert!((1..=5).contains(&lengthen.ncols()), "{}", lengthen.ncols());
+        let told = &lengthen * lengthen.transpose();
+        for pulling in 0..4 {
+            descent.respond(&step, |tie| f64::from(u8::from(tie == pulling)));
+            for (lacking, line) in step.lines.iter().enumerate() {
+                let due = -line.lengthening(descent.program.velocities());
+                let off = (told[(lacking, pulling)] - due).abs();
+                assert!(off < 1e-9 * told.amax(), "{lacking} {pulling}: {off:e}");
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 //! With more than three hinges the bodies rest where the potential energy of their weight and of the ties is least, of all places in which
 //! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Vector2};
 
 use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
@@ -20,8 +20,13 @@ use crate::mechanics::tie::{TieLine, TieMemory};
 const MOST_STEPS: usize = 30;
 /// What is unbalanced by less than this part of the weight, or open by less than this part of the size, is rounding.
 const BALANCED: f64 = 1e-12;
+/// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
+const FAR_RAD: f64 = 1.0;
 /// How much stiffer than bodies are pins that must not part, where it is seen whether an equilibrium is stable.
 const STIFFER: f64 = 1e6;
+
+/// A tie lengthens as its first end goes back, and as its second one goes on.
+const ENDS: [f64; 2] = [-1.0, 1.0];
 
 const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
 
@@ -486,6 +491,8 @@ impl<'a> Chain<'a> {
         }
     }
 
+    /// Adds what ties do. Each acts on the two bodies at its ends alone while these are described by the places of their first pins and
+    /// their rotations; what all of them do to these is then told by the rotations.
     fn add_ties(&self, poses: &[Pose], slopes: &mut DVector<f64>, curvature: &mut DMatrix<f64>) {
         let count = poses.len();
         let weight_n = self.row.mass_kg() * self.row.gravity_m_s2();
@@ -494,44 +501,48 @@ impl<'a> Chain<'a> {
         let (memories, pulls) = self
             .pins
             .pulls(self.row, supports, &parts, &self.before.ties);
+        let pins_m = self.pins.at_m(&parts);
+        let mut forces = DVector::zeros(3 * count);
+        let mut stiffnesses = DMatrix::zeros(3 * count, 3 * count);
         for ((tie, memory), (line, force_n)) in self.row.ties().iter().zip(memories).zip(pulls) {
             let force = force_n / weight_n;
-            let stiffness = memory.stiffness_n_m(tie) / weight_n;
-            let length_m = (line.ends_m[1] - line.ends_m[0]).norm();
-            // What of the line turns with each body.
-            let turns: Vec<Vector2<f64>> = (0..count)
-                .map(|body| self.turns_with(&line, body, poses))
-                .collect();
-            let moves: Vec<Vector2<f64>> = turns.iter().map(|arm| turned(*arm)).collect();
-            let longer: Vec<f64> = moves.iter().map(|by| line.along.dot(by)).collect();
-            for one in 0..count {
-                slopes[one] += force * longer[one];
-                curvature[(one, one)] -= force * line.along.dot(&turns[one]);
-                for other in 0..count {
-                    let across = moves[one].dot(&moves[other]) - longer[one] * longer[other];
-                    curvature[(one, other)] +=
-                        stiffness * longer[one] * longer[other] + force / length_m * across;
+            let across = force / (line.ends_m[1] - line.ends_m[0]).norm();
+            let along = memory.stiffness_n_m(tie) / weight_n - across;
+            let stiffness =
+                line.along * line.along.transpose() * along + Matrix2::identity() * across;
+            let pull = line.along * force;
+            let ends = [0, 1].map(|end| {
+                let body = line.ends[end].and_then(|block| self.body_of(block))?;
+                let arm_m = (line.ends_m[end] - pins_m[body]) * ENDS[end];
+                let moves = Matrix2x3::new(ENDS[end], 0.0, -arm_m.y, 0.0, ENDS[end], arm_m.x);
+                Some((3 * body, arm_m, moves))
+            });
+            for (one, arm_m, moves) in ends.iter().flatten() {
+                let mut on_body = forces.fixed_rows_mut::<3>(*one);
+                on_body += moves.tr_mul(&pull);
+                stiffnesses[(one + 2, one + 2)] -= pull.dot(arm_m);
+                for (other, _, others) in ends.iter().flatten() {
+                    let mut between = stiffnesses.fixed_view_mut::<3, 3>(*one, *other);
+                    between += moves.tr_mul(&(stiffness * others));
                 }
             }
         }
-    }
-
-    /// The part of the way from the first end of a tie to its second one that turns with a body.
-    fn turns_with(&self, line: &TieLine, body: usize, poses: &[Pose]) -> Vector2<f64> {
-        let arm = |end: usize| {
-            let of = line.ends[end].and_then(|block| self.body_of(block));
-            match of {
-                Some(own) if own == body => {
-                    line.ends_m[end] - poses[body].of(self.pins.pins_m[body])
-                }
-                Some(own) if own > body => poses[body].turned(self.arms_m[body]),
-                _ => Vector2::zeros(),
+        // A body moves the pins of all bodies after it.
+        let mut by_rotations = DMatrix::zeros(3 * count, count);
+        for (body, pose) in poses.iter().enumerate() {
+            let arm_m = pose.turned(self.arms_m[body]);
+            by_rotations[(3 * body + 2, body)] = 1.0;
+            for after in body + 1..count {
+                let mut moves = by_rotations.fixed_view_mut::<2, 1>(3 * after, body);
+                moves.copy_from(&turned(arm_m));
+                curvature[(body, body)] -= forces.fixed_rows::<2>(3 * after).dot(&arm_m);
             }
-        };
-        arm(1) - arm(0)
+        }
+        *slopes += by_rotations.tr_mul(&forces);
+        *curvature += by_rotations.tr_mul(&(stiffnesses * &by_rotations));
     }
 
-    /// Turns the bodies until they rest; `None` where they find no stable equilibrium.
+    /// Turns the bodies until they rest; `None` where they find no stable equilibrium, or go far on the way to it.
     fn rest(mut self) -> Option<Vec<Pose>> {
         let count = self.rotations_rad.len();
         let size_m = self.row.size_m();
@@ -540,6 +551,7 @@ impl<'a> Chain<'a> {
         let squares = &free.reach * free.reach.transpose();
         let force = squares.lu().solve(&(&free.reach * &free.slopes))?;
         let mut reaction = Vector2::new(force[0], force[1]);
+        let start_rad = self.rotations_rad.clone();
         for _ in 0..MOST_STEPS {
             let left = self.unbalanced(reaction);
             let slopes = left.slopes.amax() / size_m;
@@ -564,6 +576,10 @@ impl<'a> Chain<'a> {
                 *rotation_rad += by;
             }
             reaction += Vector2::new(step[count], step[count + 1]);
+            let mut turns = start_rad.iter().zip(&self.rotations_rad);
+            if turns.any(|(start, now)| (now - start).abs() > FAR_RAD) {
+                return None;
+            }
         }
         None
     }
