@@ -91,7 +91,7 @@ impl PeakRotation {
 impl Ending {
     /// Why a case with [`Outcome::Incomplete`] does not count, and what to do.
     pub const INCOMPLETE: &str = "incomplete: the run ends while the ground still moves, or with too much energy left for a verdict; \
-                                  give a longer `duration_s` in [simulation], or leave it out";
+                                  give a longer `duration_s` in [simulation]";
 
     /// The time of the outcome, in seconds; `None` if it is unknown.
     #[must_use]

@@ -150,5 +150,5 @@ pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> String {
             "at {end_s:.4} s, the end of the run, it moves with more than a quarter of the energy that overturns it"
         )
     };
-    format!("NO VERDICT: {why}; give a longer duration_s in [simulation], or leave it out")
+    format!("NO VERDICT: {why}; give a longer duration_s in [simulation]")
 }
