@@ -109,9 +109,20 @@ impl<'a> Descent<'a> {
         };
         let start_rad = turns(stance);
         let mut longest = STEP * size_m;
-        for _ in 0..MOST_STEPS {
-            if self.rests_near(stance, to) {
-                return Ok(true);
+        let (mut hinges, mut stayed) = (Vec::new(), 0_u32);
+        for step in 0..MOST_STEPS {
+            // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
+            let pins = (!self.ties_kg.is_empty()).then(|| Pins::of(self.row, &stance.placement));
+            if let Some(pins) = pins.flatten() {
+                stayed = if pins.hinges() == hinges {
+                    stayed + 1
+                } else {
+                    0
+                };
+                hinges = pins.hinges().to_vec();
+                if (step == 0 || stayed.is_power_of_two()) && self.rests_near(&pins, stance, to) {
+                    return Ok(true);
+                }
             }
             let fastest = if self.ties_kg.is_empty() {
                 let fastest = self.solve(stance, &[], force_g, 1.0)?;
@@ -142,13 +153,9 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
-    /// Whether ties hold a row on the hinges that it has, in an equilibrium near by. Without ties it comes to rest by itself.
-    fn rests_near(&self, stance: &Stance, condition: &Condition) -> bool {
-        if self.ties_kg.is_empty() {
-            return false;
-        }
-        let state = Pins::of(self.row, &stance.placement)
-            .and_then(|pins| pins.state(self.row, condition, stance));
+    /// Whether ties hold a row on these hinges, in an equilibrium near by. Without ties it comes to rest by itself.
+    fn rests_near(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
+        let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
             let pairs = state.rotations_rad.iter().zip(stance.placement.poses());
             let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
