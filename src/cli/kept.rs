@@ -235,7 +235,7 @@ impl Writer {
         all
     }
 
-    /// What is in the subfolders of a folder of results: samples, films and models.
+    /// Results in the subfolders of a results folder: samples, films and models.
     fn below(&self, folder: &Path) -> Vec<PathBuf> {
         let mut all = Vec::new();
         if let Some(kind) = self.samples {

@@ -118,7 +118,7 @@ impl Input<'_> {
         self.read_for(hinges, false)
     }
 
-    /// The scenario for what moves nothing: neither the records of its ground nor a model of motion need be there.
+    /// Scenario for static analysis: it needs neither the records of its ground motion nor a model of motion.
     pub fn read_statics(&self) -> Result<Scenario, Failure> {
         self.read_for(None, true)
     }
@@ -242,7 +242,7 @@ impl Destination {
         })
     }
 
-    /// The same place in a folder that is locked already.
+    /// Destination in a folder that this command has already locked.
     pub fn locked_with(self, outer: &Self) -> Self {
         Self {
             locked: outer.locked.clone(),

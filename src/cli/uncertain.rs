@@ -95,5 +95,5 @@ impl Telling {
     }
 }
 
-/// What precedes the report on the scenario itself, which follows that on its samples: they say how likely overturning is.
+/// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
 pub const ITSELF: &str = "the scenario itself:\n";

@@ -114,7 +114,7 @@ pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
     four.then_some(FOUR_LINKS)
 }
 
-/// The same caveat among the warnings of a study, if it is there.
+/// The four-link caveat among the warnings of a study, if it applies.
 pub(crate) fn rough_guide_of(warnings: &[String]) -> Option<&'static str> {
     let given = warnings.iter().any(|warning| warning == FOUR_LINKS);
     given.then_some(FOUR_LINKS)

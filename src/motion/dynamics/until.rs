@@ -43,7 +43,7 @@ pub(super) struct UntilSafe {
     half_cycle_s: f64,
     /// The largest energy so far, over the barrier.
     largest_ratio: f64,
-    /// Whether it has ended the history.
+    /// True once the history was ended early.
     pub(super) has_ended: bool,
 }
 

@@ -234,7 +234,7 @@ impl Arch {
         })
     }
 
-    /// The same arch, whose drawings and captions give span and rise of this line.
+    /// Makes drawings and captions of the arch give span and rise of this line.
     #[must_use]
     pub const fn with_measured_at(mut self, line: Option<MeasuredAt>) -> Self {
         self.measured_at = line;

@@ -231,7 +231,7 @@ impl Parts for Row {
         }
     }
 
-    /// Of a stack on one support with a level top, the middle of the top.
+    /// For a stack on one support with a level top: the middle of the top.
     fn crown(&self) -> (f64, Vector2<f64>) {
         let outlines = self.outlines_m().iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {

@@ -39,7 +39,7 @@ impl FirstEdge {
         self.factor.unwrap_or(f64::INFINITY)
     }
 
-    /// Whether it overturns up to a factor; `None` if no factor that was tried decides that.
+    /// True if it overturns up to this factor; `None` if no tried factor decides that.
     fn overturns_up_to(&self, factor: f64) -> Option<bool> {
         match self.factor {
             Some(first) if first <= factor => Some(true),

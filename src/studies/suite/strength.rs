@@ -164,7 +164,7 @@ impl Scatter {
     }
 }
 
-/// How well each measure tells what overturns, the best first, with intervals by bootstrap over the records. What does not overturn is
+/// Efficiency of each intensity measure, the best first, with intervals by bootstrap over the records. Capacities above the last level are
 /// left out; empty if fewer than three capacities are known.
 #[must_use]
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {

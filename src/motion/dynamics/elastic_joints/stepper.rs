@@ -103,7 +103,7 @@ struct Lane<'a> {
 /// The gaps beyond which joints have opened.
 #[derive(Default)]
 struct Opening {
-    /// Of each joint at intrados and extrados, in m; empty before the first observation, at rest.
+    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, which is at rest.
     from_m: Vec<[f64; 2]>,
 }
 

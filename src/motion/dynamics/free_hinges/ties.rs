@@ -28,7 +28,7 @@ pub(super) struct Ties<'a> {
 }
 
 impl<'a> Ties<'a> {
-    /// Of a row that stands there when its motion starts.
+    /// Ties of a row that stands there when its motion starts.
     pub fn new(row: &'a Row, standing: &Stance, start_s: f64) -> Self {
         let lines = standing.lines(row).zip(&standing.ties);
         let ties = row

@@ -120,7 +120,7 @@ impl GroundMotion {
         self.pieces.first().map_or(0.0, |piece| piece.start_s)
     }
 
-    /// The same motion after quiet ground from this time on, which is not later than its start.
+    /// Adds quiet ground before the motion, from `start_s` on, which is not later than its start.
     fn quiet_from(mut self, start_s: f64) -> Self {
         match self.pieces.first_mut() {
             Some(first) if start_s < first.start_s && first.is_quiet() => first.start_s = start_s,

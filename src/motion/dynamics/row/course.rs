@@ -134,7 +134,7 @@ pub(in crate::dynamics) struct Task<'a> {
     pub clock: Clock,
     /// Energy that the first mechanism has to gain to overturn, where that is known.
     pub barrier_j: Option<f64>,
-    /// The same of the row as it was built, with rigid joints and without ties; estimated where it is not known.
+    /// Energy barrier of the row as built, with rigid joints and without ties, in J; estimated where it is not known.
     pub built_barrier_j: f64,
     /// Energy beside which errors of the balance are small or not, if the motion has less.
     pub energy_scale_j: f64,
@@ -151,7 +151,7 @@ pub(in crate::dynamics) struct Course<'a> {
     pub sway: f64,
     /// Whether a joint has opened or slipped; of elastic joints, whether they move with more energy than at rest.
     pub moved: bool,
-    /// Of elastic joints, whether one has opened beyond its state at rest, or slipped.
+    /// With elastic joints: whether one has opened beyond its state at rest, or slipped; `None` with rigid joints.
     pub rocks: Option<bool>,
     /// Mass times displacement below which a sway does not change the side.
     pub least_sway_kg_m: f64,
@@ -181,7 +181,7 @@ pub(in crate::dynamics) struct Course<'a> {
     recent_j: [f64; 2],
     recent_from_s: f64,
     recent_s: f64,
-    /// Whether it is certain that it does not overturn any more.
+    /// True once the row certainly cannot overturn any more.
     is_safe: bool,
     /// Whether nobody follows it any further.
     stopped: bool,
@@ -951,7 +951,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Passes on an event that begins a phase. Events after an awaited impact wait until that is told.
+    /// Passes on an event that begins a phase. Events after an awaited impact are held back until the impact is reported.
     fn tell(&mut self, event: &Event) {
         if self.falls {
             return;
@@ -974,7 +974,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Begins the phase of an impact that is told after the next step, when its energy is known.
+    /// Begins the phase of an impact that is reported after the next step, when its energy is known.
     pub(in crate::dynamics) fn await_impact(&mut self) {
         if self.is_followed() && !self.falls {
             self.phase += 1;
