@@ -164,7 +164,7 @@ impl Scatter {
     }
 }
 
-/// Efficiency of each intensity measure, the best first, with intervals by bootstrap over the records. Capacities above the last level are
+/// Efficiency of each intensity measure, the best first, with intervals by bootstrap over the records. Records that do not overturn are
 /// left out; empty if fewer than three capacities are known.
 #[must_use]
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
