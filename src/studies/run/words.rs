@@ -691,6 +691,9 @@ fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
     slipped.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut text =
         match &slipped[..] {
+            [] if matches!(outcome, Outcome::Overturned(_)) => {
+                "  no joint slipped before it overturned".to_owned()
+            }
             [] => "  no joint slipped".to_owned(),
             [..] => {
                 let named = slipped.iter().take(SLIPPED).map(|(joint, largest_m, end_m)| {
@@ -709,6 +712,9 @@ fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
             }
         };
     let _ = write!(text, "; friction took {:.3} J", sliding.friction_j);
+    if let Outcome::Overturned(_) = outcome {
+        text += " with the fall";
+    }
     if outcome == Outcome::Rest
         && let Some(most_m) = slipped
             .iter()

@@ -94,8 +94,6 @@ struct Lane<'a> {
     elastic: ElasticSummary,
     /// The largest stress up to the last instant from which it may have fallen without return.
     stress_before_fall: Stress,
-    sliding: Sliding,
-    ties: Vec<TieSummary>,
     /// What happened to ties since the last look.
     happened: Vec<(usize, EventKind)>,
 }
@@ -137,7 +135,6 @@ pub(super) struct Group<'a, const L: usize> {
 
 impl<'a> Lane<'a> {
     fn new(task: Task<'a>, until: Until, recorder: Option<&'a mut dyn Recorder>) -> Self {
-        let joints = task.row.joints().len();
         let velocity = GroundVelocity::new(task.ground);
         let start_s = task.ground.start_s();
         Self {
@@ -167,8 +164,6 @@ impl<'a> Lane<'a> {
             summit: Summit::new(0.0, start_s),
             elastic: ElasticSummary::default(),
             stress_before_fall: Stress::default(),
-            sliding: Sliding::none(joints),
-            ties: Vec::new(),
             happened: Vec::new(),
             course: Course::new(task, None, recorder),
         }
@@ -271,6 +266,9 @@ impl<'a, const L: usize> Group<'a, L> {
         let moved_kg_m: f64 = weighted
             .map(|(block, moved)| block.mass_kg * moved_m(moved))
             .sum();
+        let structure = self.start.structure;
+        begun.course.of_row.sliding =
+            (structure.slips()).then(|| Sliding::none(structure.joints().len()));
         begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
         let seen = self.motion.observe(&Step::none(), &self.slides);
@@ -361,9 +359,9 @@ impl<'a, const L: usize> Group<'a, L> {
         lane.happened.clear();
         let bound = self.start.structure.ties().iter();
         for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
-            let Some(known) = lane.ties.get_mut(tie) else {
-                lane.ties
-                    .push(TieSummary::at_rest(&bound.tie, &memory, time));
+            let Some(known) = course.of_row.ties.get_mut(tie) else {
+                let at_rest = TieSummary::at_rest(&bound.tie, &memory, time);
+                course.of_row.ties.push(at_rest);
                 continue;
             };
             let happened = known.note(&bound.tie, &memory, time).into_iter().flatten();
@@ -393,10 +391,13 @@ impl<'a, const L: usize> Group<'a, L> {
             course.rocks = Some(course.rocks == Some(true) || is_open || slips);
         }
         let mut slid = 0.0;
-        for (joint, largest) in lane.sliding.largest_offsets_m.iter_mut().enumerate() {
+        for (joint, with_joint) in joints.iter().enumerate() {
             let slipped_m = self.motion.slipped_m(joint, index);
-            lane.sliding.offsets_m[joint] = slipped_m;
-            *largest = largest.max(slipped_m.abs());
+            if let Some(sliding) = &mut course.of_row.sliding {
+                sliding.offsets_m[joint] = slipped_m;
+                let largest = &mut sliding.largest_offsets_m[joint];
+                *largest = largest.max(slipped_m.abs());
+            }
             // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
             match self
                 .slides
@@ -404,7 +405,7 @@ impl<'a, const L: usize> Group<'a, L> {
                 .find(|slide| slide.joint == joint && slide.goes_on)
             {
                 Some(slide) => slid += slipped_m * slide.along_x,
-                None => lane.overturned |= slipped_m.abs() >= joints[joint].link.length_m(),
+                None => lane.overturned |= slipped_m.abs() >= with_joint.link.length_m(),
             }
         }
         // Between feet that part the middle goes half the way.
@@ -450,9 +451,8 @@ impl<'a, const L: usize> Group<'a, L> {
             .course
             .ending(lane.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
-            let slips = self.start.structure.slips();
             let mut ended = self.lanes[index].take()?;
-            return Some(Ok(ended.completed(slips).end(outcome, time_s)));
+            return Some(Ok(ended.completed().end(outcome, time_s)));
         }
         while lane.marks.is_due(lane.course.time) {
             lane.marks.pass();
@@ -520,12 +520,11 @@ impl<'a> Lane<'a> {
             .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
     }
 
-    fn completed(&mut self, slips: bool) -> &mut Course<'a> {
+    fn completed(&mut self) -> &mut Course<'a> {
         let of_row = &mut self.course.of_row;
-        of_row.sliding = slips.then(|| Sliding {
-            friction_j: self.elastic.friction_j,
-            ..self.sliding.clone()
-        });
+        if let Some(sliding) = &mut of_row.sliding {
+            sliding.friction_j = self.elastic.friction_j;
+        }
         let largest_stress = if self.overturned {
             self.stress_before_fall
         } else {
@@ -535,7 +534,6 @@ impl<'a> Lane<'a> {
             largest_stress,
             ..self.elastic
         });
-        of_row.ties.clone_from(&self.ties);
         &mut self.course
     }
 }
@@ -615,8 +613,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     fn completed(&mut self) -> &mut Course<'a> {
-        let slips = self.group.start.structure.slips();
-        self.lane_mut().completed(slips)
+        self.lane_mut().completed()
     }
 
     /// Some steps, up to the next observation of the motion.
@@ -669,8 +666,8 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         sample
             .ties
             .extend(ties.map(|(bound, memory)| TieSample::of(&bound.tie, &memory)));
-        if self.group.start.structure.slips() {
-            sample.offsets_m.extend(&self.lane().sliding.offsets_m);
+        if let Some(sliding) = &self.course().of_row.sliding {
+            sample.offsets_m.extend(&sliding.offsets_m);
         }
         Ok(seen.kinetic_j.0[0])
     }

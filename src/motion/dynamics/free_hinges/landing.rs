@@ -215,7 +215,7 @@ impl<'a> LandingStepper<'a> {
             auxiliary: program.clone(),
             program,
             closer: Closer::new(row),
-            ties: Ties::new(row, standing, ground.start_s()),
+            ties: Ties::new(row, standing),
             pieces: Vec::with_capacity(blocks),
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
@@ -242,6 +242,8 @@ impl<'a> LandingStepper<'a> {
             overturned: false,
         };
         stepper.stand_still();
+        stepper.course.of_row.ties = stepper.ties.at_rest(ground.start_s());
+        stepper.course.note_return();
         stepper
     }
 

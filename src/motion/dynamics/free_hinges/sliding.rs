@@ -18,7 +18,7 @@ use super::right_support::RightSupport;
 use super::ties::Ties;
 use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
-use crate::dynamics::history::{Sample, Sliding};
+use crate::dynamics::history::{EventKind, Sample, Sliding};
 use crate::dynamics::model::Recorder;
 use crate::dynamics::row::course::{
     Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, SWAY_RATIO, Stepper, Summit, Task,
@@ -106,7 +106,6 @@ pub(super) struct SlidingStepper<'a> {
     modes_before: Vec<Mode>,
     /// Whether no joint is open.
     stands: bool,
-    sliding: Sliding,
     ground_work: f64,
     /// When the row was highest, with the energy that friction took: up to then it may be held.
     summit: Summit,
@@ -161,7 +160,11 @@ impl<'a> SlidingStepper<'a> {
         let (_, stood) = contacts_at(rest.placement());
         let mut program = Program::new(row, coefficient);
         program.touch(rest.touching());
+        let ties = Ties::new(row, standing);
         let mut course = Course::new(task, None, recorder);
+        course.of_row.sliding = Some(Sliding::none(joints));
+        course.of_row.ties = ties.at_rest(ground.start_s());
+        course.note_return();
         let start_energy = gravity * rest.rise_kg_m(placement.centres_m());
         let stands = rest.has(placement.gaps_m());
         if !stands {
@@ -189,10 +192,9 @@ impl<'a> SlidingStepper<'a> {
             right: RightSupport::new(row, ground),
             supports,
             stands,
-            sliding: Sliding::none(joints),
             ground_work: 0.0,
             summit: Summit::new(start_energy, ground.start_s()),
-            ties: Ties::new(row, standing, ground.start_s()),
+            ties,
             taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
@@ -291,8 +293,9 @@ impl<'a> SlidingStepper<'a> {
         if error <= CONVERGED {
             return Ok(());
         }
-        self.sliding.unconverged += 1;
-        self.sliding.bound_error = self.sliding.bound_error.max(error);
+        let sliding = self.sliding();
+        sliding.unconverged += 1;
+        sliding.bound_error = sliding.bound_error.max(error);
         if error <= LARGEST_BOUND_ERROR {
             Ok(())
         } else {
@@ -436,7 +439,8 @@ impl<'a> SlidingStepper<'a> {
         self.tell_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
     }
 
-    fn drift(&mut self, step: f64) {
+    /// Moves the blocks for a step; what happened to ties in it.
+    fn drift(&mut self, step: f64) -> Vec<(usize, EventKind)> {
         for ((position, velocity), centre) in self
             .positions
             .iter_mut()
@@ -461,8 +465,9 @@ impl<'a> SlidingStepper<'a> {
             if self.program.modes()[joint].along != Along::Stick {
                 self.stuck[joint] = offset_m;
             }
-            let largest = &mut self.sliding.largest_offsets_m[joint];
-            *largest = largest.max(self.stuck[joint].abs());
+            let offset_m = self.stuck[joint].abs();
+            let largest = &mut self.sliding().largest_offsets_m[joint];
+            *largest = largest.max(offset_m);
             let least = APART_RATIO * self.faces[joint].thickness_m;
             let stood_m = &self.stood_m[joint];
             let slipped_m = (self.stuck[joint] - stood_m.z).abs();
@@ -475,6 +480,7 @@ impl<'a> SlidingStepper<'a> {
         let (blocks, positions) = (self.row.blocks(), &self.positions);
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
+        let happened = (self.ties).happened(&mut self.course.of_row.ties, self.course.time);
         let height = self.gravity * self.rest.rise_kg_m(&self.centres);
         let potential = height + self.ties.energy_j();
         let taken = self.ties.taken_j();
@@ -492,6 +498,13 @@ impl<'a> SlidingStepper<'a> {
         if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
             self.quiet_since_s = self.course.time;
         }
+        happened
+    }
+
+    /// The slip so far.
+    fn sliding(&mut self) -> &mut Sliding {
+        let sliding = self.course.of_row.sliding.as_mut();
+        sliding.expect("joints may slip")
     }
 
     /// How far the row slid along its supports, left and right.
@@ -648,10 +661,9 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn completed(&mut self) -> &mut Course<'a> {
         self.end_landing(Taken::default(), true);
-        self.sliding.offsets_m.copy_from_slice(&self.stuck);
-        self.course.of_row.sliding = Some(self.sliding.clone());
+        let offsets_m = self.stuck.clone();
+        self.sliding().offsets_m = offsets_m;
         let of_row = &mut self.course.of_row;
-        of_row.ties = self.ties.summaries();
         of_row.ground_j = self.ground_work;
         of_row.right_foot_j = self.right.work_j();
         &mut self.course
@@ -722,7 +734,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.last_step = step;
         let landing = self.find_landing(step);
         let [mut late, taken] = self.taken(mean_m_s);
-        self.sliding.friction_j += late.friction_j + taken.friction_j;
+        self.sliding().friction_j += late.friction_j + taken.friction_j;
         if landing.is_none() {
             late.add(taken);
             // Energy that friction takes in an impact holds nothing back.
@@ -738,14 +750,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             self.course.summary.impacts += 1;
             self.course.await_impact();
         }
-        self.drift(step);
+        let happened = self.drift(step);
         if let Some((from_s, energy_j)) = stood {
             self.report_uplift(from_s, energy_j);
         } else {
             self.stands = self.touches_as_it_stood();
         }
         self.course.mind_balance();
-        for (tie, kind) in self.ties.happened(self.course.time) {
+        for (tie, kind) in happened {
             self.tell_tie(tie, kind);
         }
         Ok(())

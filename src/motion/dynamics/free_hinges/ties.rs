@@ -14,7 +14,6 @@ struct Pulling<'a> {
     tie: &'a Tie,
     memory: TieMemory<Lanes<1>>,
     line: TieLine,
-    summary: TieSummary,
 }
 
 /// The ties of a row.
@@ -29,7 +28,7 @@ pub(super) struct Ties<'a> {
 
 impl<'a> Ties<'a> {
     /// Ties of a row that stands there when its motion starts.
-    pub fn new(row: &'a Row, standing: &Stance, start_s: f64) -> Self {
+    pub fn new(row: &'a Row, standing: &Stance) -> Self {
         let lines = standing.lines(row).zip(&standing.ties);
         let ties = row
             .ties()
@@ -38,7 +37,6 @@ impl<'a> Ties<'a> {
             .map(|(tie, (line, memory))| Pulling {
                 tie,
                 line,
-                summary: TieSummary::at_rest(tie, memory, start_s),
                 memory: *memory,
             });
         let mut ties = Self {
@@ -110,11 +108,11 @@ impl<'a> Ties<'a> {
         self.ties.iter().map(|tie| tie.memory.taken_j.0[0]).sum()
     }
 
-    /// What happened to them since the last time.
-    pub fn happened(&mut self, time_s: f64) -> Vec<(usize, EventKind)> {
+    /// Updates their summaries; what happened to them since the last time.
+    pub fn happened(&self, summaries: &mut [TieSummary], time_s: f64) -> Vec<(usize, EventKind)> {
         let mut happened = Vec::new();
-        for (index, tie) in self.ties.iter_mut().enumerate() {
-            let kinds = tie.summary.note(tie.tie, &tie.memory, time_s);
+        for (index, (tie, summary)) in self.ties.iter().zip(summaries).enumerate() {
+            let kinds = summary.note(tie.tie, &tie.memory, time_s);
             happened.extend(kinds.into_iter().flatten().map(|kind| (index, kind)));
         }
         happened
@@ -125,7 +123,10 @@ impl<'a> Ties<'a> {
         ties.map(|tie| TieSample::of(tie.tie, &tie.memory))
     }
 
-    pub fn summaries(&self) -> Vec<TieSummary> {
-        self.ties.iter().map(|tie| tie.summary).collect()
+    /// Summaries of ties that have not moved, at this time.
+    pub fn at_rest(&self, time_s: f64) -> Vec<TieSummary> {
+        let ties = self.ties.iter();
+        ties.map(|tie| TieSummary::at_rest(tie.tie, &tie.memory, time_s))
+            .collect()
     }
 }

@@ -10,7 +10,7 @@ use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::{
     Cost, Elapsed, Event, EventKind, HalfCycle, Impact, OpenHinge, Outcome, RowSummary, Sample,
-    State, Summary,
+    State, Summary, TieSummary,
 };
 use crate::dynamics::model::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
@@ -207,6 +207,8 @@ struct UpTo {
     half_cycles: usize,
     cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
+    largest_slips_m: Vec<f64>,
+    ties: Vec<TieSummary>,
 }
 
 /// What moves a row, step by step.
@@ -814,6 +816,12 @@ impl<'a> Course<'a> {
         before_fall.half_cycles = self.of_row.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
+        if let Some(sliding) = &self.of_row.sliding {
+            before_fall
+                .largest_slips_m
+                .clone_from(&sliding.largest_offsets_m);
+        }
+        before_fall.ties.clone_from(&self.of_row.ties);
     }
 
     /// Takes the results back to those of the instant at which it fell without return.
@@ -829,6 +837,13 @@ impl<'a> Course<'a> {
         });
         self.of_row.half_cycles.extend(cycle);
         self.thrust = before_fall.thrust;
+        if let Some(sliding) = &mut self.of_row.sliding {
+            sliding.largest_offsets_m = before_fall.largest_slips_m;
+        }
+        for (tie, before) in self.of_row.ties.iter_mut().zip(before_fall.ties) {
+            tie.peak_force_n = before.peak_force_n;
+            tie.peak_force_time_s = before.peak_force_time_s;
+        }
     }
 
     /// Raises the peaks to the rotations of the blocks now; returns the largest of these.

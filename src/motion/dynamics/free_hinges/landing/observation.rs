@@ -187,7 +187,6 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     fn completed(&mut self) -> &mut Course<'a> {
         let of_row = &mut self.course.of_row;
-        of_row.ties = self.ties.summaries();
         of_row.ground_j = self.ground_work;
         of_row.right_foot_j = self.right.work_j();
         &mut self.course
@@ -212,6 +211,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         if landed {
             self.impact()?;
         }
+        let time_s = self.course.time;
+        let happened = self.ties.happened(&mut self.course.of_row.ties, time_s);
         self.observe();
         if landed {
             self.report_impact(taken_before);
@@ -219,7 +220,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
             self.report_uplift(from_s);
         }
         self.course.mind_balance();
-        for (tie, kind) in self.ties.happened(self.course.time) {
+        for (tie, kind) in happened {
             self.tell_tie(tie, kind);
         }
         self.course.summary.cost.steps += 1;
