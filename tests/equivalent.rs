@@ -97,7 +97,7 @@ fn dimensionless(
     let p = scales.frequency_rad_s;
     let ground = GroundMotion::pulse(
         Pulse::OneSine,
-        amplitude * scales.incipient_m_s2,
+        amplitude * scales.incipient_m_s2[0],
         p_t_p / p,
         0.0,
     )
@@ -112,7 +112,7 @@ fn dimensionless(
     let rows = history.samples.iter().map(|sample| {
         [
             sample.time_s * p,
-            sample.ground_acceleration_m_s2 / scales.incipient_m_s2,
+            sample.ground_acceleration_m_s2 / scales.incipient_m_s2[0],
             sample.rotation_over_critical.unwrap(),
         ]
     });

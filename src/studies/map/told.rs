@@ -194,6 +194,7 @@ impl Look {
             .and_then(|model| Scales::new(&*model, scenario.gravity_m_s2()))
             .ok_or("needs a mechanism that has an unstable equilibrium")?;
         let gravity_m_s2 = scenario.gravity_m_s2();
-        Ok([scales.frequency_rad_s, gravity_m_s2 / scales.incipient_m_s2])
+        let [right, left] = scales.incipient_m_s2;
+        Ok([scales.frequency_rad_s, gravity_m_s2 / right.min(left)])
     }
 }

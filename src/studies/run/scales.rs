@@ -9,17 +9,27 @@ pub struct Scales {
     /// `p` of the equivalent block at the unstable equilibrium (see
     /// [`crate::mechanics::equivalent`]); for a column, its own `p`.
     pub frequency_rad_s: f64,
-    /// `g A_L`, the acceleration that starts the structure.
-    pub incipient_m_s2: f64,
+    /// `g A_L`, the acceleration that starts the structure to the right and to the left; infinite if no push does.
+    pub incipient_m_s2: [f64; 2],
 }
 
 impl Scales {
     /// The scales of a model under gravity; `None` if it has no unstable equilibrium.
     #[must_use]
     pub fn new(model: &dyn MechanismModel, gravity_m_s2: f64) -> Option<Self> {
+        let incipient_g = |sway| model.incipient_acceleration_g(sway);
+        let incipient_m_s2 = [Sway::Right, Sway::Left]
+            .map(|sway| incipient_g(sway).map_or(f64::INFINITY, |start_g| start_g * gravity_m_s2));
         Some(Self {
             frequency_rad_s: model.equivalent(gravity_m_s2)?.at_critical?.frequency_rad_s,
-            incipient_m_s2: model.incipient_acceleration_g(Sway::Right)? * gravity_m_s2,
+            incipient_m_s2,
         })
+    }
+
+    /// The larger of two pushes, to the right and to the left, each over the one that starts the structure to that side.
+    #[must_use]
+    pub fn over_incipient(&self, pushes_m_s2: [f64; 2]) -> f64 {
+        let [right, left] = [0, 1].map(|side: usize| pushes_m_s2[side] / self.incipient_m_s2[side]);
+        right.max(left)
     }
 }

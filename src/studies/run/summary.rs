@@ -19,7 +19,7 @@ use crate::scenario::{Ground, Scenario};
 ///
 /// For mechanisms, `peak_rotation_over_critical` is the largest rotation relative to that at the unstable equilibrium of the
 /// mechanism that moved. `dimensionless` has `p_rad_s` (see [`Scales`]), `p_t_p` (`p` times the duration of the pulse) and
-/// `peak_acceleration_over_incipient` (of the ground, relative to `g A_L`).
+/// `peak_acceleration_over_incipient` (of the ground, relative to `g A_L` of the side to which it pushes; the larger of both).
 ///
 /// For a row of blocks, `peak_potential_over_barrier` is the largest potential energy relative to that at which the first mechanism
 /// overturns, if that is known. Normal forces and friction are those outside impacts; `largest_friction_demand` is the largest
@@ -134,13 +134,13 @@ impl Object {
                 Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * p_rad_s),
                 Some(Ground::Record(_)) | None => None,
             };
-            let peaks_m_s2 = scenario.ground_motion().peaks_m_s2(history.end_s);
+            let pushes_m_s2 = scenario.ground_motion().pushes_m_s2(history.end_s);
             let mut dimensionless = Self::default();
             dimensionless.number("p_rad_s", p_rad_s)?;
             dimensionless.number("p_t_p", p_t_p)?;
             dimensionless.number(
                 "peak_acceleration_over_incipient",
-                peaks_m_s2.x / scales.incipient_m_s2,
+                scales.over_incipient(pushes_m_s2),
             )?;
             self.put("dimensionless", Value::Object(dimensionless.0));
         }

@@ -63,7 +63,9 @@ pub(super) fn rotations(
                 sample.time_s * scales.frequency_rad_s
             }),
             column("acceleration_over_incipient", move |sample: &Sample| {
-                sample.ground_acceleration_m_s2 / scales.incipient_m_s2
+                // Ground that accelerates to the right pushes to the left.
+                let ground_m_s2 = sample.ground_acceleration_m_s2;
+                ground_m_s2 / scales.incipient_m_s2[usize::from(ground_m_s2 > 0.0)]
             }),
             column("rotation_over_critical", |sample: &Sample| {
                 sample.rotation_over_critical.unwrap_or(0.0)
