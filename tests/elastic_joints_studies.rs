@@ -12,7 +12,8 @@ use archrock::studies::threshold::{EDGE_WIDTH, Factors, thresholds};
 use archrock::{Outcome, Scenario, Summary};
 
 use crate::common::parsed;
-use crate::program::scenarios;
+use crate::program::{printed, scenarios};
+use crate::results::json;
 
 /// A slender block that rocks for two seconds.
 fn block(more: &str) -> String {
@@ -192,4 +193,40 @@ fn thresholds_are_found_as_by_single_runs() {
         *if falls(middle).0 { &mut high } else { &mut low } = middle;
     }
     assert_eq!(found[0].lowest_factor(), Some(high));
+}
+
+/// Histories of variations that end too early for a verdict are counted, in words, JSON and warnings.
+#[test]
+fn variations_count_histories_without_a_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = block(PULSE).replace("duration_s = 2.5", "duration_s = 1.3");
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let threshold = [
+        "threshold",
+        "s.toml",
+        "--out",
+        "o",
+        "--from",
+        "1",
+        "--to",
+        "4",
+        "--stride",
+        "0.2",
+    ];
+    let said = printed(folder.path(), &threshold);
+    let told = json(&folder.path().join("o/threshold.json"));
+    let model = &told["models"][0];
+    assert!(model["lowest_factor"].is_number(), "{said}");
+    assert!(!model["incomplete"].as_array().unwrap().is_empty());
+    let variations = model["variations"].as_array().unwrap();
+    assert!(!variations.is_empty());
+    for variation in variations {
+        let incomplete = variation["incomplete"].as_u64().unwrap();
+        let words = format!("no verdict from {incomplete} histories of weaker motions");
+        let name = variation["with"].as_str().unwrap();
+        assert!(variation["factor"].is_number() && incomplete > 0, "{said}");
+        let mut warnings = told["warnings"].as_array().unwrap().iter();
+        assert!(warnings.any(|warning| *warning == format!("with {name}: {words}")));
+        assert!(said.contains(&format!("; {words}\n")), "{said}");
+    }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use archrock::scenario::Scenario;
-use archrock::{Outcome, Summary};
+use archrock::{Outcome, Sample, Summary};
 use serde_json::Value;
 
 use crate::program::{archrock, printed, refused, stderr, stdout};
@@ -280,4 +280,178 @@ fn a_default_is_not_frozen() {
         resolved.simulation().duration_s,
         Some(scenario.request().end_s)
     );
+}
+
+/// A block that a pulse of 0.6 g leaves with more than a quarter of the energy barrier for long.
+const ROCKING_LONG: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[impact]\nmodel = \"prescribed\"\nrestitution = 0.999\n";
+
+/// An overturning spectrum counts histories without a verdict apart, and does not say that nothing overturns there.
+#[test]
+fn a_spectrum_counts_histories_without_a_verdict() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let text = format!(
+        "{ROCKING_LONG}[ground.rectangular]\namplitude_g = -1.0\nduration_s = 1.0\n\
+         [spectrum]\np_t = [0.3]\nacceleration_over_incipient = [0.5, 3.0]\n"
+    );
+    fs::write(at.join("s.toml"), text).unwrap();
+    let said = printed(at, &["spectrum", "s.toml", "--out", "o", "--quiet"]);
+    let row = &Table::read(at.join("o/spectrum.csv")).rows[0];
+    let cells = [
+        "incomplete",
+        "failed",
+        "still_rocking",
+        "least_over_incipient",
+    ];
+    assert_eq!(cells.map(|name| row[name].as_str()), ["1", "0", "0", ""]);
+    let told = json(&at.join("o/spectrum.json"));
+    assert_eq!(told.get("failures"), None);
+    assert!(warns_of_no_verdict(&at.join("o/spectrum.json")));
+    assert!(
+        !said.contains("no pulse up to") && !said.contains("failed"),
+        "{said}"
+    );
+}
+
+/// Samples without a verdict are no failures: they are counted and warned of, and no share contains them.
+#[test]
+fn samples_without_a_verdict_are_counted_apart() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let text = format!(
+        "{ROCKING_LONG}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
+         [map]\nduration_s = [0.2]\namplitude_g = [0.1, 0.6]\n\
+         [uncertain]\nsamples = 8\n\"ground.rectangular.amplitude_g\" = {{ from = 0.05, to = 0.75 }}\n"
+    );
+    fs::write(at.join("s.toml"), text).unwrap();
+    let count = |told: &Value, name: &str| told[name].as_u64().unwrap();
+    let said = printed(at, &["run", "s.toml", "--out", "r", "--no-report"]);
+    let file = at.join("r/uncertain/uncertain.json");
+    let told = json(&file);
+    let incomplete = count(&told, "incomplete");
+    assert!((1..8).contains(&incomplete) && count(&told, "failed") == 0);
+    assert_eq!(count(&told, "answered") + incomplete, 8);
+    assert!(warns_of_no_verdict(&file));
+    let words = format!("no verdict from {incomplete} of 8 samples; incomplete: ");
+    assert!(
+        said.contains(&words) && !said.contains("could not be computed"),
+        "{said}"
+    );
+    let threshold = ["threshold", "s.toml", "--out", "t", "--to", "3", "--quiet"];
+    let said = printed(at, &threshold);
+    let told = json(&at.join("t/uncertain_threshold/uncertain.json"));
+    assert!(
+        count(&told, "incomplete") > 0 && count(&told, "failed") == 0,
+        "{said}"
+    );
+    // The amplitude of a map cannot be uncertain as well.
+    let width = ["map", "s.toml", "--out", "m", "--quiet", "--set"];
+    let text = fs::read_to_string(at.join("s.toml")).unwrap();
+    let (kept, _) = text.split_once("\"ground.").unwrap();
+    let text = format!("{kept}\"column.width_m\" = {{ from = 0.79, to = 0.81 }}\n");
+    fs::write(at.join("s.toml"), text).unwrap();
+    let said = stderr(&archrock(at, &width[..5]));
+    let file = at.join("m/uncertain_map/uncertain.json");
+    let left_out = json(&file)["histories_without_outcome"].clone();
+    assert_eq!(
+        [count(&left_out, "incomplete"), count(&left_out, "failed")],
+        [8, 0]
+    );
+    assert!(warns_of_no_verdict(&file), "{said}");
+    let row = &Table::read(at.join("m/uncertain_map/map.csv")).rows[1];
+    assert_eq!(
+        ["samples", "incomplete", "failed"].map(|name| row[name].as_str()),
+        ["0", "8", "0"]
+    );
+}
+
+/// The ratio of the ground to the push that starts the structure is that of the side to which it pushes, as in the words.
+#[test]
+fn the_governing_side_is_compared_with_what_starts_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 20\n\
+                [[load]]\nmass_kg = 3000.0\nx_m = -2.0\n\
+                [ground.half_sine]\namplitude_g = 0.6\nduration_s = 0.2\n";
+    for (push_g, side) in [(0.6, "left"), (-0.6, "right")] {
+        fs::write(at.join("s.toml"), text.replace("0.6", &push_g.to_string())).unwrap();
+        let said = printed(
+            at,
+            &[
+                "run",
+                "s.toml",
+                "--out",
+                "o",
+                "--no-report",
+                "--dimensionless",
+            ],
+        );
+        let told = summary(&at.join("o"));
+        let starts_g =
+            ["right", "left"].map(|side| told["incipient_acceleration_g"][side].as_f64().unwrap());
+        assert!((starts_g[0] / starts_g[1] - 1.0).abs() > 0.05);
+        let ratio = 0.6 / told["incipient_acceleration_g"][side].as_f64().unwrap();
+        let own = &told["dimensionless"]["peak_acceleration_over_incipient"];
+        assert!(
+            (own.as_f64().unwrap() / ratio - 1.0).abs() < 1e-9,
+            "{side}: {own} {ratio}"
+        );
+        assert!(
+            said.contains(&format!("{ratio:.2} times as much")),
+            "{said}"
+        );
+        let column = Table::read(at.join("o/rotations.csv")).numbers("acceleration_over_incipient");
+        let largest = column.into_iter().map(f64::abs).fold(0.0, f64::max);
+        assert!((largest / ratio - 1.0).abs() < 1e-3);
+    }
+}
+
+/// Slips and tie forces of the fall are no part of the largest ones.
+#[test]
+fn the_largest_slips_and_tie_forces_are_those_before_it_overturns() {
+    let block = "[column]\nheight_m = 4.0\nwidth_m = 0.8\npedestal = true\n";
+    let tie = "[[tie]]\nfrom_m = [-0.4, 3.5]\nto_m = [-3.4, 3.5]\nto_block = 0\nstiffness_n_m = 2e3\nprestress_n = 5000.0\n";
+    let slides = "[column]\nheight_m = 1.0\nwidth_m = 1.0\npedestal = true\n[free_hinges]\nfriction_coefficient = 0.2\n\
+                  [ground.rectangular]\namplitude_g = 1.5\nduration_s = 0.8\n";
+    let ground = "[ground.half_sine]\namplitude_g = -1.2\nduration_s = 0.9\n";
+    let tied = |model: &str| format!("{block}{tie}{model}{ground}");
+    let mut grows = 0;
+    for text in [
+        slides.to_owned(),
+        tied("[free_hinges]\n"),
+        tied("[free_hinges]\nfriction_coefficient = 0.6\n"),
+        tied("[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\nfriction_coefficient = 0.6\n"),
+    ] {
+        let scenario = Scenario::parse(&text, "s.toml").unwrap();
+        let model = scenario.model().unwrap();
+        let history = model
+            .history(scenario.ground_motion(), &scenario.request())
+            .unwrap();
+        let (summary, row) = (&history.summary, history.summary.row.as_ref().unwrap());
+        assert!(matches!(summary.outcome, Outcome::Overturned(_)), "{text}");
+        let largest = |of: &dyn Fn(&Sample) -> f64, until_s: f64| {
+            let before = history
+                .samples
+                .iter()
+                .filter(|sample| sample.time_s <= until_s);
+            before.map(|sample| of(&sample)).fold(0.0, f64::max)
+        };
+        let mut assert_is_before_the_fall = |reported: f64, of: &dyn Fn(&Sample) -> f64| {
+            let [before, whole] =
+                [summary.outcome_time_s, f64::INFINITY].map(|end_s| largest(of, end_s));
+            grows += usize::from(whole > 1.05 * before);
+            assert!(
+                (reported / before - 1.0).abs() < 0.02,
+                "{text}{reported} {before}"
+            );
+        };
+        if let [tie] = &row.ties[..] {
+            assert!(tie.peak_force_time_s <= summary.outcome_time_s);
+            assert_is_before_the_fall(tie.peak_force_n, &|sample| sample.ties[0].force_n);
+        } else {
+            let slip_m = row.sliding.as_ref().unwrap().largest_offsets_m[0];
+            assert_is_before_the_fall(slip_m, &|sample| sample.offsets_m[0].abs());
+        }
+    }
+    assert!(grows >= 3, "{grows}");
 }

@@ -447,7 +447,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     assert_eq!(table.lines().count(), 7);
     assert!(table.starts_with(
         "structure,p_t,duration_s,no_impact_over_incipient,least_over_incipient,\
-         impacts_before_overturning,overturning_sway,still_rocking,failed\narch,1.2,"
+         impacts_before_overturning,overturning_sway,still_rocking,incomplete,failed\narch,1.2,"
     ));
 
     for part in ["1/4", "3/4", "2/4", "4/4"] {

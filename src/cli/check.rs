@@ -84,11 +84,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
         let picture = figure.fitted(|figure| elevation::draw(figure, title, &scene, &text));
         commands::write_picture(plot, &picture)?;
     }
-    let structure = scenario.structure();
-    let mut notes = structure.ties_in_words();
-    if !notes.is_empty() {
-        notes.insert(0, structure.origin());
-    }
+    let notes = scenario.structure().tie_places();
     let notes: String = notes.iter().map(|note| format!("# {note}\n")).collect();
     Ok((
         notes + &scenario.to_resolved_toml(),

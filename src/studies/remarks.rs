@@ -142,14 +142,16 @@ pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> V
     summary
 }
 
+/// How many of these cases ended too early for a verdict, and what to do; `None` if none did.
+pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<String> {
+    let what_to_do = Ending::INCOMPLETE;
+    (incomplete > 0).then(|| format!("no verdict from {incomplete} of {of} {cases}; {what_to_do}"))
+}
+
 impl Remarks {
     /// How many histories ended too early for a verdict, and what to do; `None` if none did.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
-        let (incomplete, histories) = (self.incomplete, self.histories);
-        (incomplete > 0).then(|| {
-            let what_to_do = Ending::INCOMPLETE;
-            format!("no verdict from {incomplete} of {histories} histories; {what_to_do}")
-        })
+        no_verdict(self.incomplete, self.histories, "histories")
     }
 
     /// The warnings of a study, and one about histories without a verdict if there are any.

@@ -33,6 +33,16 @@ impl Structure {
         words.to_owned()
     }
 
+    /// The frame of reference and where each tie is in it, a line each; empty without ties.
+    #[must_use]
+    pub fn tie_places(&self) -> Vec<String> {
+        let mut places = self.ties_in_words();
+        if !places.is_empty() {
+            places.insert(0, self.origin());
+        }
+        places
+    }
+
     /// Where each tie is: its ends, and its height above the springings of an arch.
     #[must_use]
     pub fn ties_in_words(&self) -> Vec<String> {

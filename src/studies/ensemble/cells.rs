@@ -37,6 +37,8 @@ pub enum Came {
     Invalid(Box<str>),
     /// It could not be computed.
     Failed(Box<str>),
+    /// It ended too early for a verdict.
+    Incomplete,
 }
 
 impl From<CellResult> for Came {
@@ -49,7 +51,7 @@ impl From<CellResult> for Came {
                 Outcome::NeverMoved => Self::NeverMoved,
                 Outcome::Vibrates => Self::Vibrates,
                 Outcome::StillRocking => Self::StillRocking,
-                Outcome::Incomplete => Self::Failed(Ending::INCOMPLETE.into()),
+                Outcome::Incomplete => Self::Incomplete,
             },
             CellResult::CannotStand => Self::Invalid("it cannot stand".into()),
             CellResult::NotFourLinks => Self::Invalid("it is too thick for four links".into()),
@@ -64,6 +66,7 @@ impl Came {
         match self {
             Self::Invalid(reason) => Some(("invalid", reason)),
             Self::Failed(reason) => Some(("failed", reason)),
+            Self::Incomplete => Some((Outcome::Incomplete.name(), Ending::INCOMPLETE)),
             _ => None,
         }
     }
@@ -235,8 +238,8 @@ pub struct Likely {
     pub overturned: Option<Share>,
     /// How many are uncertain, come to rest, never move, vibrate, are still rocking.
     pub others: [usize; 5],
-    /// How many have none because of their values, and because they could not be computed.
-    pub without: [usize; 2],
+    /// How many have none because of their values, because they could not be computed, and because they ended too early.
+    pub without: [usize; 3],
 }
 
 /// Outcomes beside overturning, by their names in results.
@@ -250,7 +253,7 @@ const OTHERS: [&str; 5] = [
 
 impl Likely {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r Came>) -> Self {
-        let (mut overturned, mut others, mut without) = (0, [0; 5], [0; 2]);
+        let (mut overturned, mut others, mut without) = (0, [0; 5], [0; 3]);
         for row in rows {
             *match row {
                 Came::Overturned => &mut overturned,
@@ -261,6 +264,7 @@ impl Likely {
                 Came::StillRocking => &mut others[4],
                 Came::Invalid(_) => &mut without[0],
                 Came::Failed(_) => &mut without[1],
+                Came::Incomplete => &mut without[2],
             } += 1;
         }
         let samples = overturned + others.iter().sum::<usize>();
@@ -371,9 +375,13 @@ impl CellsOfSamples<'_> {
             .map(|(sample, cells)| {
                 let likely = Likely::of([0.0; 2], cells.iter());
                 let why_not = || {
-                    let why_not = cells.iter().find_map(Came::why_not);
-                    let (_, reason) = why_not.unwrap_or(("invalid", "it has no cells"));
-                    NoAnswer::Invalid(reason.to_owned())
+                    let why_not = cells.iter().find(|cell| cell.why_not().is_some());
+                    match why_not {
+                        Some(Came::Failed(reason)) => NoAnswer::Failed(reason.to_string()),
+                        Some(Came::Incomplete) => NoAnswer::Incomplete,
+                        Some(Came::Invalid(reason)) => NoAnswer::Invalid(reason.to_string()),
+                        _ => NoAnswer::Invalid("it has no cells".to_owned()),
+                    }
                 };
                 SampleRow {
                     values: match sample.checked_sub(1) {

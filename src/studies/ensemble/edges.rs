@@ -103,7 +103,7 @@ pub(super) fn first_edge(
     };
     for strength in strengths.iter().copied() {
         let found = match verdict(strength) {
-            Ok(Verdict::Incomplete) => return Err(NoAnswer::Failed(Ending::INCOMPLETE.to_owned())),
+            Ok(Verdict::Incomplete) => return Err(NoAnswer::Incomplete),
             Ok(found) => found,
             // A stronger motion may exceed what the model allows: the ground may fall freely.
             Err(_) if edge.tried_to > 0.0 => break,

@@ -139,7 +139,7 @@ impl Histories {
         let summary = checked.own.map_err(|error| failed(error.to_string()))?;
         let ending = Ending::from_summary(&summary, None, checked.doubt).map_err(failed)?;
         if ending.verdict() == Verdict::Incomplete {
-            return Err(failed(Ending::INCOMPLETE.to_owned()));
+            return Err(NoAnswer::Incomplete);
         }
         Ok(Went {
             ending,

@@ -18,7 +18,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use self::matters::{Matters, total_indices, what_matters};
+use super::ending::Ending;
+use super::remarks::no_verdict;
 use super::runner::Study;
+use crate::dynamics::history::Outcome;
 use crate::scenario::{Scenario, Uncertain};
 
 /// A question that is asked of every sample.
@@ -57,6 +60,8 @@ pub enum NoAnswer {
     Invalid(String),
     /// Its history could not be computed.
     Failed(String),
+    /// Its history ended too early for a verdict.
+    Incomplete,
 }
 
 impl NoAnswer {
@@ -66,6 +71,7 @@ impl NoAnswer {
         match self {
             Self::Invalid(_) => "invalid",
             Self::Failed(_) => super::ending::columns::FAILED,
+            Self::Incomplete => Outcome::Incomplete.name(),
         }
     }
 
@@ -74,6 +80,7 @@ impl NoAnswer {
     pub fn reason(&self) -> &str {
         match self {
             Self::Invalid(reason) | Self::Failed(reason) => reason,
+            Self::Incomplete => Ending::INCOMPLETE,
         }
     }
 }
@@ -189,6 +196,12 @@ impl<'a, A> Told<'a, A> {
     pub(crate) fn answered(&self) -> impl Iterator<Item = (&'a [f64], &'a A)> + Clone {
         let samples = self.samples.iter();
         samples.filter_map(|row| Some((&*row.values, row.answer.as_ref().ok()?)))
+    }
+
+    /// How many samples ended too early for a verdict, and what to do; `None` if none did.
+    fn no_verdict(&self) -> Option<String> {
+        let incomplete = self.without(NoAnswer::Incomplete.name());
+        no_verdict(incomplete, self.samples.len(), "samples")
     }
 
     /// The number of samples without an answer for this reason, given by its name.

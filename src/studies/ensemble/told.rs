@@ -205,11 +205,12 @@ pub(super) fn beginning<A>(told: &Told<'_, A>) -> Value {
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
         "scenario": told.scenario.to_json(),
-        "warnings": warnings(told.scenario),
+        "warnings": warnings(told.scenario).into_iter().chain(told.no_verdict()).collect::<Vec<_>>(),
         "samples": told.samples.len(),
         "answered": told.answered().count(),
         "invalid": told.without("invalid"),
         "failed": told.without("failed"),
+        "incomplete": told.without("incomplete"),
         "without_answer": reasons.collect::<Vec<_>>(),
         "not_considered": NOT_CONSIDERED,
     })
@@ -240,7 +241,7 @@ pub(super) fn without_answer<A>(told: &Told<'_, A>) -> Vec<String> {
             first.reason()
         ))
     });
-    words.collect()
+    words.chain(told.no_verdict()).collect()
 }
 
 /// Replaces infinite values by null.

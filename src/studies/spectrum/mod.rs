@@ -83,7 +83,11 @@ pub struct PointRow {
     pub minimum: Option<Overturning>,
     /// Number of tried accelerations that left the structure still rocking at the end. They count as survived.
     pub still_rocking: usize,
-    /// Histories and searches that could not be computed. They count as survived.
+    /// Number of tried accelerations that left the structure with too much energy for a verdict at the end. They count neither as
+    /// survived nor as overturned.
+    #[serde(default)]
+    pub incomplete: usize,
+    /// Histories and searches that could not be computed, which count neither as survived nor as overturned.
     pub failures: Vec<Failure>,
 }
 
@@ -238,6 +242,7 @@ impl Study for OverturningSpectrum<'_> {
             no_impact_over_incipient: None,
             minimum: None,
             still_rocking: 0,
+            incomplete: 0,
             failures: Vec::new(),
         };
         // Only amplitudes that a scenario may have. The sequence ascends, so the two lists run in parallel.
@@ -291,10 +296,7 @@ impl Study for OverturningSpectrum<'_> {
                     break;
                 }
                 Ok(ending) if ending.outcome == Outcome::StillRocking => row.still_rocking += 1,
-                Ok(ending) if ending.outcome == Outcome::Incomplete => row.failures.push(Failure {
-                    over_incipient: Some(over_incipient),
-                    reason: Ending::INCOMPLETE.to_owned(),
-                }),
+                Ok(ending) if ending.outcome == Outcome::Incomplete => row.incomplete += 1,
                 Ok(_) => {}
                 Err(reason) => row.failures.push(Failure {
                     over_incipient: Some(over_incipient),

@@ -19,7 +19,12 @@ impl OverturningSpectrum<'_> {
         let title = self.scenario.title();
         let title = title.unwrap_or("Overturning spectrum");
         let remarks = remarks(rows);
-        let summary = remarks::summary(self.scenario, rows.len(), &remarks);
+        let mut summary = remarks::summary(self.scenario, rows.len(), &remarks);
+        if let (Some(warnings), Some(words)) =
+            (summary["warnings"].as_array_mut(), no_verdict(rows))
+        {
+            warnings.push(words.into());
+        }
         Ok(Results {
             files: vec![
                 (
@@ -39,7 +44,7 @@ impl OverturningSpectrum<'_> {
 }
 
 /// The columns for one row per point: one structure after the other, with ascending sizes.
-fn columns() -> [Column<'static, PointRow>; 9] {
+fn columns() -> [Column<'static, PointRow>; 10] {
     let least = |row: &PointRow| row.minimum;
     [
         column("structure", |row: &PointRow| row.structure.name()),
@@ -58,6 +63,7 @@ fn columns() -> [Column<'static, PointRow>; 9] {
             least(row).map(|one| one.sway.name())
         }),
         column("still_rocking", |row: &PointRow| row.still_rocking),
+        column("incomplete", |row: &PointRow| row.incomplete),
         column("failed", |row: &PointRow| row.failures.len()),
     ]
 }
@@ -83,6 +89,18 @@ fn remarks(rows: &[PointRow]) -> Remarks {
     remarks
 }
 
+/// How many histories have no verdict; `None` if all have one.
+fn no_verdict(rows: &[PointRow]) -> Option<String> {
+    let points = rows.iter().filter(|row| row.incomplete > 0).count();
+    let histories: usize = rows.iter().map(|row| row.incomplete).sum();
+    (histories > 0).then(|| {
+        format!(
+            "no verdict from {histories} histories at {points} points, which keep more than a quarter of the energy barrier long after \
+             their pulse: weaker pulses than the least may overturn there"
+        )
+    })
+}
+
 /// Counts the points by outcome, and reports what is uncertain.
 fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remarks) -> String {
     let count = |wanted: fn(Option<usize>) -> bool| {
@@ -97,7 +115,9 @@ fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remark
         count(|impacts| impacts == Some(0)),
         count(|impacts| impacts > Some(0)),
     );
-    let none = count(|impacts| impacts.is_none());
+    let known =
+        |row: &&PointRow| row.minimum.is_none() && row.incomplete == 0 && row.failures.is_empty();
+    let none = rows.iter().filter(known).count();
     if let Some(last) = spectrum.over_incipient().last()
         && none > 0
     {
@@ -108,6 +128,9 @@ fn words(spectrum: &OverturningSpectrum<'_>, rows: &[PointRow], remarks: &Remark
         text += &format!(
             "; {rocking} histories were still rocking long after their pulse, and count as survived"
         );
+    }
+    if let Some(words) = no_verdict(rows) {
+        text += &format!("; {words}");
     }
     if let Some(words) = remarks.failed_in_words(SUMMARY) {
         text += &format!("; {words}");

@@ -207,6 +207,10 @@ fn to_json(
     }
     let incomplete = thresholds.iter().map(remarks);
     warnings.extend(incomplete.filter_map(|remarks| remarks.incomplete_in_words()));
+    let varied = thresholds.iter().flat_map(|threshold| &threshold.varied);
+    warnings.extend(
+        varied.filter_map(|varied| Some(format!("with {}: {}", varied.name, varied.no_verdict()?))),
+    );
     Ok(json!({
         "program": env!("CARGO_PKG_NAME"),
         "version": env!("CARGO_PKG_VERSION"),
@@ -237,12 +241,16 @@ fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
     })
 }
 
-fn varied_to_json(VariedThreshold { name, factor }: &VariedThreshold, peak_g: f64) -> Value {
-    match factor {
-        Ok(factor) => {
-            json!({ "with": name, "factor": factor, "peak_g": factor.map(|factor| factor * peak_g) })
-        }
-        Err(reason) => json!({ "with": name, "failed": reason }),
+fn varied_to_json(varied: &VariedThreshold, peak_g: f64) -> Value {
+    let name = &varied.name;
+    match varied.factor {
+        Ok(factor) => json!({
+            "with": name,
+            "factor": factor,
+            "peak_g": factor.map(|factor| factor * peak_g),
+            "incomplete": varied.incomplete,
+        }),
+        Err(ref reason) => json!({ "with": name, "failed": reason }),
     }
 }
 
@@ -322,19 +330,25 @@ impl Factors {
 /// The lowest factors that overturn the structure with other properties, in words.
 fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
     let mut text = String::new();
-    for VariedThreshold { name, factor } in &threshold.varied {
-        let _ = match factor {
+    for varied in &threshold.varied {
+        let no_verdict = varied.no_verdict();
+        let answer = match &varied.factor {
             Ok(Some(factor)) => {
                 let peak_g = rounded(factor * peak_g);
-                writeln!(
-                    text,
-                    "  with {name}: from factor {} ({peak_g} g)",
-                    rounded(*factor)
-                )
+                format!("from factor {} ({peak_g} g)", rounded(*factor))
             }
-            Ok(None) => writeln!(text, "  with {name}: does not overturn at any factor tried"),
-            Err(reason) => writeln!(text, "  with {name}: {reason}"),
+            Ok(None) if no_verdict.is_some() => {
+                "does not certainly overturn at any factor tried".to_owned()
+            }
+            Ok(None) => "does not overturn at any factor tried".to_owned(),
+            Err(reason) => reason.clone(),
         };
+        let _ = write!(text, "  with {}: {answer}", varied.name);
+        let _ = writeln!(
+            text,
+            "{}",
+            no_verdict.map_or(String::new(), |words| format!("; {words}"))
+        );
     }
     text
 }

@@ -1,5 +1,6 @@
 //! What a threshold depends on: the thresholds of the same structure with other properties that are as likely.
 
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use super::{EDGE_WIDTH, Factors, Threshold};
@@ -19,6 +20,21 @@ pub struct VariedThreshold {
     /// The lowest factor that overturns it, found as that of the structure itself: from the same sampled factors. `None` if none of them
     /// does. Or why it is unknown.
     pub factor: Result<Option<f64>, String>,
+    /// Number of histories of the search that ended too early for a verdict.
+    pub incomplete: usize,
+}
+
+impl VariedThreshold {
+    /// How many histories have no verdict, in words; `None` if all have one.
+    #[must_use]
+    pub fn no_verdict(&self) -> Option<String> {
+        let count = self.incomplete;
+        let below = match &self.factor {
+            Ok(Some(_)) => " of weaker motions",
+            _ => "",
+        };
+        (count > 0).then(|| format!("no verdict from {count} histories{below}"))
+    }
 }
 
 /// Number of histories that are computed together: some models are faster that way.
@@ -43,15 +59,16 @@ pub fn vary(
     let factors = factors.values();
     let search = |index: usize| {
         let Variation { name, model } = &variations[index];
+        let incomplete = Cell::new(0);
         let factor = match model {
-            Ok(model) => {
-                lowest(&**model, ground, request, &factors).map_err(|error| error.to_string())
-            }
+            Ok(model) => lowest(&**model, ground, request, &factors, &incomplete)
+                .map_err(|error| error.to_string()),
             Err(reason) => Err(reason.clone()),
         };
         VariedThreshold {
             name: name.clone(),
             factor,
+            incomplete: incomplete.get(),
         }
     };
     runner.each(variations.len(), search, watch)
@@ -62,9 +79,14 @@ fn lowest(
     ground: &GroundMotion,
     request: &Request,
     factors: &[f64],
+    incomplete: &Cell<usize>,
 ) -> Result<Option<f64>, SimulationError> {
     let falls = |history: Result<Summary, SimulationError>| {
-        history.map(|history| Verdict::from(history.outcome) == Verdict::Overturns)
+        history.map(|history| {
+            let verdict = Verdict::from(history.outcome);
+            incomplete.set(incomplete.get() + usize::from(verdict == Verdict::Incomplete));
+            verdict == Verdict::Overturns
+        })
     };
     let mut survived = None;
     for factors in factors.chunks(TOGETHER) {

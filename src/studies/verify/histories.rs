@@ -27,7 +27,7 @@ const PERIODS: u32 = 60;
 /// Interval at which peaks are looked for, in seconds. The error of a peak is about half its acceleration, at most a few m/s2, times
 /// the square of half the interval.
 const STEP_S: f64 = 0.002;
-/// Time after a record, in seconds, within which the last peak occurs.
+/// Least time after a record, in seconds, that is followed.
 const AFTER_S: f64 = 10.0;
 
 /// The largest displacement under a record to one side.
@@ -37,6 +37,8 @@ pub struct Peak {
     pub displacement_m: f64,
     /// Whether it overturned to that side.
     pub overturned: bool,
+    /// Whether a history ended too early for a verdict: a later peak may be larger.
+    pub incomplete: bool,
 }
 
 /// The peaks under a record that acts in either direction; the larger peak counts.
@@ -59,10 +61,10 @@ pub struct HistorySide {
     pub sway: Sway,
     /// The restitution of the first impact after a sway to that side; `None` if it stops the structure.
     pub restitution: Option<f64>,
-    /// Mean of the peaks, or the largest if there are few records; `None` if one overturns.
+    /// Mean of the peaks, or the largest if there are few records; `None` if one overturns or has no verdict.
     pub demand_m: Option<f64>,
     /// Ends of the 95 % interval of the mean, in metres, by bootstrap over the records: after impacts peaks scatter. `None` if the
-    /// largest peak counts, or one overturns.
+    /// largest peak counts, or there is no demand.
     pub mean_interval_m: Option<[f64; 2]>,
     /// Displacement that may be reached, in metres.
     pub capacity_m: f64,
@@ -72,8 +74,10 @@ pub struct HistorySide {
     pub d0_m: f64,
     /// The number of records that exceed it, without and with division by FC.
     pub exceeded: [usize; 2],
-    /// Whether the side passes, with capacities not divided and divided by FC.
-    pub passes: [bool; 2],
+    /// Whether a record overturns the structure to that side.
+    pub overturned: bool,
+    /// Whether the side passes, with capacities not divided and divided by FC; `None` if that depends on a history without a verdict.
+    pub passes: [Option<bool>; 2],
 }
 
 /// The histories of a limit state.
@@ -91,10 +95,25 @@ pub struct Histories {
 }
 
 impl Histories {
-    /// Whether all sides pass, with capacities not divided and divided by FC.
+    /// Whether all sides pass, with capacities not divided and divided by FC; `None` if that depends on a history without a verdict.
     #[must_use]
-    pub fn passes(&self) -> [bool; 2] {
-        [0, 1].map(|divided| self.sides.iter().all(|side| side.passes[divided]))
+    pub fn passes(&self) -> [Option<bool>; 2] {
+        [0, 1].map(|divided| {
+            let passes = self.sides.iter().map(|side| side.passes[divided]);
+            // `None` is less than `Some(true)`, and does not hide a side that fails.
+            if passes.clone().any(|passes| passes == Some(false)) {
+                return Some(false);
+            }
+            passes.min().flatten()
+        })
+    }
+
+    /// Number of records with a history that ended too early for a verdict.
+    #[must_use]
+    pub fn incomplete(&self) -> usize {
+        let records = self.records.iter();
+        let incomplete = |record: &&RecordPeaks| record.peaks.iter().any(|peak| peak.incomplete);
+        records.filter(incomplete).count()
     }
 
     /// Whether the mean of the peaks counts, instead of the largest.
@@ -153,10 +172,11 @@ pub(super) fn histories(
         .map(|(record, sign)| {
             let series = &records[record];
             let ground = scenario.shaken_by(series, sign);
+            let request = scenario.request_on(&ground, scenario.structure());
             let request = Request {
-                end_s: ground.end_s() + AFTER_S,
+                end_s: request.end_s.max(ground.end_s() + AFTER_S),
                 output_step_s: STEP_S,
-                ..scenario.request_from_rest()
+                ..request
             };
             peaks(&*model, &ground, &request, participating_kg)
         })
@@ -172,6 +192,7 @@ pub(super) fn histories(
                     .displacement_m
                     .max(both[1][side].displacement_m),
                 overturned: both[0][side].overturned || both[1][side].overturned,
+                incomplete: both[0][side].incomplete || both[1][side].incomplete,
             };
             let peaks = RecordPeaks {
                 file: series.file.clone(),
@@ -219,12 +240,13 @@ fn history_side(
     let overturned = peaks.iter().any(|peak| peak.overturned);
     let displacements = || peaks.iter().map(|peak| peak.displacement_m);
     let is_mean = peaks.len() >= FOR_THE_MEAN;
-    let demand_m = if is_mean {
+    let least_m = if is_mean {
         displacements().sum::<f64>() / peaks.len() as f64
     } else {
         displacements().fold(0.0, f64::max)
     };
-    let demand_m = (!overturned).then_some(demand_m);
+    let incomplete = peaks.iter().any(|peak| peak.incomplete);
+    let demand_m = (!overturned && !incomplete).then_some(least_m);
     let mean_interval_m = demand_m.filter(|_| is_mean).and_then(|_| {
         let means = bootstrap(peaks.len()).map(|drawn| {
             let drawn = drawn.iter().map(|record| peaks[*record].displacement_m);
@@ -237,7 +259,11 @@ fn history_side(
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
         peaks.iter().filter(exceeds).count()
     });
-    let within = |divisor: f64| demand_m.is_some_and(|demand_m| demand_m <= capacity_m / divisor);
+    // Later peaks of an incomplete history can only make it worse.
+    let passes = [0, 1].map(|i: usize| {
+        let passes = !overturned && exceeded[i] == 0 && least_m <= capacity_m / divisors[i];
+        (!passes || !incomplete).then_some(passes)
+    });
     HistorySide {
         sway,
         restitution: None,
@@ -247,7 +273,8 @@ fn history_side(
         capacity_over_fc_m: capacity_m / confidence_factor,
         d0_m,
         exceeded,
-        passes: [0, 1].map(|i: usize| exceeded[i] == 0 && within(divisors[i])),
+        overturned,
+        passes,
     }
 }
 
@@ -293,8 +320,10 @@ fn peaks(
         let displacement_m = shift.unwrap_or_default() / participating_kg[side];
         peaks[side].displacement_m = peaks[side].displacement_m.max(displacement_m);
     }
-    if let Outcome::Overturned(sway) = history.summary.outcome {
-        peaks[usize::from(sway == Sway::Left)].overturned = true;
+    match history.summary.outcome {
+        Outcome::Overturned(sway) => peaks[usize::from(sway == Sway::Left)].overturned = true,
+        Outcome::Incomplete => peaks.iter_mut().for_each(|peak| peak.incomplete = true),
+        _ => {}
     }
     Ok(peaks)
 }

@@ -375,6 +375,8 @@ pub struct Check {
     pub states: Vec<StateCheck>,
     /// Largest friction coefficient that joints may need: that of the Circolare, or that of the scenario if it is smaller.
     pub allowed_friction: f64,
+    /// The frame of reference and the place of each tie, in words; empty without ties.
+    pub tie_places: Vec<String>,
     /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
     pub top: &'static str,
     /// Assumptions that do not hold, and input that is unlikely or ignored.
@@ -415,6 +417,7 @@ impl Check {
             mechanisms,
             states: Vec::new(),
             allowed_friction: mechanism::allowed_friction(scenario),
+            tie_places: scenario.structure().tie_places(),
             top: if scenario.structure().stands_on_one_support() {
                 "top"
             } else {

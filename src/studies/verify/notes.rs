@@ -3,6 +3,7 @@
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{Check, Spectrum, StateCheck};
 use crate::scenario::{CONFIDENCE_FACTOR, Scenario, Sides};
+use crate::studies::remarks::no_verdict;
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
@@ -204,6 +205,10 @@ pub fn warnings(scenario: &Scenario, check: &Check) -> Vec<String> {
         let Some(histories) = &one.histories else {
             continue;
         };
+        warnings.extend(
+            no_verdict(histories.incomplete(), histories.records.len(), "records")
+                .map(|words| format!("{}: {words}.", super::words::name(one.state))),
+        );
         if let (Some(false), Some([least, largest])) =
             (histories.fits_the_spectrum(), histories.spectrum_ratios)
         {

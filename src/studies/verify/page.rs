@@ -6,7 +6,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::histories::{Histories, HistorySide, Peak};
 use super::summary::{Sums, is_symmetric, scenario_sha256, to_json};
-use super::words::{in_passes, name, names, of_method, verdict_sentence, words};
+use super::words::{
+    NO_VERDICT, in_passes, name, names, of_method, verdict_sentence, without_demand, words,
+};
 use super::{
     Activation, ByDisplacement, Check, EITHER, Margin, Mechanism, Method, SideCheck, Simplified,
     Spectrum, StateCheck, Way, notes, picture,
@@ -306,9 +308,9 @@ impl Writer<'_> {
             histories.sides.len()
         }];
         let rows = sides.iter().map(|side| {
-            let class = if side.passes[1] { "verdict" } else { "verdict no" };
+            let class = if side.passes[1] == Some(true) { "verdict" } else { "verdict no" };
             let to = if self.is_symmetric { "either side" } else { side.sway.name() };
-            let demand = side.demand_m.map_or("overturns".to_owned(), |demand_m| n(demand_m, 4) + " m");
+            let demand = side.demand_m.map_or(without_demand(side).to_owned(), |demand_m| n(demand_m, 4) + " m");
             format!(
                 "<tr><td class=\"word\">{}</td><td class=\"word\">histories{}</td><td class=\"word\">{to}</td><td>{} m</td>\
                  <td>{demand}</td><td></td><td></td><td></td><td class=\"word\"><span class=\"{class}\">{}</span></td></tr>\n",
@@ -379,9 +381,10 @@ impl Writer<'_> {
         });
         let hinges: Vec<String> = hinges.collect();
         format!(
-            "<div><figure>{picture}<figcaption>Bodies by number with their centres and virtual displacements; hinges: {}.\
-             </figcaption></figure></div>\n<div>\n{}{}</div>\n",
+            "<div><figure>{picture}<figcaption>Bodies by number with their centres and virtual displacements; hinges: {}. \
+             {}.</figcaption></figure></div>\n<div>\n{}{}</div>\n",
             hinges.join("; "),
+            escaped(&self.scenario.structure().described()),
             self.bodies(mechanism),
             self.activation_formulas(mechanism)
         )
@@ -833,6 +836,8 @@ impl Writer<'_> {
         let peak = |peak: Peak| {
             if peak.overturned {
                 "overturns".to_owned()
+            } else if peak.incomplete {
+                NO_VERDICT.to_owned()
             } else {
                 n(peak.displacement_m, 5)
             }
@@ -926,18 +931,20 @@ fn history_side(state: LimitState, histories: &Histories, side: &HistorySide) ->
     } else {
         "largest peak"
     };
-    let demand = side
-        .demand_m
-        .map_or("a record overturns it".to_owned(), |demand_m| {
-            let spread = side.mean_interval_m.map_or(String::new(), |[low, high]| {
-                format!(
-                    " (95 %: {} to {} m, by bootstrap over the records)",
-                    n(low, 5),
-                    n(high, 5)
-                )
-            });
-            format!("{counted} <b>{}</b> m{spread}", n(demand_m, 5))
+    let without = match side.overturned {
+        true => "a record overturns it",
+        false => NO_VERDICT,
+    };
+    let demand = side.demand_m.map_or(without.to_owned(), |demand_m| {
+        let spread = side.mean_interval_m.map_or(String::new(), |[low, high]| {
+            format!(
+                " (95 %: {} to {} m, by bootstrap over the records)",
+                n(low, 5),
+                n(high, 5)
+            )
         });
+        format!("{counted} <b>{}</b> m{spread}", n(demand_m, 5))
+    });
     let restitution = side.restitution.map_or(String::new(), |kept| {
         format!(
             " The first impact after it leaves {} of the energy.",

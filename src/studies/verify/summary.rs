@@ -265,8 +265,8 @@ fn histories(one: &Histories) -> Value {
     let records = one.records.iter().map(|record| {
         let [right, left] = record.peaks;
         let peak = |peak: Peak| {
-            let peak_m = (!peak.overturned).then_some(peak.displacement_m);
-            json!({ "peak_m": peak_m, "overturned": peak.overturned })
+            let peak_m = (!peak.overturned && !peak.incomplete).then_some(peak.displacement_m);
+            json!({ "peak_m": peak_m, "overturned": peak.overturned, "incomplete": peak.incomplete })
         };
         json!({
             "file": record.file,
@@ -295,6 +295,7 @@ fn histories(one: &Histories) -> Value {
         "demand": if one.is_mean() { "mean of the peaks" } else { "largest peak" },
         "passed": one.passes()[0],
         "passed_over_fc": one.passes()[1],
+        "incomplete": one.incomplete(),
         "records": records.collect::<Vec<_>>(),
         "mean_spectrum": {
             "from_s": one.periods_s[0],

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::summary::verdict;
-use super::{Check, EITHER, Histories, Method, StateCheck};
+use super::{Check, EITHER, Histories, HistorySide, Method, StateCheck};
 use crate::mechanics::sway::Sway;
 use crate::scenario::LimitState;
 
@@ -15,6 +15,9 @@ pub fn words(check: &Check) -> String {
         text += "local mechanisms by Circolare 7/2019, C8.7.1.2.1, spectra of NTC 2018\n";
     } else {
         text += "local mechanisms, spectra by points: no clause is named\n";
+    }
+    for place in &check.tie_places {
+        let _ = writeln!(text, "  {place}");
     }
     for mechanism in &check.mechanisms {
         let _ = write!(
@@ -189,7 +192,7 @@ fn in_histories(histories: &Histories) -> String {
                 let count = histories.records.len();
                 format!("{counted} of {count} peaks {demand_m:.5} m{spread}")
             }
-            None => "overturns".to_owned(),
+            None => without_demand(side).to_owned(),
         };
         let _ = writeln!(
             text,
@@ -206,10 +209,24 @@ fn in_histories(histories: &Histories) -> String {
 }
 
 /// Whether histories pass as they are and with FC, in words.
-pub(super) const fn in_passes(passes: [bool; 2]) -> &'static str {
+pub(super) const fn in_passes(passes: [Option<bool>; 2]) -> &'static str {
     match passes {
-        [true, true] => "passed",
-        [true, false] => "passed without FC only",
-        [false, _] => "not passed",
+        [Some(true), Some(true)] => "passed",
+        [Some(true), Some(false)] => "passed without FC only",
+        [Some(false), _] => "not passed",
+        [None, Some(false)] => "not passed with FC, no verdict without",
+        [_, None] | [None, Some(true)] => NO_VERDICT,
     }
 }
+
+/// Why histories to a side have no demand, in words.
+pub(super) const fn without_demand(side: &HistorySide) -> &'static str {
+    if side.overturned {
+        "overturns"
+    } else {
+        NO_VERDICT
+    }
+}
+
+/// In place of the peak of a history that ended too early, and of what depends on it.
+pub(super) const NO_VERDICT: &str = "no verdict";

@@ -15,6 +15,7 @@ use crate::studies::ensemble::told::{
 use crate::studies::kind::Kind;
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
+use crate::studies::remarks::{no_verdict, warnings};
 use crate::studies::results::{Look, Results};
 use crate::studies::threshold::rounded;
 
@@ -97,8 +98,16 @@ pub(super) fn tell(
     };
     let mut json = beginning(told);
     json["cells"] = json!(found.likely.len());
-    json["histories_without_outcome"] =
-        json!({ "invalid": counted("invalid"), "failed": counted("failed") });
+    let names = ["invalid", "failed", "incomplete"];
+    json["histories_without_outcome"] = names
+        .map(|name| (name, counted(name)))
+        .into_iter()
+        .collect();
+    let incomplete = no_verdict(counted("incomplete"), samples.len(), "histories");
+    json["warnings"] = warnings(study.scenario)
+        .into_iter()
+        .chain(incomplete.clone())
+        .collect();
     json["part_that_overturns"] = band_to_json(band(parts, quantile));
     let (name, of) = decides[0].to_json();
     json["what_matters"] = json!({ name: of });
@@ -147,6 +156,7 @@ fn columns<'s>(study: &'s CellsOfSamples<'_>) -> Vec<Column<'s, Likely>> {
         ),
         column("invalid", |cell: &Likely| cell.without[0]),
         column("failed", |cell: &Likely| cell.without[1]),
+        column("incomplete", |cell: &Likely| cell.without[2]),
     ]
 }
 
