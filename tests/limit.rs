@@ -539,3 +539,39 @@ proptest! {
         }
     }
 }
+
+/// `limit` and `verify` say where each tie is, in the words of `check`.
+#[test]
+fn ties_are_placed_in_the_words_of_check() {
+    use crate::program::printed;
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 12\n\
+                [[tie]]\nfrom_m = [-4.2, 2.5]\nto_m = [-7, 0]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 1000\n\
+                [demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.sld]\nag_g = 0.1\nf0 = 2.4\ntc_star_s = 0.28\n[demand.slv]\nag_g = 0.2\nf0 = 2.4\ntc_star_s = 0.3\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    let checked = printed(folder.path(), &["check", "s.toml"]);
+    let notes: Vec<&str> = checked
+        .lines()
+        .map_while(|line| line.strip_prefix("# "))
+        .collect();
+    assert_eq!(notes.len(), 2);
+    assert!(
+        notes[1].contains("the intrados of the springings"),
+        "{}",
+        notes[1]
+    );
+    for command in ["limit", "verify"] {
+        let said = printed(folder.path(), &[command, "s.toml"]);
+        for note in &notes {
+            assert!(
+                said.lines().any(|line| line.trim() == *note),
+                "{command}: {said}"
+            );
+        }
+    }
+    let page = folder.path().join("results/s-verify/verify.html");
+    let page = std::fs::read_to_string(page).unwrap_or_else(|_| {
+        std::fs::read_to_string(folder.path().join("results/s/verify.html")).unwrap()
+    });
+    assert!(notes.iter().all(|note| page.contains(note)));
+}

@@ -834,3 +834,40 @@ data.decisions.forEach((one) => verify([...document.querySelectorAll('dt')].some
         browser::assert_checked(&page, script, &json, &[], 60);
     }
 }
+
+/// The page draws a tapered column as it is, whole or in drums.
+#[test]
+fn a_tapered_column_is_drawn_with_its_outline() {
+    for (drums, count) in [("", 1), ("drums = 3\n", 3)] {
+        let text = format!(
+            "[column]\nheight_m = 3\nwidth_m = 1.0\ntop_width_m = 0.6\n{drums}[free_hinges]\n\
+             [demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slv]\nag_g = 0.25\nf0 = 2.4\ntc_star_s = 0.35\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("s.toml"), text).unwrap();
+        crate::program::printed(folder.path(), &["verify", "s.toml", "--out", "o"]);
+        let page = std::fs::read_to_string(folder.path().join("o/verify.html")).unwrap();
+        let bodies = page.split("data-name=\"body 1\" d=\"M").skip(1);
+        let bodies = bodies.map(|rest| rest.split_once("Z\"").unwrap().0);
+        let corners: Vec<[f64; 2]> = bodies
+            .flat_map(|path| path.split('L'))
+            .flat_map(|part| {
+                let numbers = part
+                    .split_whitespace()
+                    .map(|number| number.parse().unwrap());
+                let numbers: Vec<f64> = numbers.collect();
+                let points = numbers.chunks(2).map(|point| [point[0], point[1]]);
+                points.collect::<Vec<_>>()
+            })
+            .collect();
+        assert_eq!(corners.len(), 4 * count);
+        let width_at = |end: fn(f64, f64) -> f64| {
+            let y = corners.iter().map(|corner| corner[1]).reduce(end).unwrap();
+            let level = corners.iter().filter(|corner| (corner[1] - y).abs() < 0.02);
+            let x: Vec<f64> = level.map(|corner| corner[0]).collect();
+            (x[0] - x[1]).abs()
+        };
+        let ratio = width_at(f64::min) / width_at(f64::max);
+        assert!((ratio - 0.6).abs() < 1e-3, "{drums}{ratio}");
+    }
+}

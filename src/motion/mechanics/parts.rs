@@ -151,12 +151,12 @@ impl Parts for Column {
         if let Some(row) = self.tied_row() {
             return row.outline();
         }
-        let (half_m, height_m) = (0.5 * self.width_m(), self.height_m());
+        let half_m = [self.width_m(), self.top_width_m()].map(|width_m| 0.5 * width_m);
         let corners = [
-            (-half_m, 0.0),
-            (-half_m, height_m),
-            (half_m, height_m),
-            (half_m, 0.0),
+            (-half_m[0], 0.0),
+            (-half_m[1], self.height_m()),
+            (half_m[1], self.height_m()),
+            (half_m[0], 0.0),
         ];
         Outline::Block {
             outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::told::{forces, openings_text, starts_json};
+use super::told::{forces, openings_text, places_of_ties, starts_json};
 use super::{Answer, NoLimit};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::friction;
@@ -51,6 +51,7 @@ pub(super) fn limit(
     );
     if !row.ties().is_empty() {
         let forces_n: Vec<f64> = stance.forces_n().collect();
+        text += &places_of_ties(scenario);
         let _ = writeln!(text, "{}", pulls(&forces_n, follower.is_held_by_ties()));
         json["ties"] = json!({ "forces_at_rest_n": forces_n });
     }

@@ -47,6 +47,7 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
     if !row.ties().is_empty() {
         let tied = ties::Tied::of(row)?;
         json["ties"] = tied.json(row);
+        text += &places_of_ties(scenario);
         text += &tied.text(row);
     }
     if !scenario.structure().thrusts() {
@@ -83,6 +84,12 @@ pub(super) fn row(scenario: &Scenario, row: &Row) -> Result<Answer, NoLimit> {
         }
     }
     Ok(Answer { json, text })
+}
+
+/// The frame of reference and the place of each tie, a line each.
+pub(super) fn places_of_ties(scenario: &Scenario) -> String {
+    let places = scenario.structure().tie_places().into_iter();
+    places.map(|place| place + "\n").collect()
 }
 
 /// The joints that open in a mechanism, a line each.

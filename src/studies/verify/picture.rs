@@ -98,8 +98,10 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
 }
 
 fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
-    if !mechanism.body_of_block.is_empty() {
-        let scene = Scene::new(structure);
+    if !mechanism.body_of_block.is_empty()
+        && let Ok(row) = structure.row()
+    {
+        let scene = Scene::of_row(&row);
         let blocks = scene.pieces(&[]).into_iter().zip(&mechanism.body_of_block);
         let found: Vec<Piece> = blocks
             .map(|(piece, body)| Piece {
