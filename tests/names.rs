@@ -15,7 +15,9 @@ const SHOWN: &str = r"wave-\u202esvg.at2";
 fn is_hidden(c: char) -> bool {
     let is_meant = matches!(c, '\n' | '\t');
     let turns = ('\u{202a}'..='\u{202e}').contains(&c) || ('\u{2066}'..='\u{2069}').contains(&c);
-    c.is_control() && !is_meant || turns || "\u{61c}\u{200e}\u{200f}\u{2028}\u{2029}".contains(c)
+    c.is_control() && !is_meant
+        || turns
+        || "\u{61c}\u{200b}\u{200e}\u{200f}\u{2028}\u{2029}\u{feff}".contains(c)
 }
 
 #[track_caller]
@@ -43,8 +45,8 @@ fn assert_results(folder: &Path, words: &str, named: &[&str]) {
 #[test]
 fn titles_are_shown_escaped() {
     let folder = tempfile::tempdir().unwrap();
-    let title = r#"title = "Pont \u202e\u001b[31m & \n \u2028end""#;
-    let shown = r"Pont \u202e\u001b[31m & \n \u2028end";
+    let title = r#"title = "Pont \u202e\u001b[31m & \n \u2028\ufeffend""#;
+    let shown = r"Pont \u202e\u001b[31m & \n \u2028\ufeffend";
     let map = "[map]\namplitude_g = [0.2, 0.4]\nduration_s = [0.2, 0.3]\n";
     fs::write(
         folder.path().join("s.toml"),

@@ -5,6 +5,7 @@ use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::FreeTable;
 use archrock::scenario::{
     Ground, Motion, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
+    shown, shown_lines,
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
@@ -870,6 +871,29 @@ const DAMAGE: &[&str] = &[
     "[", "]", "\"", "'", "\"\"\"", "=", "\n", "\r", ".", ",", "{", "}", "#", "é", "\\u12",
     "\u{feff}",
 ];
+
+/// Characters without width, in keys, values and names of files, are escaped in messages and in the lines that they quote.
+#[test]
+fn messages_show_characters_without_width() {
+    for hidden in [
+        "\u{feff}", "\u{200b}", "\u{ad}", "\u{2060}", "\u{202e}", "\u{200d}",
+    ] {
+        let escaped = shown(hidden);
+        assert!(escaped.starts_with("\\u"), "{escaped}");
+        let texts = [
+            format!("{ARCH}\"voussoi{hidden}rs\" = 9\n"),
+            format!("{ARCH}voussoi{hidden}rs = 9\n"),
+            format!("{ARCH}voussoirs = \"ni{hidden}ne\"\n"),
+            format!("{ARCH}[ground.record]\nfile = \"wa{hidden}ve.at2\"\n"),
+            format!("{ARCH}[uncertain]\n\"arch.mean{hidden}_m\" = {{ deviation = 0.1 }}\n"),
+        ];
+        for text in texts {
+            let errors = parse(&text).unwrap_err().to_string();
+            assert!(errors.contains(&escaped), "{errors}");
+            assert_eq!(shown_lines(&errors), errors);
+        }
+    }
+}
 
 /// A pedestal is recorded for a column, for both piers or for one; everything else stands on ground that continues.
 #[test]

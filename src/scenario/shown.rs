@@ -1,12 +1,15 @@
 //! Texts from outside, such as titles and file names, made safe to show.
 
-/// Escapes every character that would be invisible, or would change how the text around it reads: control
-/// characters, line ends, and marks of writing direction. Escapes are those of TOML and JSON.
+/// Escapes every character that would be invisible, or would change how the text around it reads: control and format
+/// characters, line ends, byte order marks, and marks of writing direction. Escapes are those of TOML and JSON.
+///
+/// The joiners U+200C and U+200D stay after letters that are not ASCII: several scripts are spelled with them.
 ///
 /// ```
 /// use archrock::scenario::shown;
 ///
 /// assert_eq!(shown("a\u{202e}b\nc\u{7}"), r"a\u202eb\nc\u0007");
+/// assert_eq!(shown("mea\u{feff}n"), r"mea\ufeffn");
 /// ```
 #[must_use]
 pub fn shown(text: &str) -> String {
@@ -22,8 +25,9 @@ pub fn shown_lines(text: &str) -> String {
 fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
+        let joins_nothing = is_joiner(c) && shown.chars().next_back().is_none_or(|c| c.is_ascii());
         match c {
-            c if !is_hidden(c) || is_meant(c) => shown.push(c),
+            c if !(is_hidden(c) || joins_nothing) || is_meant(c) => shown.push(c),
             '\n' => shown += "\\n",
             '\r' => shown += "\\r",
             '\t' => shown += "\\t",
@@ -41,11 +45,20 @@ pub(super) fn is_hidden(c: char) -> bool {
             c,
             // Marks of writing direction.
             '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+            // Characters without width: the soft hyphen, separators, invisible operators, and the byte order mark.
+            | '\u{ad}' | '\u{180e}' | '\u{200b}' | '\u{2060}'..='\u{2064}' | '\u{feff}'
+            // Format characters that Unicode discourages, and marks of annotations.
+            | '\u{206a}'..='\u{206f}' | '\u{fff9}'..='\u{fffb}'
             // Line and paragraph separators.
             | '\u{2028}' | '\u{2029}'
             // Noncharacters, which XML does not allow.
             | '\u{fffe}' | '\u{ffff}'
         )
+}
+
+/// Whether a character joins or separates the shapes of the letters around it, as several scripts need it.
+fn is_joiner(c: char) -> bool {
+    matches!(c, '\u{200c}' | '\u{200d}')
 }
 
 #[cfg(test)]
@@ -76,5 +89,13 @@ mod tests {
         let text = "Pont du Gard, \u{5d0}\u{5e8}\u{5db} \u{1f309} \\ \"x\"";
         assert_eq!(shown(text), text);
         assert_eq!(shown_lines("a\n\tb\r"), "a\n\tb\\r");
+    }
+
+    #[test]
+    fn joiners_stay_where_scripts_need_them() {
+        let persian = "\u{645}\u{6cc}\u{200c}\u{631}\u{648}\u{62f}";
+        assert_eq!(shown(persian), persian);
+        assert_eq!(shown("mea\u{200d}n"), r"mea\u200dn");
+        assert_eq!(shown("\u{200c}"), r"\u200c");
     }
 }
