@@ -394,7 +394,15 @@ fn statics_need_no_motion() {
     let of_arch = write("arch", &format!("{arch}{record}"));
     let of_drums = write("drums", &format!("{drums}{record}"));
     let of_moved = write("moved", &format!("{arch}{moved}{record}"));
+    let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.5\n";
+    let of_right_foot = write(
+        "right-foot",
+        &format!("{arch}[free_hinges]\n{pulse}[ground.right.record]\nfile = \"nowhere.at2\"\n"),
+    );
     for (command, file) in [
+        ("limit", &of_right_foot),
+        ("spread", &of_right_foot),
+        ("capacity", &of_right_foot),
         ("limit", &of_arch),
         ("spread", &of_arch),
         ("capacity", &of_arch),
@@ -406,7 +414,7 @@ fn statics_need_no_motion() {
         program::printed(path, &[command, file]);
         program::refused(path, &["run", file], &[missing]);
     }
-    for file in [&of_arch, &of_drums, &of_moved] {
+    for file in [&of_right_foot, &of_arch, &of_drums, &of_moved] {
         let output = program::archrock(path, &["check", file]);
         assert!(output.status.success());
         let warned = String::from_utf8(output.stderr).unwrap();

@@ -94,7 +94,7 @@ pub(crate) use spectrum::block;
 pub(crate) use structure::four_digits;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
-use table::{Reading, Table, Text};
+use table::{Reading, Reported, Table, Text};
 pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
@@ -357,11 +357,13 @@ impl Scenario {
             Ground::read(table, folder, gravity_m_s2)
         });
         let mut unread_ground = None;
-        if changes.statics && ground.is_err() && table.forgives_files(faults) {
+        let is_unread = ground.is_err() || right_foot.is_err();
+        if changes.statics && is_unread && table.forgives_files(faults) {
             unread_ground = table.as_given("ground");
             right_foot = Ok(None);
         }
         let (ground, ground_motion) = match ground {
+            _ if unread_ground.is_some() => (Err(Reported), GroundMotion::still()),
             Ok(Some((ground, motion))) => (Ok(Some(ground)), motion),
             Ok(None) => (Ok(None), GroundMotion::still()),
             Err(reported) => (Err(reported), GroundMotion::still()),
@@ -582,6 +584,21 @@ impl Scenario {
             Some(_) => format!("{give}; the records of [suite] are run by `archrock suite`"),
             None => give.to_owned(),
         })
+    }
+
+    /// Refuses a scenario whose springings have moved, for computations on the structure as it was built.
+    ///
+    /// # Errors
+    /// Explains what to leave out.
+    pub fn check_as_built(&self) -> Result<(), String> {
+        match self.motion.supports() {
+            None => Ok(()),
+            Some(_) => Err(
+                "this is computed for the structure on the springings that were built: leave [supports] out; the studies `limit` and \
+                 `spread` compute the push it bears where they have moved"
+                    .to_owned(),
+            ),
+        }
     }
 
     /// The request for the simulation, with samples at every output step.
