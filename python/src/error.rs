@@ -5,7 +5,7 @@ use std::fmt::Display;
 
 use archrock::MemoryError;
 use archrock::output::OutputError;
-use archrock::scenario::ScenarioErrors;
+use archrock::scenario::{ScenarioError, ScenarioErrors};
 use archrock::studies::part::PartError;
 use archrock::studies::runner::RunnerError;
 use pyo3::PyErr;
@@ -21,12 +21,15 @@ pub fn too_large(error: MemoryError) -> PyErr {
     PyMemoryError::new_err(format!("{error}, by `memory_gb`"))
 }
 
-/// The errors of a scenario: with their places if a person wrote the text, otherwise the messages alone.
+/// The errors of a scenario: with their places if a person wrote the text, otherwise the messages alone. Those of a change name the
+/// argument `changes`, not the option of the program.
 pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
-    if placed {
-        return errors.to_string();
-    }
-    let messages = errors.as_slice().iter().map(|one| one.message.as_str());
+    let words = |error: &ScenarioError| match error.file.strip_prefix("--set ") {
+        Some(change) if error.place.is_none() => format!("changes {change:?}: {}", error.message),
+        _ if placed => error.to_string(),
+        _ => error.message.clone(),
+    };
+    let messages = errors.as_slice().iter().map(words);
     messages.collect::<Vec<_>>().join("\n")
 }
 

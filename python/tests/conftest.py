@@ -4,16 +4,39 @@ from __future__ import annotations
 
 import os
 import subprocess
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from archrock import Arch, Pulse
+from archrock import Arch, ArchrockWarning, Pulse, Scenario
 
 ROOT = Path(__file__).resolve().parents[2]
 
 Program = Callable[..., "subprocess.CompletedProcess[str]"]
+
+
+def issued(compute: Callable[[], Any]) -> list[str]:
+    """The warnings of a computation; each names the line of the tests that called the package."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        compute()
+    assert all(one.category is ArchrockWarning for one in caught)
+    tests = Path(__file__).parent
+    assert all(Path(one.filename).parent == tests for one in caught), [one.filename for one in caught]
+    return [str(one.message) for one in caught]
+
+
+def run_by(program: Program, scenario: Scenario, folder: Path) -> subprocess.CompletedProcess[str]:
+    """What the program prints about a scenario, whose file and records it finds in ``folder`` and whose results it writes to ``o`` there."""
+    (folder / "s.toml").write_text(scenario.to_toml())
+    for name, contents in scenario.files.items():
+        (folder / name).write_bytes(contents)
+    ran = program("run", folder / "s.toml", "--out", folder / "o", "--no-report")
+    assert ran.returncode == 0, ran.stderr
+    return ran
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import pickle
-import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,19 +13,17 @@ import pytest
 
 from archrock import (
     Arch,
-    ArchrockWarning,
     Column,
     History,
     Pulse,
     Record,
     Scenario,
-    capacity,
     overturning_map,
     simulate,
     threshold,
 )
 
-from .conftest import Program
+from .conftest import Program, issued, run_by
 
 ARCH = Arch(mean_radius_m=3.0, thickness_ratio=0.15, embrace_deg=150.0, voussoirs=13)
 
@@ -40,15 +37,6 @@ def late() -> Record:
     return Record(time_s, push_g, unit="g")
 
 
-def issued(compute: Callable[[], Any]) -> list[str]:
-    """The warnings of a computation."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        compute()
-    assert all(one.category is ArchrockWarning for one in caught)
-    return [str(one.message) for one in caught]
-
-
 def test_a_late_record_lasts_until_after_its_shaking(late: Record, program: Program, tmp_path: Path) -> None:
     scenario = Scenario.of(ARCH, late)
     histories = [simulate(ARCH, late), scenario.run()]
@@ -56,10 +44,7 @@ def test_a_late_record_lasts_until_after_its_shaking(late: Record, program: Prog
         assert history.outcome == "overturned" and history.outcome_time_s > 11.0
         assert history.summary["verdict"] == "overturns"
     assert histories[0] == histories[1]
-    (tmp_path / "s.toml").write_text(scenario.to_toml())
-    for name, contents in scenario.files.items():
-        (tmp_path / name).write_bytes(contents)
-    assert program("run", tmp_path / "s.toml", "--out", tmp_path / "o", "--no-report").returncode == 0
+    run_by(program, scenario, tmp_path)
     by_program = json.loads((tmp_path / "o" / "summary.json").read_text())
     assert (by_program["verdict"], by_program["outcome_time_s"]) == ("overturns", histories[0].outcome_time_s)
 
@@ -82,7 +67,7 @@ def test_a_history_that_ends_too_early_has_no_verdict(late: Record, model: Any, 
         assert pickle.loads(pickle.dumps(history)) == history
 
 
-def test_studies_warn_of_histories_without_a_verdict(late: Record) -> None:
+def test_studies_warn_of_histories_without_a_verdict(late: Record, arch: Arch) -> None:
     def factors(duration_s: float | None) -> Any:
         return threshold(ARCH, late, from_factor=0.3, to_factor=1.5, duration_s=duration_s)
 
@@ -96,7 +81,6 @@ def test_studies_warn_of_histories_without_a_verdict(late: Record) -> None:
     assert [(one["from"], one["to"]) for one in cut.incomplete] == [(0.3, 1.5)]
 
     # After 1 s the arch of the second cell still has more than a quarter of the energy that overturns it.
-    arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0)
     pulse = Pulse.rectangular(amplitude_g=0.3, duration_s=0.2)
     axes = {"duration_s": [0.2], "amplitude_g": [0.1, 0.3]}
     (told,) = (one for one in issued(lambda: overturning_map(arch, pulse, axes, duration_s=1.0)) if "no verdict" in one)
@@ -121,8 +105,7 @@ def test_the_block_that_turns_most_is_that_of_the_program(program: Program, tmp_
     for structure in (ARCH, drums):
         scenario = Scenario.of(structure, pulse, model="free_hinges", duration_s=2.0)
         history = scenario.run()
-        (tmp_path / "s.toml").write_text(scenario.to_toml())
-        said = program("run", tmp_path / "s.toml", "--out", tmp_path / "o", "--no-report").stdout
+        said = run_by(program, scenario, tmp_path).stdout
         block = history.bodies[history.largest_body]
         assert f", of block {block} of {len(history.bodies)}\n" in said
         peaks_rad = [history.summary[f"peak_rotation_{block}_rad"] for block in history.bodies]
@@ -132,14 +115,3 @@ def test_the_block_that_turns_most_is_that_of_the_program(program: Program, tmp_
     labels = [line.get_label() for line in simulate(ARCH, pulse, model="free_hinges", duration_s=2.0).plot().axes[1].get_lines()]
     assert any(str(label).endswith(", which turns most") for label in labels)
     assert len(largest) == 2, "not one index for all"
-
-
-def test_statics_need_no_motion() -> None:
-    """Drums have no model of motion without a table of joints; limit analysis and capacity need none."""
-    drums = Column(height_m=4.0, width_m=0.8, drums=4)
-    whole = Column(height_m=4.0, width_m=0.8)
-    limit = drums.limit().right.acceleration_g
-    assert limit is not None and limit == pytest.approx(0.2, abs=1e-9)
-    assert capacity(drums).side("right")["acceleration_g"][0] == pytest.approx(
-        capacity(whole).side("right")["acceleration_g"][0]
-    )

@@ -27,32 +27,22 @@ from archrock import (
     threshold,
 )
 
-from .conftest import ROOT, Program
+from .conftest import ROOT, Program, issued, run_by
 
 GUIDE = "four links are a rough guide, not on the safe side"
 WEAK = Pulse.rectangular(amplitude_g=0.3, duration_s=0.2)
-
-
-def issued(compute: Callable[[], Any]) -> list[str]:
-    """The warnings of a computation; each names the line that called the package."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        compute()
-    assert all(one.category is ArchrockWarning for one in caught)
-    assert all(one.filename == __file__ for one in caught), [one.filename for one in caught]
-    return [str(one.message) for one in caught]
+STRONG = Pulse.rectangular(amplitude_g=30.0, duration_s=0.2)
 
 
 def test_unlikely_numbers_are_warned_of(program: Program, tmp_path: Path) -> None:
     arch = Arch(mean_radius_m=500.0, thickness_ratio=0.15, embrace_deg=180.0)
-    strong = Pulse.rectangular(amplitude_g=30.0, duration_s=0.2)
     unlikely = [
         "the mean radius is 500 m: is it in centimetres?",
         "the thickness is 75 m: is it in millimetres?",
         "the pulse peaks at 30 g: is its amplitude in units of gravity?",
     ]
-    scenario = Scenario.of(arch, strong)
-    runs: list[Callable[[], History]] = [lambda: simulate(arch, strong), scenario.run]
+    scenario = Scenario.of(arch, STRONG)
+    runs: list[Callable[[], History]] = [lambda: simulate(arch, STRONG), scenario.run]
     for compute in runs:
         told = issued(compute)
         assert told[:3] == unlikely
@@ -60,11 +50,10 @@ def test_unlikely_numbers_are_warned_of(program: Program, tmp_path: Path) -> Non
         assert history.summary["warnings"] == told
         # A history that is restored was warned of before.
         assert issued(lambda: pickle.loads(pickle.dumps(history))) == []
-    assert issued(lambda: threshold(arch, strong, from_factor=0.5, to_factor=1.0, stride=0.5))[:3] == unlikely
+    assert issued(lambda: threshold(arch, STRONG, from_factor=0.5, to_factor=1.0, stride=0.5))[:3] == unlikely
     assert issued(scenario.limit) == unlikely
     assert issued(lambda: capacity(arch)) == unlikely[:2]
-    (tmp_path / "s.toml").write_text(scenario.to_toml())
-    said = program("run", tmp_path / "s.toml", "--out", tmp_path / "o", "--no-report").stderr
+    said = run_by(program, scenario, tmp_path).stderr
     assert [f"warning: {one}" for one in unlikely] == said.splitlines()[:3]
 
 
@@ -94,8 +83,28 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
 
 
 def test_warnings_can_be_errors(arch: Arch) -> None:
-    strong = Pulse.rectangular(amplitude_g=30.0, duration_s=0.2)
     with warnings.catch_warnings():
         warnings.simplefilter("error", ArchrockWarning)
         with pytest.raises(ArchrockWarning, match="units of gravity"):
-            simulate(arch, strong)
+            simulate(arch, STRONG)
+
+
+def test_messages_name_no_options_of_the_program(arch: Arch, pulse: Pulse) -> None:
+    history = simulate(arch, pulse)
+    study = overturning_map(arch, pulse, {"duration_s": [0.4, 0.8], "amplitude_g": [0.2, 0.6]})
+    told = [*history.summary["warnings"], *study.summary["warnings"]]
+    assert len(told) >= 2 and all("compare with free hinges" in one for one in told if GUIDE in one)
+    late: dict[str, Any] = {"right": {"delay_s": 0.1}}
+    wrong: list[Callable[[], Any]] = [
+        lambda: simulate(arch, pulse, **late),
+        lambda: Scenario.of(arch, pulse, **late),
+        lambda: Scenario.parse(Scenario.of(arch, model="free_hinges").to_toml() + "[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n"),
+    ]
+    for make in wrong:
+        with pytest.raises(ValueError) as caught:
+            make()
+        told.append(str(caught.value))
+    assert not any("--" in one or "archrock " in one for one in told), told
+    with pytest.raises(ValueError) as caught:
+        Scenario.parse(Scenario.of(arch).to_toml(), changes=["arch.thickness_ratio=5"])
+    assert str(caught.value).startswith('changes "arch.thickness_ratio=5": `thickness_ratio = 5`'), caught.value

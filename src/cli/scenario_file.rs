@@ -144,11 +144,8 @@ impl Input<'_> {
 
     /// The scenario, unless its springings have moved.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
-        if scenario.motion().supports().is_some() {
-            let message = "this command is about the structure on the springings that were built: leave [supports] out; `archrock limit` and \
-                           `archrock spread` tell what push it bears where they have moved";
-            return Err(self.about(Failure::Input(message.to_owned())));
-        }
+        let built = scenario.check_as_built();
+        built.map_err(|message| self.about(Failure::Input(message)))?;
         Ok(scenario)
     }
 

@@ -278,8 +278,7 @@ impl Tables {
         let law = table.table_or_defaults("impact", impact::read);
         let (elastic, free) = (table.gives("elastic_joints"), table.gives("free_hinges"));
         if !self.asked && elastic && free {
-            let wrong =
-                "cannot be combined with [elastic_joints]; leave one out, or choose with --hinges";
+            let wrong = "cannot be combined with [elastic_joints]; leave one out, or choose the model of motion";
             return Err(table.wrong("free_hinges", wrong));
         }
         if !self.asked && (elastic || free) && table.gives("impact") {

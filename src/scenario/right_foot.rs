@@ -87,8 +87,7 @@ impl RightFoot {
     ) -> Reading<()> {
         if hinges == Hinges::Four {
             let wrong = format!(
-                "cannot be followed: {FEET_NEED_JOINTS}; choose [free_hinges] or [elastic_joints] (`--hinges free` or `--hinges \
-                 elastic`), or leave it out"
+                "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );
             return Err(outer.wrong_in("ground", "right", wrong));
         }

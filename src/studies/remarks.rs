@@ -104,9 +104,10 @@ impl fmt::Display for Remark {
     }
 }
 
-/// How far results of many cases with four links can be trusted: their line of thrust is not followed.
+/// How far results of many cases with four links can be trusted: their line of thrust is not followed. The program and the Python package
+/// issue it, so it names no options.
 const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, unless the thrust line stays inside the arch, which is not \
-                          checked here: check it with `archrock run`, and compare with --hinges free";
+                          checked here: check it in single runs, and compare with free hinges";
 
 /// How far the results of many cases can be trusted; `None` if the model of motion is not four links of an arch.
 pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {

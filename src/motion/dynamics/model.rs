@@ -437,9 +437,7 @@ pub enum SimulationError {
         time_s: f64,
     },
     /// The feet move differently, and the hinges cannot follow.
-    #[error(
-        "{FEET_NEED_JOINTS}: choose [free_hinges] or [elastic_joints] (`--hinges free` or `--hinges elastic`)"
-    )]
+    #[error("{FEET_NEED_JOINTS}: choose free hinges or elastic joints")]
     Feet,
     /// The history takes too much memory.
     #[error(transparent)]

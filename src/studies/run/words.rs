@@ -95,7 +95,12 @@ fn trusted(scenario: &Scenario, model: &dyn Model, history: &Summary, beside: &[
         return String::new();
     };
     let trust = match model.as_mechanisms() {
-        Some(_) => trust(thrust, scenario.structure(), beside),
+        Some(_) => {
+            // No advice to do what is already done.
+            let compared = beside.contains(&Hinges::Free);
+            let advice = (!compared).then_some("compare with --hinges both");
+            trust(thrust, scenario.structure(), advice)
+        }
         None => Some(String::new()),
     };
     let Some(trust) = trust else {
@@ -608,7 +613,8 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
     text
 }
 
-/// Warnings about a run: unlikely numbers of its scenario, and what limits the trust in its history.
+/// Warnings about a run: unlikely numbers of its scenario, and what limits the trust in its history. Programs and the Python package issue
+/// them, so they name no options.
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
@@ -626,7 +632,7 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     let leaves = thrust.filter(|thrust| thrust.largest_excess.value > most);
     let caveats = [
         (history.outcome == Outcome::Incomplete).then(|| no_verdict(scenario, history)),
-        leaves.and_then(|thrust| trust(thrust, structure, &[])),
+        leaves.and_then(|thrust| trust(thrust, structure, Some("compare with free hinges"))),
         needs(scenario, history),
     ];
     // Words of the report, whose lines are indented.
@@ -636,8 +642,9 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     warnings
 }
 
-/// How far the motion can be trusted to be that of four links, or of a column on its toe; `None` if it did not rock.
-fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Option<String> {
+/// How far the motion can be trusted to be that of four links, or of a column on its toe, with advice where four links are not enough; `None`
+/// if it did not rock.
+fn trust(thrust: &ThrustRecord, structure: &Structure, advice: Option<&str>) -> Option<String> {
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, most] = EXCESS_LEVELS;
@@ -661,12 +668,7 @@ fn trust(thrust: &ThrustRecord, structure: &Structure, beside: &[Hinges]) -> Opt
         Some(arch) if arch.voussoirs().is_none() => "give `voussoirs` and ",
         _ => "",
     };
-    // No advice to do what is already done.
-    let compare = if beside.contains(&Hinges::Free) {
-        String::new()
-    } else {
-        format!("; {give}compare with --hinges both")
-    };
+    let compare = advice.map_or(String::new(), |advice| format!("; {give}{advice}"));
     Some(format!(
         "  {grade}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),\n    and stays within {most} t \
          for {:.1} % of the rocking time{compare}\n",
