@@ -179,7 +179,7 @@ impl History {
         memory_bytes: u64,
         point: Option<[f64; 2]>,
     ) -> PyResult<Self> {
-        let inner = &scenario.inner;
+        let inner = scenario.moving()?;
         let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
         let other = ground.map(motion).transpose()?;
         let motion = match &other {

@@ -67,14 +67,17 @@ impl Text {
     }
 
     /// Reads the text with the library's reader.
-    fn read<T>(self, read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>) -> PyResult<T> {
+    fn read<T>(
+        &self,
+        read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>,
+    ) -> Result<T, String> {
         read(&self.source).map_err(|errors| {
             let words = in_words(&errors, self.placed);
-            refused(match &self.folder {
+            match &self.folder {
                 // The temporary folder of the files is of no interest.
                 Some(folder) => words.replace(&format!("{}/", folder.path().display()), ""),
                 None => words,
-            })
+            }
         })
     }
 }
@@ -82,7 +85,10 @@ impl Text {
 /// A scenario, with every default filled in.
 #[pyclass(frozen, module = "archrock._native")]
 pub struct Scenario {
+    /// It may hold enough for statics alone: see [`Scenario::moving`].
     pub inner: Arc<archrock::Scenario>,
+    /// Why the structure cannot be moved: the errors of the reader, if they do not concern statics.
+    unmovable: Option<String>,
     /// Its model of motion, built when first needed.
     model: OnceLock<Result<Arc<dyn Model>, String>>,
 }
@@ -91,7 +97,16 @@ impl Scenario {
     pub fn new(inner: Arc<archrock::Scenario>) -> Self {
         Self {
             inner,
+            unmovable: None,
             model: OnceLock::new(),
+        }
+    }
+
+    /// The scenario for a computation that moves the structure: its ground motion and its model of motion were read.
+    pub fn moving(&self) -> PyResult<&Arc<archrock::Scenario>> {
+        match &self.unmovable {
+            Some(errors) => Err(refused(errors)),
+            None => Ok(&self.inner),
         }
     }
 
@@ -135,7 +150,7 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
         Some("free_hinges") => Ok(Some(Hinges::Free)),
         Some("elastic_joints") => Ok(Some(Hinges::Elastic)),
         Some(other) => Err(PyValueError::new_err(format!(
-            "`model = {other:?}` is not one of \"four_links\" and \"free_hinges\""
+            "`model = {other:?}` is not one of \"four_links\", \"free_hinges\" and \"elastic_joints\""
         ))),
     }
 }
@@ -143,8 +158,11 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
 #[pymethods]
 impl Scenario {
     /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
+    ///
+    /// Errors that do not concern statics are kept until the structure is to move. `unmovable` are those of a scenario that was read
+    /// before.
     #[new]
-    #[pyo3(signature = (text, name, files, model, changes))]
+    #[pyo3(signature = (text, name, files, model, changes, unmovable=None))]
     fn read(
         py: Python<'_>,
         text: &str,
@@ -152,6 +170,7 @@ impl Scenario {
         files: Files,
         model: Option<&str>,
         changes: Vec<String>,
+        unmovable: Option<String>,
     ) -> PyResult<Self> {
         let hinges = hinges(model)?;
         let set = changes
@@ -160,15 +179,35 @@ impl Scenario {
             .collect::<Result<Vec<_>, _>>()
             .map_err(refused)?;
         let text = Text::new(text, name, &files)?;
-        py.detach(|| {
+        let read = |statics: bool| {
             let changes = Changes {
                 hinges,
                 set: &set,
-                ..Changes::default()
+                statics,
             };
             text.read(|source| archrock::Scenario::of(source, &changes))
+        };
+        let (inner, unmovable) = py
+            .detach(|| match unmovable {
+                Some(errors) => Ok((read(true)?, Some(errors))),
+                None => match read(false) {
+                    Ok(scenario) => Ok((scenario, None)),
+                    Err(errors) => match read(true) {
+                        Ok(scenario) => Ok((scenario, Some(errors))),
+                        Err(_) => Err(errors),
+                    },
+                },
+            })
+            .map_err(refused)?;
+        Ok(Self {
+            unmovable,
+            ..Self::new(Arc::new(inner))
         })
-        .map(|scenario| Self::new(Arc::new(scenario)))
+    }
+
+    /// Why the structure cannot be moved; `None` if it can.
+    fn unmovable(&self) -> Option<&str> {
+        self.unmovable.as_deref()
     }
 
     /// The scenario as TOML text.
@@ -191,7 +230,7 @@ impl Scenario {
     }
 
     fn __eq__(&self, other: &Self) -> bool {
-        self.inner == other.inner
+        self.inner == other.inner && self.unmovable == other.unmovable
     }
 
     /// Simulates it, on other ground than its own if that is given, within this memory, and observes one of its points.
@@ -208,6 +247,7 @@ impl Scenario {
 
     /// Largest memory that the samples of its history take, in bytes.
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
+        self.moving()?;
         let shape = self.model(py)?.shape();
         Ok(shape.bytes(
             self.inner
@@ -291,8 +331,9 @@ impl Ground {
     #[new]
     fn read(py: Python<'_>, text: &str, files: Files) -> PyResult<Self> {
         let text = Text::new(text, None, &files)?;
-        let inner =
-            py.detach(|| text.read(|source| archrock::scenario::Ground::of(source, GRAVITY_M_S2)))?;
+        let inner = py
+            .detach(|| text.read(|source| archrock::scenario::Ground::of(source, GRAVITY_M_S2)))
+            .map_err(refused)?;
         Ok(Self {
             inner,
             latest: Mutex::default(),

@@ -80,7 +80,7 @@ pub fn study<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyFiles<'py>> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
-    let scenario = Arc::clone(&scenario.inner);
+    let scenario = Arc::clone(scenario.moving()?);
     let done = watched(py, progress, move |watch| {
         let look = look(Some(&scenario));
         kind.compute(&scenario, look, runner, None, watch)
@@ -105,7 +105,7 @@ pub fn compute_part(
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let shard = shard.parse::<Shard>().map_err(refused)?;
-    let scenario = Arc::clone(&scenario.inner);
+    let scenario = Arc::clone(scenario.moving()?);
     let done = watched(py, progress, move |watch| {
         let task = Task {
             folder: &folder,
@@ -130,7 +130,8 @@ pub fn merge<'py>(
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
 ) -> PyResult<(String, PyFiles<'py>)> {
-    let scenario = scenario.map(|scenario| Arc::clone(&scenario.inner));
+    let scenario = scenario.map(|scenario| scenario.moving().map(Arc::clone));
+    let scenario = scenario.transpose()?;
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }
@@ -155,9 +156,9 @@ pub fn threshold<'py>(
     let (from, to, stride) = factors;
     let factors = Factors::new(from, to, stride).map_err(refused)?;
     let runner = runner(threads);
-    check(&scenario.inner).map_err(refused)?;
+    check(scenario.moving()?).map_err(refused)?;
     let model = Arc::clone(scenario.model(py)?);
-    let scenario = Arc::clone(&scenario.inner);
+    let scenario = Arc::clone(scenario.moving()?);
     let files = watched(py, progress, move |watch| {
         let ground = scenario.ground_motion();
         let models = [(scenario.model_name(), &*model)];
@@ -177,6 +178,7 @@ pub fn threshold<'py>(
 #[pyfunction]
 pub fn capacity<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
     let scenario = Arc::clone(&scenario.inner);
+    scenario.check_as_built().map_err(refused)?;
     let files = watched(py, None, move |_| {
         let sides = capacities(&scenario, None).map_err(refused)?;
         let results = tell_capacity(&scenario, &sides, Figure::SCREEN).map_err(not_written)?;
@@ -188,7 +190,8 @@ pub fn capacity<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'
 /// Checks the first mechanism of a scenario by the Circolare 7/2019, as `archrock verify`.
 #[pyfunction]
 pub fn verify<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
-    let scenario = Arc::clone(&scenario.inner);
+    let scenario = Arc::clone(scenario.moving()?);
+    scenario.check_as_built().map_err(refused)?;
     let files = watched(py, None, move |_| {
         let check = Check::new(&scenario).map_err(refused)?;
         Ok(tell_check(&scenario, &check).map_err(not_written)?.files)

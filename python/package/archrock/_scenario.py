@@ -30,6 +30,10 @@ class Scenario(Described):
     Raises:
         ValueError: everything that is wrong with it, in the library's words.
 
+    Limit analysis and capacity need no motion: a scenario is read although the record of its ``[ground]`` is missing or faulty, or
+    although drums or moved springings have no model of motion. Then :meth:`limit` and :func:`capacity` answer, and everything that moves
+    the structure raises the error.
+
     A scenario is pickled with the contents of the files that it names, unless these lie outside the scenario's
     own folder: such files must exist where the scenario is used again.
     """
@@ -168,7 +172,8 @@ class Scenario(Described):
         tables["supports"] = supports
         tables.update(map=map, spectrum=spectrum, suite=suite, demand=demand, verify=verify)
         tables.update(uncertain=uncertain)
-        return cls(tables, files=held, model=_model(chosen.model))
+        # Statics of drums and of moved springings need no model: the tables choose, unless the caller does.
+        return cls(tables, files=held, model=_model(chosen.model) if "model" in settings else None)
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:
         """Its history.
@@ -177,7 +182,8 @@ class Scenario(Described):
             memory_gb: memory that the history may take, in units of 1e9 bytes; see :meth:`memory_gb`.
 
         Raises:
-            ValueError: when nothing moves the structure, or the motion cannot be computed.
+            ValueError: when nothing moves the structure, its record or its model of motion could not be read, or the motion cannot be
+                computed.
             MemoryError: when the history takes more memory than allowed; raised before the computation if that is known.
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
@@ -211,8 +217,9 @@ class Scenario(Described):
         raise NotImplementedError("scenarios are restored with their folder")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        files = self._files or _contents(self._tables, self._folder)
-        return _restored, (self._tables, files, self._folder, self._model)
+        unmovable = self._native.unmovable()
+        files = self._files or _contents(self._tables, self._folder, missing=unmovable is not None)
+        return _restored, (self._tables, files, self._folder, self._model, unmovable)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
@@ -229,12 +236,16 @@ class Scenario(Described):
 
 
 def _restored(
-    tables: Tables, files: dict[str, bytes], folder: str | None, model: str | None
+    tables: Tables,
+    files: dict[str, bytes],
+    folder: str | None,
+    model: str | None,
+    unmovable: str | None = None,
 ) -> Scenario:
     scenario = Scenario.__new__(Scenario)
     name = None if files or folder is None else str(Path(folder) / "scenario.toml")
     # The tables have all defaults filled in, so they choose the model themselves.
-    native = NativeScenario(to_toml(tables), name, files, None, ())
+    native = NativeScenario(to_toml(tables), name, files, None, (), unmovable)
     scenario._take(native, files, folder, model)
     return scenario
 
@@ -255,12 +266,13 @@ def _names(tables: Tables) -> list[str]:
     return [name for name in names if name is not None]
 
 
-def _contents(tables: Tables, folder: str | None) -> dict[str, bytes]:
-    """The contents of all files that the tables name; empty if some lie outside the folder."""
+def _contents(tables: Tables, folder: str | None, *, missing: bool) -> dict[str, bytes]:
+    """The contents of all files that the tables name, empty if some lie outside the folder; without missing files if ``missing``."""
     names = _names(tables)
     if any(".." in PurePosixPath(name).parts or Path(name).is_absolute() for name in names):
         return {}
-    return {name: (Path(folder or ".") / name).read_bytes() for name in names}
+    paths = {name: Path(folder or ".") / name for name in names}
+    return {name: path.read_bytes() for name, path in paths.items() if path.is_file() or not missing}
 
 
 def _model(name: object) -> Model:
