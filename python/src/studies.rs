@@ -4,9 +4,10 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use archrock::output::{Figure, Folder};
+use archrock::output::{Batch, Figure};
 use archrock::studies::capacity::{capacity as capacities, tell as tell_capacity};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
+use archrock::studies::kept::Writer;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::part::Shard;
@@ -199,17 +200,32 @@ pub fn verify<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py
     Ok(to_python(py, files))
 }
 
-/// Writes files into a folder: all of them, or none.
+/// Writes files into a folder: all of them, or none. They replace everything that the last run of the same command left there. Returns
+/// warnings of results of other commands beside them that come from another scenario.
 #[pyfunction]
-pub fn save(py: Python<'_>, folder: PathBuf, files: Vec<(String, Vec<u8>)>) -> PyResult<()> {
+pub fn save(
+    py: Python<'_>,
+    folder: PathBuf,
+    files: Vec<(String, Vec<u8>)>,
+) -> PyResult<Vec<String>> {
     py.detach(|| write(&folder, &files))
 }
 
-fn write(folder: &Path, files: &[(String, Vec<u8>)]) -> PyResult<()> {
+fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    let mut folder = Folder::open(folder, &names).map_err(not_written)?;
+    let batch = Batch::lock(path, true).map_err(not_written)?;
+    let mut warnings = Vec::new();
+    if let Some(writer) = names.last().and_then(|seal| Writer::of_seal(seal)) {
+        batch.replace(writer.last_run(path));
+        if let Some(origin) = writer.origin_in(files) {
+            warnings = writer.warnings(path, &origin);
+        }
+    }
+    let mut folder = batch.folder(path, &names).map_err(not_written)?;
     for (name, contents) in files {
         folder.file(name).write_all(contents)?;
     }
-    folder.complete().map_err(not_written)
+    folder.complete().map_err(not_written)?;
+    batch.publish().map_err(not_written)?;
+    Ok(warnings)
 }

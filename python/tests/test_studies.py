@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,7 @@ from archrock import (
     threshold,
 )
 
-from .conftest import ROOT, Program
+from .conftest import ROOT, Program, issued
 
 RECORDS = ROOT / "scenarios" / "records"
 COSINE = Pulse.one_cosine(amplitude_g=0.5, duration_s=0.8)
@@ -294,3 +295,41 @@ def test_results_are_saved_whole_or_not_at_all(tmp_path: Path, arch: Arch) -> No
     with pytest.raises(OSError):
         found.save(taken)
     assert taken.read_text() == "taken"
+
+
+def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, program: Program, tmp_path: Path) -> None:
+    """A folder holds the results of one run of a study; those of another study stay, with a warning if they are of another scenario."""
+    axes = {"duration_s": [0.2, 0.8], "amplitude_g": [0.2, 0.9]}
+    folder = tmp_path / "o"
+    names = {"map.csv", "map.html", "map.json", "map.svg"}
+    uncertain = '[uncertain]\nsamples = 2\n"arch.depth_m" = { deviation = 0.01 }\n'
+    table = {name: list(values) for name, values in axes.items()}
+    (tmp_path / "s.toml").write_text(Scenario.of(arch, pulse, map=table, duration_s=5.0).to_toml() + uncertain)
+    ran = program("map", tmp_path / "s.toml", "--no-impact", "--out", folder)
+    assert ran.returncode == 0, ran.stderr
+    assert names | {"no_impact.csv", "uncertain_map"} <= {path.name for path in folder.iterdir()}
+    column = Column(height_m=4.0, width_m=0.8, drums=3)
+    found = overturning_map(column, pulse, axes, model="free_hinges", duration_s=1.0)
+    assert issued(lambda: found.save(folder)) == []
+    assert {path.name for path in folder.iterdir()} == names == set(found.files)
+
+    (told,) = issued(lambda: capacity(arch).save(folder))
+    assert told.startswith(f"{folder} holds results of `archrock map` from another scenario")
+    assert {path.name for path in folder.iterdir()} == names | set(capacity(arch).files)
+    assert issued(lambda: capacity(column).save(tmp_path / "other")) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="folders cannot be locked")
+def test_two_runs_do_not_write_into_one_folder(arch: Arch, tmp_path: Path) -> None:
+    import fcntl
+
+    found = capacity(arch)
+    folder = tmp_path / "o"
+    found.save(folder)
+    held = os.open(folder, os.O_RDONLY)
+    fcntl.flock(held, fcntl.LOCK_EX)
+    for place in (folder, folder / "below"):
+        with pytest.raises(OSError, match="is being written to by another run"):
+            found.save(place)
+    os.close(held)
+    found.save(folder)

@@ -6,9 +6,9 @@ use archrock::studies::capacity::{capacity as capacities, tell};
 use nalgebra::Vector2;
 
 use super::figure::FigureOption;
-use super::kept::CAPACITY;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
+use archrock::studies::kept::CAPACITY;
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use archrock::studies::chart::{Chart, FILES};
 
 use super::figure::FigureOption;
-use super::kept::CHART;
 use super::scenario_file::ScenarioFile;
 use super::study::say;
 use super::{Failure, commands};
+use archrock::studies::kept::CHART;
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -12,7 +12,6 @@ mod figure;
 mod first;
 mod impact;
 mod init;
-mod kept;
 mod run;
 mod scenario_file;
 mod spread;

@@ -18,12 +18,12 @@ use serde_json::{Map, Value};
 
 use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
-use super::kept::{Origin, RUN};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::studies::compare;
 use super::study::{Pending, Work};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
+use archrock::studies::kept::{Origin, RUN};
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -12,8 +12,8 @@ use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
 use super::Failure;
-use super::kept::{Origin, Writer};
 use super::study::say;
+use archrock::studies::kept::{ORIGIN, Origin, Writer};
 
 /// The scenario of a command.
 #[derive(clap::Args)]
@@ -176,9 +176,6 @@ impl Input<'_> {
         Destination::checked(path, origin)
     }
 }
-
-/// A hidden file that names the scenario file to which the results beside it belong.
-pub const ORIGIN: &str = ".scenario";
 
 /// The path of a scenario file, from the current folder if the file is below it, otherwise from the root.
 fn origin(path: &Path) -> String {

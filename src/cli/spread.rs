@@ -6,9 +6,9 @@ use archrock::studies::spread::{NoSpread, Springing, Way, spread as paths, tell}
 use clap::ValueEnum;
 
 use super::figure::FigureOption;
-use super::kept::SPREAD;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
+use archrock::studies::kept::SPREAD;
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -14,12 +14,12 @@ use clap::ValueEnum;
 use serde_json::Map;
 
 use super::figure::FigureOption;
-use super::kept::{MAP, Origin, SPECTRUM, SUITE, Writer};
 use super::run::Models;
 use super::scenario_file::{Destination, Input};
 use super::study::{HingesOption, Options, Pending, say};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print};
+use archrock::studies::kept::{MAP, Origin, SPECTRUM, SUITE, Writer};
 
 #[derive(clap::Args)]
 pub struct MapArguments {

@@ -17,9 +17,9 @@ use clap::ValueEnum;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::figure::FigureOption;
-use super::kept::Writer;
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
+use archrock::studies::kept::Writer;
 
 /// Options of every study.
 #[derive(clap::Args)]

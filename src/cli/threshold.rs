@@ -11,12 +11,12 @@ use archrock::studies::threshold::{
 };
 
 use super::figure::FigureOption;
-use super::kept::{Origin, THRESHOLD};
 use super::run::Models;
 use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
 use super::study::{Display, Pending, Work, say};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print, print_all};
+use archrock::studies::kept::{Origin, THRESHOLD};
 
 #[derive(clap::Args)]
 pub struct Arguments {

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use archrock::studies::verify::{Check, tell};
 
-use super::kept::VERIFY;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
+use archrock::studies::kept::VERIFY;
 
 #[derive(clap::Args)]
 pub struct Arguments {

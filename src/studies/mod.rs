@@ -24,6 +24,7 @@ pub mod ending;
 pub mod ensemble;
 pub mod impact;
 mod impact_free;
+pub mod kept;
 mod kind;
 pub mod limit;
 pub mod map;

@@ -66,10 +66,13 @@ class Files:
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes the files into a folder, all of them or none.
 
+        They replace everything that the last run of the same study left there. Results of other studies stay; if they come from another
+        scenario, that is an :class:`ArchrockWarning`.
+
         Raises:
-            OSError: when they cannot be written.
+            OSError: when they cannot be written, or another run is writing to the folder.
         """
-        _native.save(folder, self._files)
+        warn(_native.save(folder, self._files))
 
     @property
     def summary(self) -> dict[str, Any]:

@@ -3,14 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use archrock::output::print::PictureFormat;
-use archrock::scenario::{Hinges, Scenario};
-use archrock::studies::catalogue::StudyKind;
-use archrock::studies::part::{Shard, rows_in};
-use archrock::studies::{capacity, chart, peaks, run, spread, threshold, verify};
 use serde_json::Value;
 
-use super::scenario_file::ORIGIN;
+use super::catalogue::StudyKind;
+use super::part::{Shard, rows_in};
+use super::{capacity, chart, peaks, run, spread, threshold, verify};
+use crate::output::print::PictureFormat;
+use crate::scenario::{Hinges, Scenario};
+
+/// A hidden file that names the scenario file to which the results beside it belong.
+pub const ORIGIN: &str = ".scenario";
 
 /// A command that writes a folder of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +39,7 @@ const PLAIN: Writer = Writer {
     of_models: None,
     of_records: false,
 };
+/// `archrock run`.
 pub const RUN: Writer = Writer {
     name: "run",
     files: &run::FILES,
@@ -45,6 +48,7 @@ pub const RUN: Writer = Writer {
     of_models: Some(run::OVERLAY),
     of_records: true,
 };
+/// `archrock threshold`.
 pub const THRESHOLD: Writer = Writer {
     name: "threshold",
     files: &threshold::FILES,
@@ -53,6 +57,7 @@ pub const THRESHOLD: Writer = Writer {
     of_models: Some("threshold.json"),
     of_records: true,
 };
+/// `archrock map`.
 pub const MAP: Writer = Writer {
     name: "map",
     files: StudyKind::Map.files(),
@@ -60,12 +65,14 @@ pub const MAP: Writer = Writer {
     samples: Some(StudyKind::UncertainMap),
     ..PLAIN
 };
+/// `archrock spectrum`.
 pub const SPECTRUM: Writer = Writer {
     name: "spectrum",
     files: StudyKind::Spectrum.files(),
     summary: Some("spectrum.json"),
     ..PLAIN
 };
+/// `archrock suite`.
 pub const SUITE: Writer = Writer {
     name: "suite",
     files: StudyKind::Suite.files(),
@@ -74,24 +81,28 @@ pub const SUITE: Writer = Writer {
     of_models: Some("models/peaks.json"),
     ..PLAIN
 };
+/// `archrock capacity`.
 pub const CAPACITY: Writer = Writer {
     name: "capacity",
     files: &capacity::FILES,
     summary: Some("capacity.json"),
     ..PLAIN
 };
+/// `archrock spread`.
 pub const SPREAD: Writer = Writer {
     name: "spread",
     files: &spread::FILES,
     summary: Some("spread.json"),
     ..PLAIN
 };
+/// `archrock verify`.
 pub const VERIFY: Writer = Writer {
     name: "verify",
     files: &verify::FILES,
     summary: Some("verify.json"),
     ..PLAIN
 };
+/// `archrock chart`.
 pub const CHART: Writer = Writer {
     name: "chart",
     files: &chart::FILES,
@@ -107,6 +118,7 @@ const MODELS: &str = "models";
 
 impl Writer {
     /// `merge` of a study, which replaces the results of that study only: those of its samples are merged apart.
+    #[must_use]
     pub const fn merge(kind: StudyKind) -> Self {
         Self {
             name: "merge",
@@ -115,8 +127,26 @@ impl Writer {
         }
     }
 
+    /// The command whose results have this seal; `None` if no command writes them.
+    #[must_use]
+    pub fn of_seal(seal: &str) -> Option<Self> {
+        let studies = StudyKind::ALL.iter().copied().map(Self::merge);
+        let mut all = ALL.into_iter().chain(studies);
+        all.find(|writer| writer.files.last() == Some(&seal))
+    }
+
+    /// The scenario in the summary among files of results; `None` if there is none.
+    #[must_use]
+    pub fn origin_in(&self, files: &[(String, Vec<u8>)]) -> Option<Origin> {
+        let (_, summary) = files
+            .iter()
+            .find(|(name, _)| Some(&**name) == self.summary)?;
+        of_summary(&serde_json::from_slice(summary).ok()?)
+    }
+
     /// The paths of everything that the last run of this command may have left in a folder, in the order in which it is removed: the seal
     /// first. Rows of an interrupted study are not among them.
+    #[must_use]
     pub fn last_run(&self, folder: &Path) -> Vec<PathBuf> {
         let mut seal_first = self.beside_one_another(folder, self.files).into_iter();
         let mut all: Vec<PathBuf> = seal_first.by_ref().take(1).collect();
@@ -134,6 +164,7 @@ impl Writer {
     }
 
     /// The folder for the comparison of several models: another name if `models` belongs to another command.
+    #[must_use]
     pub fn models(&self, folder: &Path) -> String {
         let has_models = |writer: &Self| {
             Hinges::ALL.iter().any(|hinges| {
@@ -154,6 +185,7 @@ impl Writer {
     }
 
     /// Warnings of results of other commands in a folder that come from another scenario.
+    #[must_use]
     pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
         let others = ALL.iter().filter(|writer| writer.files != self.files);
         let warning = |other: &Self| {
@@ -162,8 +194,7 @@ impl Writer {
                 .into_iter()
                 .find_map(|place| own.difference(&other.origin(&place)?))?;
             Some(format!(
-                "{} holds results of `archrock {}` from another scenario: {difference}. They stay; choose another folder with --out to keep \
-                 results apart",
+                "{} holds results of `archrock {}` from another scenario: {difference}. They stay; choose another folder to keep results apart",
                 folder.display(),
                 other.name
             ))
@@ -216,8 +247,7 @@ impl Writer {
             return None;
         }
         let summary: Value = serde_json::from_slice(&fs::read(summary).ok()?).ok()?;
-        let of_models = summary.pointer("/models/0");
-        Origin::of_summary(of_models.unwrap_or(&summary))
+        of_summary(&summary)
     }
 
     /// Files of one folder, the seal first, and their pictures in other formats.
@@ -296,8 +326,14 @@ impl Writer {
     }
 }
 
+/// The scenario of a summary, which may have several models.
+fn of_summary(summary: &Value) -> Option<Origin> {
+    let of_models = summary.pointer("/models/0");
+    Origin::of_summary(of_models.unwrap_or(summary))
+}
+
 /// The scenario of some results.
-#[derive(Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Origin {
     scenario: Value,
     /// Name and checksum of each record file.
@@ -322,6 +358,7 @@ const MODEL: [&str; 3] = ["impact", "free_hinges", "elastic_joints"];
 
 impl Origin {
     /// A scenario that is about to have results.
+    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
             scenario: scenario.to_json(),
@@ -330,6 +367,7 @@ impl Origin {
     }
 
     /// The scenario in the summary of results; `None` if there is none.
+    #[must_use]
     pub fn of_summary(summary: &Value) -> Option<Self> {
         let records = summary["record_checksums"].as_array();
         let records = records.into_iter().flatten().filter_map(Value::as_str);
