@@ -220,13 +220,14 @@ impl Scenario {
         self.inner.to_json().to_string()
     }
 
-    /// The structure that stands on the ground, with its ties, as JSON.
+    /// The structure that stands on the ground, with its ties, as JSON with the dimensions that were given.
     fn structure_json(&self) -> PyResult<String> {
-        let mut structure = serde_json::to_value(self.inner.structure()).map_err(refused)?;
-        if !self.inner.ties().is_empty() {
-            structure["tie"] = json!(self.inner.ties());
+        let structure = serde_json::to_value(self.inner.structure()).map_err(refused)?;
+        let mut all = self.inner.to_json();
+        if let Some(all) = all.as_object_mut() {
+            all.retain(|table, _| table == "tie" || structure.get(table).is_some());
         }
-        Ok(structure.to_string())
+        Ok(all.to_string())
     }
 
     fn __eq__(&self, other: &Self) -> bool {

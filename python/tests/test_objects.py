@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import json
 import os
 import pickle
 import re
@@ -291,6 +292,19 @@ def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
     for make in (lambda: simulate(3, pulse), lambda: simulate(arch, "pulse"), lambda: simulate(arch, pulse, duration_s={})):  # type: ignore[arg-type]
         with pytest.raises((TypeError, ValueError)):
             make()
+
+
+def test_dimensions_are_those_that_were_given(pulse: Pulse, program: Program, tmp_path: Path) -> None:
+    arch = Arch(span_m=4.2, rise_m=1.4, thickness_m=0.4, measured_at="intrados")
+    given = "span_m=4.2, rise_m=1.4, measured_at='intrados'"
+    assert given in repr(arch) and "mean_radius_m" not in repr(arch)
+    assert arch.tables["arch"]["span_m"] == 4.2 and pickle.loads(pickle.dumps(arch)) == arch
+    # The bits are those of a file with these dimensions.
+    path = tmp_path / "s.toml"
+    path.write_text('[arch]\nspan_m = 4.2\nrise_m = 1.4\nthickness_m = 0.4\nmeasured_at = "intrados"\n')
+    assert arch.limit().details == json.loads(program("limit", path, "--format", "json").stdout)
+    assert Scenario.of(arch, pulse).tables["arch"] == arch.tables["arch"] == Scenario.read(path).tables["arch"]
+    assert "span_m" in Scenario.of(arch, pulse).run().scenario.tables["arch"]
 
 
 def test_a_number_is_no_file() -> None:
