@@ -70,8 +70,46 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
+/// Two neighbouring numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number.
+///
+/// It asks as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
+/// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2020).
+pub fn falls_below_zero(
+    mut low: f64,
+    mut high: f64,
+    mut value: impl FnMut(f64) -> f64,
+) -> (f64, f64) {
+    let (mut at_low, mut at_high) = (value(low), value(high));
+    let (interval, ulp) = (high - low, f64::EPSILON * low.abs().max(high.abs()));
+    let mut spare = 2.0 * interval;
+    while !Width::Rounding.is_reached(low, high) {
+        let (width, middle) = (high - low, middle(low, high));
+        let secant = low + width * at_low / (at_low - at_high);
+        let inwards = 0.1 * width * width / interval;
+        let towards = if inwards < (middle - secant).abs() {
+            secant + inwards.copysign(middle - secant)
+        } else {
+            middle
+        };
+        // No farther from the middle than leaves halving enough steps.
+        let reach = (0.5 * (spare - width)).max(0.0);
+        let at = towards.clamp(middle - reach, middle + reach);
+        let at = if low < at && at < high { at } else { middle };
+        let now = value(at);
+        if now >= 0.0 {
+            (low, at_low) = (at, now);
+        } else {
+            (high, at_high) = (at, now);
+        }
+        spare = (0.5 * spare).max(ulp);
+    }
+    (low, high)
+}
+
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::SQRT_2;
+
     use super::*;
 
     #[test]
@@ -84,6 +122,21 @@ mod tests {
         assert!(low < change && change <= high && high - low <= 1e-3 && high - low > 4e-4);
         let (low, high) = ends(Width::Relative(1e-6));
         assert!(low < change && change <= high && high - low <= 1e-6 * high);
+    }
+
+    #[test]
+    fn a_smooth_function_is_followed_to_zero_in_few_steps() {
+        let smooth = |x: f64| 2.0 - x * x + (SQRT_2 - x).powi(3);
+        let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
+        for (value, most) in [(smooth as fn(f64) -> f64, 15), (cliff, 60)] {
+            let mut asked = 0;
+            let (low, high) = falls_below_zero(1.0, 2.0, |x| {
+                asked += 1;
+                value(x)
+            });
+            assert_eq!(low.next_up(), high);
+            assert!((low - SQRT_2).abs() < 1e-15 && asked <= most, "{asked}");
+        }
     }
 
     #[test]

@@ -30,7 +30,7 @@ use super::joints::Placement;
 use super::stability::{StabilityError, falls_at, onset_at};
 use super::stance::Stance;
 use super::sway::Sway;
-use crate::bisection::{Width, bisect, try_bisect};
+use crate::bisection::{Width, falls_below_zero, try_bisect};
 
 /// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
 const STEP: f64 = 1e-3;
@@ -466,8 +466,11 @@ impl<'a> Follower<'a> {
                 }
                 continue;
             }
-            let ends = |at: f64| self.holds(&way(at)).is_none();
-            let (last, _) = bisect(low, next, Width::Rounding, ends);
+            let margin = |at: f64| {
+                let state = self.state_in(&way(at));
+                state.map_or(f64::NAN, |state| state.margin() + self.slack)
+            };
+            let (last, _) = falls_below_zero(low, next, margin);
             self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {
                 Some(at) => low = at,

@@ -457,12 +457,17 @@ impl TieMemory<Lanes<1>> {
         self.intact.0[0] == 0.0
     }
 
-    /// By how much it pulls harder for each metre that it is stretched on, in N/m.
+    /// What it pulls with, in N, when it is then stretched so far beyond its unstressed length, slowly, and by how much harder for each metre
+    /// that it is stretched on, in N/m.
     #[must_use]
-    pub fn stiffness_n_m(&self, tie: &Tie) -> f64 {
-        let force_n = self.force_n.0[0];
+    pub fn pulls_then(&self, tie: &Tie, stretch_m: f64) -> [f64; 2] {
+        let breaks_m = tie.breaks_at_strain * tie.slack_length_m();
+        if self.is_broken() || stretch_m >= breaks_m {
+            return [0.0; 2];
+        }
+        let force_n = tie.pull_n(self.yielded_m.0[0], Lanes([stretch_m])).0[0];
         let elastic = force_n > 0.0 && force_n < tie.yield_force_n;
-        if elastic { tie.stiffness_n_m } else { 0.0 }
+        [force_n, if elastic { tie.stiffness_n_m } else { 0.0 }]
     }
 }
 

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use super::{Condition, Pins, ROUNDING, SettlingError};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::Closer;
-use crate::mechanics::contact::{ContactError, Load, Program};
+use crate::mechanics::contact::{ContactError, Corners, Load, Program};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
@@ -24,8 +24,10 @@ use crate::mechanics::tie::TieLine;
 
 /// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
-/// No point moves by more than this part of the size in a step.
+/// No point moves by more than this part of the size in a step,
 const STEP: f64 = 1e-3;
+/// or, with ties, by this part of how far the descent has come, if that is more.
+const STRIDE: f64 = 0.02;
 /// A block that moves by this part of the size in a descent falls.
 const FALLEN: f64 = 0.5;
 /// An arch whose ends miss each other by more than this part of its size has fallen apart.
@@ -56,6 +58,22 @@ struct Step<'a> {
     lines: Vec<TieLine>,
     force_g: Vector2<f64>,
     length: f64,
+    /// Corners that press, none before they are known, and what [`Descent::lengthen`] says while they do.
+    pressing: Vec<Corners>,
+    lengthen: DMatrix<f64>,
+}
+
+impl<'a> Step<'a> {
+    fn new(row: &Row, stance: &'a Stance, force_g: Vector2<f64>) -> Self {
+        Self {
+            stance,
+            lines: stance.lines(row).collect(),
+            force_g,
+            length: 0.0,
+            pressing: Vec::new(),
+            lengthen: DMatrix::zeros(0, 0),
+        }
+    }
 }
 
 /// The descent of a row, with all the memory that it needs.
@@ -108,7 +126,7 @@ impl<'a> Descent<'a> {
             poses.map(Pose::rotation_rad).collect::<Vec<f64>>()
         };
         let start_rad = turns(stance);
-        let mut longest = STEP * size_m;
+        let (mut farthest_m, mut longest) = (STEP * size_m, STEP * size_m);
         let (mut hinges, mut stayed) = (Vec::new(), 0_u32);
         for step in 0..MOST_STEPS {
             // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
@@ -126,28 +144,29 @@ impl<'a> Descent<'a> {
             }
             let fastest = if self.ties_kg.is_empty() {
                 let fastest = self.solve(stance, &[], force_g, 1.0)?;
-                longest = STEP * size_m / fastest;
+                longest = farthest_m / fastest;
                 fastest
             } else {
-                self.solve_with_ties(stance, force_g, &mut longest)?
+                self.solve_with_ties(stance, force_g, farthest_m, &mut longest)?
             };
             if fastest <= STANDSTILL {
                 return Ok(true);
             }
             let (length, shut) = self.first_shut(&stance.placement, longest);
             self.go_on(stance, length, shut);
-            longest = (2.0 * longest).min(LONGEST * size_m);
+            longest = (0.9 * farthest_m / fastest)
+                .min(2.0 * longest)
+                .min(LONGEST * size_m);
             let centres = start_m.iter().zip(stance.placement.centres_m());
+            let moved = centres.map(|(start, now)| (now - start).norm() / size_m);
             let turned = start_rad.iter().zip(turns(stance));
-            let fallen = stance.placement.closure_error() > PARTED * size_m
-                || centres
-                    .map(|(start, now)| (now - start).norm())
-                    .any(|moved_m| moved_m > FALLEN * size_m)
-                || turned
-                    .map(|(start, now)| (now - start).abs())
-                    .any(|turned_rad| turned_rad > FALLEN);
-            if fallen {
+            let turned = turned.map(|(start, now)| (now - start).abs());
+            let gone = moved.chain(turned).fold(0.0, f64::max);
+            if gone > FALLEN || stance.placement.closure_error() > PARTED * size_m {
                 return Ok(false);
+            }
+            if !self.ties_kg.is_empty() {
+                farthest_m = size_m * STEP.max(STRIDE * gone);
             }
         }
         Ok(false)
@@ -233,11 +252,13 @@ impl<'a> Descent<'a> {
         &mut self,
         stance: &Stance,
         force_g: Vector2<f64>,
+        farthest_m: f64,
         longest: &mut f64,
     ) -> Result<f64, SettlingError> {
-        let farthest_m = STEP * self.row.size_m();
+        let mut step = Step::new(self.row, stance, force_g);
         loop {
-            let fastest = self.balance_ties(stance, force_g, *longest)?;
+            step.length = *longest;
+            let fastest = self.balance_ties(&mut step)?;
             if *longest * fastest <= farthest_m {
                 return Ok(fastest);
             }
@@ -246,36 +267,30 @@ impl<'a> Descent<'a> {
     }
 
     /// Finds what the ties pull with at the end of a step, and how fast the row is with that.
-    fn balance_ties(
-        &mut self,
-        stance: &Stance,
-        force_g: Vector2<f64>,
-        length: f64,
-    ) -> Result<f64, SettlingError> {
-        let step = Step {
-            stance,
-            lines: stance.lines(self.row).collect(),
-            force_g,
-            length,
-        };
+    fn balance_ties(&mut self, step: &mut Step<'_>) -> Result<f64, SettlingError> {
         // Some may have broken in the step before.
         for tie in 0..step.lines.len() {
-            let [least_kg, most_kg] = self.bounds_kg(&step, tie);
+            let [least_kg, most_kg] = self.bounds_kg(step, tie);
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
-        self.solve(stance, &step.lines, force_g, 1.0)?;
+        self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
-            let lacks_m = self.lacks_m(&step);
-            let Some(way_kg) = self.way_kg(&step, &lacks_m) else {
+            let lacks_m = self.lacks_m(step);
+            if step.pressing != self.program.active() {
+                step.pressing = self.program.active().to_vec();
+                step.lengthen = self.lengthen(step);
+            }
+            let Some(way_kg) = self.way_kg(step, &lacks_m) else {
                 break;
             };
             let pairs = way_kg.iter().zip(&lacks_m);
-            let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * length);
+            let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * step.length);
             let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
             if left_kg <= FORCE * self.row.mass_kg() {
-                return Ok(self.solve(stance, &step.lines, force_g, 1.0)?);
+                // Responses of the row have taken the place of its velocities.
+                return Ok(self.solve(step.stance, &step.lines, step.force_g, 1.0)?);
             }
-            self.go_along(&step, &way_kg, lacks_m.dot(&way_kg))?;
+            self.go_along(step, &way_kg, lacks_m.dot(&way_kg))?;
         }
         Err(SettlingError::Ties)
     }
@@ -316,8 +331,8 @@ impl<'a> Descent<'a> {
     /// all or nothing, and would go beyond, stay. `None` where that is not determined.
     ///
     /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
-    fn way_kg(&mut self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
-        let lengthen = self.lengthen(step);
+    fn way_kg(&self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
+        let lengthen = &step.lengthen;
         let ties = self.row.ties().iter();
         let kg_m = ties.map(|tie| tie.stiffness_n_m / self.row.gravity_m_s2());
         let kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
@@ -332,7 +347,7 @@ impl<'a> Descent<'a> {
                 equations[(mode, mode)] += 1.0;
             }
             let speeds = equations.cholesky()?.solve(&pulls.tr_mul(lacks_m));
-            let left_m = lacks_m - &lengthen * speeds * step.length;
+            let left_m = lacks_m - lengthen * speeds * step.length;
             let way_kg = left_m.component_mul(&kg_m);
             let still = goes.zip_map(&self.may_go(step, &way_kg), |goes, may| goes && may);
             if still == goes {
@@ -375,7 +390,7 @@ impl<'a> Descent<'a> {
         while motions.len() < count {
             // No two ties, and no two trials, have parts in a simple ratio.
             let phase = 1.0 + f64::sqrt(2.0) * motions.len() as f64;
-            self.respond(step, |tie| (phase * (1.0 + tie as f64)).sin());
+            self.respond(step, |tie| (phase * (1.0 + tie as f64)).fract() - 0.5);
             let mut motion = self.program.velocities().to_vec();
             // Twice, so that rounding leaves nothing in common.
             for known in motions.iter().chain(&motions) {
@@ -425,8 +440,8 @@ impl<'a> Descent<'a> {
         .sum()
     }
 
-    /// Changes the forces of ties on this way until one of them cannot go on, or until the energy of the step falls hardly more: at first it
-    /// falls by so much.
+    /// Changes the forces of ties on this way, each until it pulls with all or nothing, and all until the energy of the step falls hardly
+    /// more: at first it falls by so much.
     fn go_along(
         &mut self,
         step: &Step<'_>,
@@ -436,21 +451,29 @@ impl<'a> Descent<'a> {
         let from_kg = self.ties_kg.clone();
         let ends = (0..from_kg.len()).map(|tie| self.ends_at(step, tie, way_kg[tie]));
         let ends: Vec<f64> = ends.collect();
-        let whole = ends.iter().copied().fold(1.0, f64::min);
-        let (mut part, mut near, mut far) = (whole, 0.0, whole);
+        // Until here all ties go.
+        let all = ends.iter().copied().fold(1.0, f64::min);
+        let (mut part, mut near, mut far) = (1.0, 0.0, all);
         for _ in 0..MOST_TRIALS {
             for (tie, from_kg) in from_kg.iter().enumerate() {
-                // Where it can go no further it pulls with all or nothing, to the last digit.
-                self.ties_kg[tie] = if part == ends[tie] {
+                self.ties_kg[tie] = if part >= ends[tie] {
                     self.bounds_kg(step, tie)[usize::from(way_kg[tie] > 0.0)]
                 } else {
                     from_kg + part * way_kg[tie]
                 };
             }
             self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
-            let left = self.lacks_m(step).dot(way_kg);
-            if left.abs() <= FLAT * falls || (part == whole && left > 0.0) {
-                break;
+            let falls_on = self.lacks_m(step).component_mul(way_kg);
+            // A tie that has come to its end stays there, unless it should come back.
+            let goes = falls_on.iter().zip(&ends);
+            let goes = goes.filter(|(falls, end)| part <= **end || **falls < 0.0);
+            let left: f64 = goes.map(|(falls, _)| falls).sum();
+            if left.abs() <= FLAT * falls || (part >= all && left > 0.0) {
+                return Ok(());
+            }
+            if part > all {
+                part = all;
+                continue;
             }
             if left > 0.0 {
                 near = part;
@@ -465,6 +488,7 @@ impl<'a> Descent<'a> {
                 0.5 * (near + far)
             };
         }
+        self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
         Ok(())
     }
 
@@ -546,6 +570,13 @@ mod tests {
         row.with_ties(ties, 9.81).unwrap()
     }
 
+    fn step<'a>(row: &Row, stance: &'a Stance, force_g: Vector2<f64>, length: f64) -> Step<'a> {
+        Step {
+            length,
+            ..Step::new(row, stance, force_g)
+        }
+    }
+
     /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
     #[test]
     fn ties_that_depend_on_each_other_are_balanced_together() {
@@ -553,7 +584,8 @@ mod tests {
         let (stance, length) = (Stance::undeformed(&row), 0.01);
         let mut descent = Descent::new(&row);
         let push_g = Vector2::new(0.6, -1.0);
-        let fastest = descent.balance_ties(&stance, push_g, length).unwrap();
+        let mut step = step(&row, &stance, push_g, length);
+        let fastest = descent.balance_ties(&mut step).unwrap();
         assert!(fastest > 0.01, "{fastest}");
         let lines: Vec<TieLine> = stance.lines(&row).collect();
         for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
@@ -577,13 +609,8 @@ mod tests {
         let stance = Stance::undeformed(&row);
         let mut descent = Descent::new(&row);
         let force_g = Vector2::new(2.0, -1.0);
-        descent.balance_ties(&stance, force_g, 0.01).unwrap();
-        let step = Step {
-            stance: &stance,
-            lines: stance.lines(&row).collect(),
-            force_g,
-            length: 0.01,
-        };
+        let mut step = step(&row, &stance, force_g, 0.01);
+        descent.balance_ties(&mut step).unwrap();
         let lengthen = descent.lengthen(&step);
         assert!((1..=5).contains(&lengthen.ncols()), "{}", lengthen.ncols());
         let told = &lengthen * lengthen.transpose();
@@ -605,7 +632,8 @@ mod tests {
             let row = tied(ties);
             let mut descent = Descent::new(&row);
             let stance = Stance::undeformed(&row);
-            descent.balance_ties(&stance, Vector2::new(0.6, -1.0), length)?;
+            let mut step = step(&row, &stance, Vector2::new(0.6, -1.0), length);
+            descent.balance_ties(&mut step)?;
             Ok::<f64, SettlingError>(descent.ties_kg.iter().sum())
         };
         for length in [1e-3, 1.0, 1e3] {

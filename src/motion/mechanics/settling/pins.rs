@@ -14,7 +14,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
-use crate::mechanics::tie::{TieLine, TieMemory};
+use crate::mechanics::tie::{Anchor, TieLine, TieMemory};
 
 /// Steps of Newton's method, at most.
 const MOST_STEPS: usize = 30;
@@ -394,6 +394,8 @@ struct Chain<'a> {
     arms_m: Vec<Vector2<f64>>,
     /// Of every body: its first moment of mass about its first pin, and what is beyond it at its last one, over the whole mass.
     moments_m: Vec<Vector2<f64>>,
+    /// Of every tie: how many hinges are before each of its ends.
+    tied: Vec<[usize; 2]>,
     rotations_rad: Vec<f64>,
 }
 
@@ -431,10 +433,16 @@ impl<'a> Chain<'a> {
         }
         let poses = before.placement.poses();
         let bodies = pins.hinges.iter().take(count);
+        let support = |anchor: &Anchor| anchor.support(row.feet_m()) * (count + 1);
+        let part = |anchor: Anchor| {
+            let block = anchor.block;
+            block.map_or_else(|| support(&anchor), |block| pins.part_of(block))
+        };
         Self {
             rotations_rad: bodies
                 .map(|hinge| poses[hinge.joint].rotation_rad())
                 .collect(),
+            tied: row.ties().iter().map(|tie| tie.ends.map(part)).collect(),
             pins,
             row,
             condition,
@@ -455,12 +463,6 @@ impl<'a> Chain<'a> {
                 pose
             })
             .collect()
-    }
-
-    /// Which body a block is of; `None` where it is of a support.
-    fn body_of(&self, block: usize) -> Option<usize> {
-        let body = self.pins.part_of(block).checked_sub(1)?;
-        (body < self.rotations_rad.len()).then_some(body)
     }
 
     /// Slopes and curvatures of the energy, with the force of the right support on the last pin.
@@ -498,32 +500,34 @@ impl<'a> Chain<'a> {
         let weight_n = self.row.mass_kg() * self.row.gravity_m_s2();
         let supports = &self.condition.supports;
         let parts = [&supports[..1], poses, &supports[1..]].concat();
-        let (memories, pulls) = self
-            .pins
-            .pulls(self.row, supports, &parts, &self.before.ties);
         let pins_m = self.pins.at_m(&parts);
         let mut forces = DVector::zeros(3 * count);
         let mut stiffnesses = DMatrix::zeros(3 * count, 3 * count);
-        for ((tie, memory), (line, force_n)) in self.row.ties().iter().zip(memories).zip(pulls) {
+        let ties = self.row.ties().iter().zip(&self.before.ties);
+        for ((tie, before), tied) in ties.zip(&self.tied) {
+            let ends_m = [0, 1].map(|end| parts[tied[end]].of(tie.ends[end].at_m));
+            let line = tie.line(ends_m);
+            let [force_n, stiffness_n_m] = before.pulls_then(tie, line.stretch_m);
+            if force_n == 0.0 {
+                continue;
+            }
             let force = force_n / weight_n;
-            let across = force / (line.ends_m[1] - line.ends_m[0]).norm();
-            let along = memory.stiffness_n_m(tie) / weight_n - across;
-            let stiffness =
-                line.along * line.along.transpose() * along + Matrix2::identity() * across;
-            let pull = line.along * force;
+            let across = force / (ends_m[1] - ends_m[0]).norm();
+            let along = stiffness_n_m / weight_n - across;
             let ends = [0, 1].map(|end| {
-                let body = line.ends[end].and_then(|block| self.body_of(block))?;
-                let arm_m = (line.ends_m[end] - pins_m[body]) * ENDS[end];
+                let body = tied[end].checked_sub(1).filter(|body| *body < count)?;
+                let arm_m = (ends_m[end] - pins_m[body]) * ENDS[end];
                 let moves = Matrix2x3::new(ENDS[end], 0.0, -arm_m.y, 0.0, ENDS[end], arm_m.x);
-                Some((3 * body, arm_m, moves))
+                Some((3 * body, arm_m, moves, moves.tr_mul(&line.along)))
             });
-            for (one, arm_m, moves) in ends.iter().flatten() {
+            for (one, arm_m, moves, lengthens) in ends.iter().flatten() {
                 let mut on_body = forces.fixed_rows_mut::<3>(*one);
-                on_body += moves.tr_mul(&pull);
-                stiffnesses[(one + 2, one + 2)] -= pull.dot(arm_m);
-                for (other, _, others) in ends.iter().flatten() {
+                on_body += lengthens * force;
+                stiffnesses[(one + 2, one + 2)] -= force * line.along.dot(arm_m);
+                for (other, _, others, other_lengthens) in ends.iter().flatten() {
                     let mut between = stiffnesses.fixed_view_mut::<3, 3>(*one, *other);
-                    between += moves.tr_mul(&(stiffness * others));
+                    between += lengthens * other_lengthens.transpose() * along
+                        + moves.tr_mul(others) * across;
                 }
             }
         }
@@ -598,7 +602,7 @@ mod tests {
 
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
-    use crate::mechanics::tie::{Anchor, Tie};
+    use crate::mechanics::tie::Tie;
 
     /// The curvature of the energy of weight, ties and the force in the last pin is the slope of its slopes, by central differences: on five
     /// hinges, with ties between bodies and from one to the ground.
