@@ -7,6 +7,7 @@ use archrock::Scenario;
 use archrock::mechanics::blocks::{Row, Supports};
 use archrock::mechanics::friction;
 use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::{StabilityError, limit_with_yielding_ties, onset};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie, TieError};
@@ -604,6 +605,30 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
 }
 
 /// Two hundred ties side by side bear what one of their strength bears; one more, or a stiffer one, is refused with the limit.
+/// 200 ties over the height of an arch hold it up to a push that depends on how they are spread only by the square of their distance: 50 at
+/// the same heights, each four times as stiff, bear nearly as much.
+#[test]
+fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
+    let capacity_g = |count: u32| {
+        let tie = |index: u32| {
+            let height_m = 0.5 + 3.5 * (f64::from(index) + 0.5) / f64::from(count);
+            let stiffness_n_m = 2e8 / f64::from(count);
+            format!("[[tie]]\nheight_m = {height_m:?}\nstiffness_n_m = {stiffness_n_m:?}\n")
+        };
+        let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 24\n";
+        let ties: String = (0..count).map(tie).collect();
+        let row = parsed(&format!("{arch}{ties}")).structure().row().unwrap();
+        let follower = Follower::new(&row).unwrap();
+        let pushes_g = follower.pushes_g(Sway::Right).unwrap().unwrap();
+        pushes_g[1]
+    };
+    let [many_g, fewer_g] = [200, 50].map(capacity_g);
+    assert!(
+        (many_g - fewer_g).abs() < 1e-3 * many_g,
+        "{many_g} {fewer_g}"
+    );
+}
+
 #[test]
 fn ties_have_limits_and_many_of_them_bear_what_one_bears() {
     let folder = tempfile::tempdir().unwrap();
