@@ -109,8 +109,8 @@ fn campaign(cases: usize) -> Counts {
     counts
 }
 
-/// Ten rows of up to 12 blocks. Out of a hundred of up to 30 (`ARCHROCK_CASES=100`), 95 outcomes and 98 first peaks are
-/// called certain, and one first peak does not hold.
+/// Ten rows of up to 12 blocks. Out of a hundred of up to 30 (`ARCHROCK_CASES=100`, which prints the counts), 95 outcomes and 88
+/// first peaks are called certain, and all of these hold.
 #[test]
 fn what_is_called_certain_holds_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
@@ -121,6 +121,10 @@ fn what_is_called_certain_holds_with_other_steps() {
         counts.outcomes >= most && counts.first_peaks >= most,
         "{counts:?}"
     );
+    if cases > 10 {
+        std::io::Write::write_all(&mut std::io::stderr(), format!("{counts:?}\n").as_bytes())
+            .unwrap();
+    }
 }
 
 /// A row whose joints slip, and ground on which it survives or overturns, although with a few percent more or less of it, it would not.
