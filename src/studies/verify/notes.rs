@@ -131,7 +131,7 @@ fn of_histories(check: &Check) -> String {
     };
     format!(
         "Histories are of four-link mechanisms, one degree of freedom at a time, with losses at impacts only. That model is not on the \
-         safe side: with joints that open and close at any time arches fall at weaker motions. Every record acts in either \
+         safe side: with joints that open and close at any time an arch may fall at weaker motions. Every record acts in either \
          direction, and the larger peak counts; after many impacts a peak may hang on the last digit of its record. Their displacement is the sum of m u over M*, that of the common centre over e* while \
          the first mechanism moves, and is compared with what that mechanism allows, though later ones reach farther. Where FC enters is not said: histories pass where they do with d and d_0 divided by FC; both are \
          printed. From {FOR_THE_MEAN} records on the mean of the peaks counts, with its 95 % interval, of fewer the largest{clause}.{more} They stand beside \
