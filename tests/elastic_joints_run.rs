@@ -468,7 +468,7 @@ fn a_threshold_says_what_it_hangs_on() {
             "threshold",
             "s.toml",
             "--from",
-            "0.42",
+            "0.45",
             "--to",
             "0.52",
             "--stride",
@@ -491,5 +491,11 @@ fn a_threshold_says_what_it_hangs_on() {
     // Both are found from the same samples, and enclosed to a ten-thousandth.
     assert!((ratio - 1.0).abs() < 1.01e-4, "{found} {due}");
     let words = "  with rigid joints (free hinges): from factor 0.50";
+    assert!(said.contains(words), "{said}");
+    // A variation that overturns at the smallest factor may do so at smaller ones.
+    assert_eq!(variations[0]["factor"], 0.45);
+    assert_eq!(variations[0]["from_end"], "sampled");
+    assert_eq!(variations[1]["from_end"], "edge");
+    let words = "  with 1 GPa/m: overturns at factor 0.4500 (0.4500 g) already, the smallest tried";
     assert!(said.contains(words), "{said}");
 }

@@ -176,7 +176,12 @@ fn find(
     for (threshold, scenario) in found.iter_mut().zip(scenarios) {
         let variations = scenario.variations();
         let variations = variations.map_err(|error| Failure::Work(error.to_string()))?;
-        let watch = |_| ControlFlow::Continue(());
+        let mut display = None;
+        let watch = |progress| {
+            let display = display.get_or_insert_with(|| Display::new(progress, quiet));
+            display.show(progress);
+            ControlFlow::Continue(())
+        };
         threshold.varied = vary(
             threshold,
             &variations,
@@ -186,6 +191,9 @@ fn find(
             &runner,
             watch,
         )?;
+        if let Some(display) = display {
+            display.finish();
+        }
     }
 
     let of_models: Vec<&Scenario> = scenarios.iter().collect();

@@ -93,7 +93,17 @@ pub trait Model: Debug + Send + Sync {
 
     /// Its motions on several grounds, in their order.
     fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
+        self.simulate_all_until(Until::End, cases)
+    }
+
+    /// Its motions on several grounds, in their order, followed as far as `until` says.
+    fn simulate_all_until(
+        &self,
+        until: Until,
+        cases: &[Case],
+    ) -> Vec<Result<Summary, SimulationError>> {
         let mut all = All {
+            until,
             waiting: 0..cases.len(),
             answers: vec![None; cases.len()],
         };
@@ -194,8 +204,9 @@ pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mu
     }
 }
 
-/// Every case to its end, with the answers so far.
+/// Every case followed equally far, with the answers so far.
 struct All {
+    until: Until,
     waiting: Range<usize>,
     answers: Vec<Option<Result<Summary, SimulationError>>>,
 }
@@ -205,7 +216,7 @@ impl Jobs for All {
         self.waiting.next().map(|case| Job {
             case,
             repetition: None,
-            until: Until::End,
+            until: self.until,
         })
     }
 

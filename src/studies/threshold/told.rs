@@ -189,7 +189,7 @@ fn to_json(
                 model["variations"] = threshold
                     .varied
                     .iter()
-                    .map(|one| varied_to_json(one, peak_g))
+                    .map(|one| varied_to_json(one, threshold, peak_g))
                     .collect();
             }
             model["samples"] = samples.into();
@@ -241,12 +241,16 @@ fn range_to_json(range: &FactorRange, peak_g: f64) -> Value {
     })
 }
 
-fn varied_to_json(varied: &VariedThreshold, peak_g: f64) -> Value {
+fn varied_to_json(varied: &VariedThreshold, threshold: &Threshold, peak_g: f64) -> Value {
     let name = &varied.name;
     match varied.factor {
         Ok(factor) => json!({
             "with": name,
             "factor": factor,
+            "from_end": factor.map(|factor| {
+                let is_first = is_first(factor, threshold);
+                if is_first { RangeEnd::Sampled } else { RangeEnd::Edge }.name()
+            }),
             "peak_g": factor.map(|factor| factor * peak_g),
             "incomplete": varied.incomplete,
         }),
@@ -327,6 +331,12 @@ impl Factors {
     }
 }
 
+/// Whether a factor is the smallest one tried, so that smaller ones may overturn as well.
+fn is_first(factor: f64, threshold: &Threshold) -> bool {
+    let first = threshold.samples.first();
+    first.is_some_and(|first| first.factor == factor)
+}
+
 /// The lowest factors that overturn the structure with other properties, in words.
 fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
     let mut text = String::new();
@@ -334,8 +344,12 @@ fn hangs_on(threshold: &Threshold, peak_g: f64) -> String {
         let no_verdict = varied.no_verdict();
         let answer = match &varied.factor {
             Ok(Some(factor)) => {
-                let peak_g = rounded(factor * peak_g);
-                format!("from factor {} ({peak_g} g)", rounded(*factor))
+                let begins = format!("{} ({} g)", rounded(*factor), rounded(factor * peak_g));
+                if is_first(*factor, threshold) {
+                    format!("overturns at factor {begins} already, the smallest tried")
+                } else {
+                    format!("from factor {begins}")
+                }
             }
             Ok(None) if no_verdict.is_some() => {
                 "does not certainly overturn at any factor tried".to_owned()

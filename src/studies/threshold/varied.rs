@@ -9,6 +9,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::spread::Verdict;
+use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
 use crate::studies::runner::{Progress, Runner, RunnerError};
 
@@ -18,7 +19,7 @@ pub struct VariedThreshold {
     /// What differs, in words that follow "with".
     pub name: String,
     /// The lowest factor that overturns it, found as that of the structure itself: from the same sampled factors. `None` if none of them
-    /// does. Or why it is unknown.
+    /// does, and the first of them if it overturns already. Or why it is unknown.
     pub factor: Result<Option<f64>, String>,
     /// Number of histories of the search that ended too early for a verdict.
     pub incomplete: usize,
@@ -40,7 +41,8 @@ impl VariedThreshold {
 /// Number of histories that are computed together: some models are faster that way.
 const TOGETHER: usize = 4;
 
-/// The thresholds of these variations; empty if the structure itself has none. No history is repeated.
+/// The thresholds of these variations; empty if the structure itself has none. No history is repeated, nor followed beyond the
+/// time from which it cannot overturn.
 ///
 /// # Errors
 /// When `watch` breaks, or threads cannot be started.
@@ -94,7 +96,10 @@ fn lowest(
             .iter()
             .map(|factor| Ok((ground.scaled(*factor)?, *request)))
             .collect::<Result<Vec<_>, SimulationError>>()?;
-        for (factor, history) in factors.iter().zip(model.simulate_all(&cases)) {
+        for (factor, history) in factors
+            .iter()
+            .zip(model.simulate_all_until(Until::Safe, &cases))
+        {
             if !falls(history)? {
                 survived = Some(*factor);
                 continue;
@@ -104,7 +109,7 @@ fn lowest(
             };
             let width = Width::Relative(EDGE_WIDTH);
             let (_, lowest) = try_bisect(survived, *factor, width, |factor| {
-                falls(model.simulate(&ground.scaled(factor)?, request, None))
+                falls(model.simulate_until(Until::Safe, &(ground.scaled(factor)?, *request)))
             })?;
             return Ok(Some(lowest));
         }
