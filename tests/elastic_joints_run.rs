@@ -93,7 +93,7 @@ fn what_is_no_joint_is_refused_with_its_place() {
         (
             &format!("{stiff}[free_hinges]"),
             "7:1",
-            ["[elastic_joints]", "--hinges"],
+            ["[elastic_joints]", "choose the model"],
         ),
     ] {
         let errors = Scenario::parse(&block(keys), "s.toml")
