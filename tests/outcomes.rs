@@ -143,6 +143,21 @@ fn studies_follow_the_ground_motion_of_each_case() {
     assert!(said.contains("no verdict from 1 of 2 histories"), "{said}");
     assert_eq!(outcomes("k", "map.csv"), ["never_moved", "incomplete"]);
     assert!(warns_of_no_verdict(&at.join("k/map.json")));
+    // Bisection passes levels without a verdict, so the first intensity that overturns is an upper bound.
+    let pulse = "t,a\n0,1\n0.2,1\n0.201,0\n0.3,0\n";
+    fs::write(at.join("pulse.csv"), pulse).unwrap();
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[suite]\nrecords = [\"pulse.csv\"]\nunit = \"g\"\npeaks_g = [0.1, 3.0]\n";
+    fs::write(at.join("b.toml"), column).unwrap();
+    let said = stderr(&archrock(at, &["suite", "b.toml", "--out", "b"]));
+    assert_eq!(
+        outcomes("b", "suite.csv")[..2],
+        ["never_moved", "overturned"]
+    );
+    let capacity = &Table::read(at.join("b/capacity.csv")).rows[0];
+    let level_g: f64 = capacity["peak_g"].parse().unwrap();
+    assert!((0.6..1.5).contains(&level_g), "{level_g}");
+    assert_eq!(capacity["at_most"], "yes");
+    assert!(said.contains("first overturns at or below"), "{said}");
     let large = ["check", "s.toml", "--set", "arch.mean_radius_m=98.1"];
     let said = printed(at, &large);
     assert!(said.contains("duration_s = 64.245"), "{said}");

@@ -582,6 +582,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         scale: *scale,
         peak_g: 0.3 * scale,
         edge: None,
+        edge_at_most: false,
         strength: None,
         result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
             outcome,
@@ -617,6 +618,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 scale: f64::from(level),
                 peak_g: 0.3 * f64::from(level),
                 edge: None,
+                edge_at_most: false,
                 strength: None,
                 result: Ok(Ending {
                     outcome,

@@ -10,6 +10,8 @@ pub struct Survival {
     pub overturns_from: Option<f64>,
     /// Whether that is also the least strength tried, so that a smaller one might overturn too.
     pub from_the_first: bool,
+    /// Whether smaller strengths may overturn as well, since histories next to it have no verdict.
+    pub at_most: bool,
     /// Ranges of greater strengths that it certainly survives.
     pub again: Vec<[f64; 2]>,
     /// Ranges of strengths for which it is uncertain whether it overturns.
@@ -58,6 +60,7 @@ impl Survival {
         Self {
             overturns_from,
             from_the_first: overturns_from == Some(tried_from),
+            at_most: false,
             again: of(&runs[first.unwrap_or(runs.len())..], Verdict::Survives),
             uncertain: of(runs, Verdict::Uncertain),
             incomplete: of(runs, Verdict::Incomplete),
@@ -82,6 +85,7 @@ pub fn in_words(survival: &Survival, unit: &str) -> String {
         Some(first) if survival.from_the_first => {
             format!("overturns at {} already, the smallest tried", at(first))
         }
+        Some(first) if survival.at_most => format!("first overturns at or below {}", at(first)),
         Some(first) => format!("first overturns at {}", at(first)),
     };
     for (what, ranges) in [
@@ -169,6 +173,7 @@ mod tests {
         let survival = |from: Option<f64>, again: &[[f64; 2]]| Survival {
             overturns_from: from,
             from_the_first: from == Some(0.1),
+            at_most: false,
             again: again.to_vec(),
             uncertain: Vec::new(),
             incomplete: Vec::new(),
@@ -185,6 +190,14 @@ mod tests {
         assert_eq!(
             in_words(&survival(Some(0.1), &[]), ""),
             "overturns at 0.1000 already, the smallest tried"
+        );
+        let at_most = Survival {
+            at_most: true,
+            ..survival(Some(2.5), &[])
+        };
+        assert_eq!(
+            in_words(&at_most, " g"),
+            "first overturns at or below 2.500 g"
         );
         let uncertain = |from, uncertain: &[[f64; 2]]| Survival {
             uncertain: uncertain.to_vec(),

@@ -17,7 +17,7 @@ use super::ending::{Ending, Verdict, check_finite};
 use super::remarks::warnings;
 use super::runner::Study;
 use super::survival::Survival;
-use crate::bisection::{Width, try_bisect};
+use crate::bisection::{Width, bisect};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{Case, Model};
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
@@ -38,6 +38,9 @@ pub struct CaseRow {
     /// Where it overturns and the level below does not: the lowest level between the two that overturns, by bisection.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edge: Option<f64>,
+    /// Whether lower levels may overturn as well, since a level between the two has no verdict.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub edge_at_most: bool,
     /// How strong the record is in its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
@@ -193,7 +196,7 @@ impl Study for RecordSuite<'_> {
             let upper = overturn[case] == Some(true) && survives_below != Some(false);
             upper.then(|| self.edge(index, below, survives_below.is_some()))?
         };
-        let edges: Vec<Option<f64>> = (0..indices.len()).map(edge).collect();
+        let edges: Vec<Option<(f64, bool)>> = (0..indices.len()).map(edge).collect();
         let rows = indices.iter().zip(results).zip(edges);
         rows.map(|((index, result), edge)| self.case_row(*index, result, edge))
             .collect()
@@ -232,23 +235,34 @@ impl RecordSuite<'_> {
     }
 
     /// The lowest level that overturns between the one below that of a case that does, by its number, and that of the case; `None` if
-    /// the one below overturns as well, unless it is known that it survives.
-    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<f64> {
+    /// the one below overturns as well, unless it is known that it survives. Also whether the edge may lie lower: a level without a
+    /// verdict narrows the interval as one that survives.
+    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<(f64, bool)> {
         let (level, record, mirrored) = self.place(index);
         let overturns = |level: f64| {
             let (ground, request) = case(self.scenario, self.suite, record, level, mirrored);
             let ending = Ending::of(&*self.model, &ground, &request);
-            overturns_certainly(&ending).ok_or(())
+            overturns_certainly(&ending)
         };
         let below = self.levels[below];
-        if !survives_below && overturns(below).ok()? {
+        if !survives_below && overturns(below)? {
             return None;
         }
-        let ends = try_bisect(below, level, Width::Relative(EDGE_WIDTH), overturns);
-        ends.ok().map(|(_, overturns)| overturns)
+        let mut at_most = false;
+        let (_, lowest) = bisect(below, level, Width::Relative(EDGE_WIDTH), |level| {
+            let answer = overturns(level);
+            at_most |= answer.is_none();
+            answer == Some(true)
+        });
+        Some((lowest, at_most))
     }
 
-    fn case_row(&self, index: usize, result: Result<Ending, String>, edge: Option<f64>) -> CaseRow {
+    fn case_row(
+        &self,
+        index: usize,
+        result: Result<Ending, String>,
+        edge: Option<(f64, bool)>,
+    ) -> CaseRow {
         let (level, record, mirrored) = self.place(index);
         let series = &self.suite.records[record];
         let own_g = series.peak_g(self.scenario.gravity_m_s2());
@@ -262,7 +276,8 @@ impl RecordSuite<'_> {
             scale,
             peak_g,
             result: check_finite(&[scale, peak_g]).and(result),
-            edge,
+            edge: edge.map(|(edge, _)| edge),
+            edge_at_most: edge.is_some_and(|(_, at_most)| at_most),
             strength: Some(self.strengths[record]),
         }
     }
@@ -436,12 +451,14 @@ impl SuiteFragility {
                 .map(|case| (case.level(self.measure), case.verdict()))
                 .collect();
             let mut survival = Survival::of_levels(&levels);
-            let mut overturned = cases
+            let first = cases
                 .iter()
-                .filter(|case| case.verdict() == Some(Verdict::Overturns));
-            survival.overturns_from = overturned
-                .next()
-                .map(|first| first.overturns_from(self.measure));
+                .position(|case| case.verdict() == Some(Verdict::Overturns));
+            survival.overturns_from = first.map(|first| cases[first].overturns_from(self.measure));
+            survival.at_most = first.is_some_and(|first| {
+                let is_known_below = first == 0 || cases[first - 1].known_verdict().is_some();
+                cases[first].edge_at_most || !is_known_below
+            });
             let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
             let same =
                 |other: &RecordSurvival<'_>| other.record == record && other.survival == survival;

@@ -120,7 +120,7 @@ impl SuiteFragility {
                 let below = first
                     .checked_sub(1)
                     .map(|below| levels[below].known_verdict());
-                below.flatten().is_none()
+                below.flatten().is_none() || own.edge_at_most
             }),
             level,
             in_measures: [
