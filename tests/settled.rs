@@ -487,6 +487,6 @@ fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
     refused(
         folder.path(),
         &["capacity", "arch.toml"],
-        &["the studies `limit` and `spread`", "`archrock spread` tell"],
+        &["the studies `limit` and `spread` compute the push"],
     );
 }
