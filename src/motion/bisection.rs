@@ -70,19 +70,29 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
-/// Two neighbouring numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number.
+/// Two neighbouring numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number;
+/// or two between which it falls by no more than its rounding, or that are no farther apart where it ends.
 ///
 /// It asks as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
 /// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2020).
 pub fn falls_below_zero(
     mut low: f64,
     mut high: f64,
+    rounding: f64,
     mut value: impl FnMut(f64) -> f64,
 ) -> (f64, f64) {
     let (mut at_low, mut at_high) = (value(low), value(high));
     let (interval, ulp) = (high - low, f64::EPSILON * low.abs().max(high.abs()));
     let mut spare = 2.0 * interval;
-    while !Width::Rounding.is_reached(low, high) {
+    let found = |low: f64, high: f64, at_low: f64, at_high: f64| {
+        let falls = if at_high.is_nan() {
+            high - low
+        } else {
+            at_low - at_high
+        };
+        falls <= rounding || Width::Rounding.is_reached(low, high)
+    };
+    while !found(low, high, at_low, at_high) {
         let (width, middle) = (high - low, middle(low, high));
         let secant = low + width * at_low / (at_low - at_high);
         let inwards = 0.1 * width * width / interval;
@@ -130,7 +140,7 @@ mod tests {
         let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
         for (value, most) in [(smooth as fn(f64) -> f64, 15), (cliff, 60)] {
             let mut asked = 0;
-            let (low, high) = falls_below_zero(1.0, 2.0, |x| {
+            let (low, high) = falls_below_zero(1.0, 2.0, 0.0, |x| {
                 asked += 1;
                 value(x)
             });

@@ -470,7 +470,13 @@ impl<'a> Follower<'a> {
                 let state = self.state_in(&way(at));
                 state.map_or(f64::NAN, |state| state.margin() + self.slack)
             };
-            let (last, _) = falls_below_zero(low, next, margin);
+            // Where ties hold it, its forces are found to this much.
+            let rounding = if self.is_held_by_ties() {
+                self.slack
+            } else {
+                0.0
+            };
+            let (last, _) = falls_below_zero(low, next, rounding, margin);
             self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {
                 Some(at) => low = at,

@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
 use super::stance::Stance;
-use super::tie::TieLine;
+use super::tie::{TieLine, pull_blocks};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -465,9 +465,8 @@ impl<'a> Trial<'a> {
         self.free.fill(Twist::translation(load));
         if with_ties {
             let (blocks, centres_m) = (self.row.blocks(), self.centres_m);
-            for (line, kg) in self.lines.iter().zip(&self.ties_kg) {
-                line.add_to(blocks, centres_m, *kg, &mut self.free);
-            }
+            let ties = self.lines.iter().zip(self.ties_kg.iter().copied());
+            pull_blocks(blocks, centres_m, ties, &mut self.free);
         }
         let load_case = Load {
             free: &self.free,

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::blocks::Block;
-use super::geometry::field::Twist;
+use super::geometry::field::{Momentum, Twist};
 use super::lanes::{Lanes, Real, both};
 
 /// Where a tie holds on.
@@ -327,28 +327,42 @@ impl TieLine {
         }
     }
 
-    /// The same added to the velocities of the blocks.
-    pub fn add_to(
-        &self,
-        blocks: &[Block],
-        centres_m: &[Vector2<f64>],
-        impulse: f64,
-        velocities: &mut [Twist],
-    ) {
-        self.pull(blocks, centres_m, impulse, |block, velocity, turning| {
-            let gained = Twist::translation(velocity) + Twist::rotation(centres_m[block], turning);
-            velocities[block] = velocities[block] + gained;
-        });
+    /// A pull of 1 on the block at its first end; the one at its second end gets it the other way.
+    fn unit_pull(&self) -> Momentum {
+        Momentum::applied_at(self.ends_m[0], self.along)
     }
 
     /// Rate at which it lengthens while blocks move so and supports do not.
     #[must_use]
     pub fn lengthening(&self, velocities: &[Twist]) -> f64 {
-        let velocity = |end: usize| {
-            let twist = self.ends[end].map(|block| velocities[block]);
-            twist.map_or(Vector2::zeros(), |twist| twist.at(self.ends_m[end]))
-        };
-        self.along.dot(&(velocity(1) - velocity(0)))
+        let pull = self.unit_pull();
+        let power = |block: usize| velocities[block].power(&pull);
+        let [first, second] = self.ends.map(|block| block.map_or(0.0, power));
+        second - first
+    }
+}
+
+/// Adds to the velocities of blocks, with their centres there, what impulses of ties that lie so give them.
+pub fn pull_blocks<'a>(
+    blocks: &[Block],
+    centres_m: &[Vector2<f64>],
+    ties: impl Iterator<Item = (&'a TieLine, f64)>,
+    velocities: &mut [Twist],
+) {
+    let mut pulls = vec![Momentum::ZERO; blocks.len()];
+    for (line, impulse) in ties {
+        let pull = line.unit_pull() * impulse;
+        for (end, pull) in line.ends.iter().zip([pull, pull * -1.0]) {
+            if let Some(block) = *end {
+                pulls[block] = pulls[block] + pull;
+            }
+        }
+    }
+    let bodies = blocks.iter().zip(centres_m).zip(&pulls);
+    for (((block, centre_m), pull), velocity) in bodies.zip(velocities) {
+        let rate = pull.about(*centre_m) / block.inertia_kg_m2;
+        let gained = Twist::translation(pull.linear / block.mass_kg);
+        *velocity = *velocity + gained + Twist::rotation(*centre_m, rate);
     }
 }
 
@@ -455,19 +469,6 @@ impl TieMemory<Lanes<1>> {
     #[must_use]
     pub fn is_broken(&self) -> bool {
         self.intact.0[0] == 0.0
-    }
-
-    /// What it pulls with, in N, when it is then stretched so far beyond its unstressed length, slowly, and by how much harder for each metre
-    /// that it is stretched on, in N/m.
-    #[must_use]
-    pub fn pulls_then(&self, tie: &Tie, stretch_m: f64) -> [f64; 2] {
-        let breaks_m = tie.breaks_at_strain * tie.slack_length_m();
-        if self.is_broken() || stretch_m >= breaks_m {
-            return [0.0; 2];
-        }
-        let force_n = tie.pull_n(self.yielded_m.0[0], Lanes([stretch_m])).0[0];
-        let elastic = force_n > 0.0 && force_n < tie.yield_force_n;
-        [force_n, if elastic { tie.stiffness_n_m } else { 0.0 }]
     }
 }
 

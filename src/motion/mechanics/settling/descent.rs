@@ -20,7 +20,7 @@ use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::stance::Stance;
-use crate::mechanics::tie::TieLine;
+use crate::mechanics::tie::{TieLine, pull_blocks};
 
 /// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
@@ -56,6 +56,8 @@ struct Step<'a> {
     stance: &'a Stance,
     /// How the ties lie when it begins.
     lines: Vec<TieLine>,
+    /// The forces between which each pulls, over gravity.
+    bounds_kg: Vec<[f64; 2]>,
     force_g: Vector2<f64>,
     length: f64,
     /// Corners that press, none before they are known, and what [`Descent::lengthen`] says while they do.
@@ -65,9 +67,19 @@ struct Step<'a> {
 
 impl<'a> Step<'a> {
     fn new(row: &Row, stance: &'a Stance, force_g: Vector2<f64>) -> Self {
+        let ties = row.ties().iter().zip(&stance.ties);
+        let most_kg = ties.map(|(tie, memory)| {
+            let most_n = if memory.is_broken() {
+                0.0
+            } else {
+                tie.yield_force_n
+            };
+            most_n / row.gravity_m_s2()
+        });
         Self {
             stance,
             lines: stance.lines(row).collect(),
+            bounds_kg: most_kg.map(|most_kg| [0.0, most_kg]).collect(),
             force_g,
             length: 0.0,
             pressing: Vec::new(),
@@ -85,8 +97,9 @@ pub(super) struct Descent<'a> {
     free: Vec<Twist>,
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
-    /// What each tie pulls with, over gravity.
+    /// What each tie pulls with, over gravity, and by how much that lengthens it for each kg.
     ties_kg: Vec<f64>,
+    ties_m_kg: Vec<f64>,
 }
 
 impl<'a> Descent<'a> {
@@ -100,6 +113,11 @@ impl<'a> Descent<'a> {
             jumps: vec![Twist::ZERO; joints],
             touching: vec![[true; 2]; joints],
             ties_kg: vec![0.0; row.ties().len()],
+            ties_m_kg: row
+                .ties()
+                .iter()
+                .map(|tie| row.gravity_m_s2() / tie.stiffness_n_m)
+                .collect(),
         }
     }
 
@@ -225,9 +243,13 @@ impl<'a> Descent<'a> {
         let placement = &stance.placement;
         self.free.fill(Twist::translation(force_g * times));
         let (blocks, centres_m) = (self.row.blocks(), placement.centres_m());
-        for (line, kg) in lines.iter().zip(&self.ties_kg) {
-            line.add_to(blocks, centres_m, kg * times, &mut self.free);
-        }
+        let pulls_kg = self.ties_kg.iter().map(|kg| kg * times);
+        pull_blocks(
+            blocks,
+            centres_m,
+            lines.iter().zip(pulls_kg),
+            &mut self.free,
+        );
         for (touching, gaps) in self.touching.iter_mut().zip(placement.gaps_m()) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
@@ -270,7 +292,7 @@ impl<'a> Descent<'a> {
     fn balance_ties(&mut self, step: &mut Step<'_>) -> Result<f64, SettlingError> {
         // Some may have broken in the step before.
         for tie in 0..step.lines.len() {
-            let [least_kg, most_kg] = self.bounds_kg(step, tie);
+            let [least_kg, most_kg] = step.bounds_kg[tie];
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
         self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
@@ -295,35 +317,23 @@ impl<'a> Descent<'a> {
         Err(SettlingError::Ties)
     }
 
-    /// The forces between which a tie pulls, over gravity.
-    fn bounds_kg(&self, step: &Step<'_>, tie: usize) -> [f64; 2] {
-        if step.stance.ties[tie].is_broken() {
-            return [0.0; 2];
-        }
-        [
-            0.0,
-            self.row.ties()[tie].yield_force_n / self.row.gravity_m_s2(),
-        ]
-    }
-
     /// After which part of this change a tie pulls with nothing, or with as much as it can.
     fn ends_at(&self, step: &Step<'_>, tie: usize, change_kg: f64) -> f64 {
         if change_kg == 0.0 {
             return f64::INFINITY;
         }
-        let end_kg = self.bounds_kg(step, tie)[usize::from(change_kg > 0.0)];
+        let end_kg = step.bounds_kg[tie][usize::from(change_kg > 0.0)];
         (end_kg - self.ties_kg[tie]) / change_kg
     }
 
     /// By how much longer each tie is at the end of a step than its force makes it, with the last velocities.
     fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
-        let (row, velocities) = (self.row, self.program.velocities());
-        let lacks_m =
-            (row.ties().iter().zip(&step.lines).enumerate()).map(|(index, (tie, line))| {
-                let then_m = line.stretch_m + step.length * line.lengthening(velocities);
-                let elastic_m = self.ties_kg[index] * row.gravity_m_s2() / tie.stiffness_n_m;
-                then_m - step.stance.ties[index].yielded_m.0[0] - elastic_m
-            });
+        let velocities = self.program.velocities();
+        let lacks_m = step.lines.iter().enumerate().map(|(tie, line)| {
+            let then_m = line.stretch_m + step.length * line.lengthening(velocities);
+            let elastic_m = self.ties_kg[tie] * self.ties_m_kg[tie];
+            then_m - step.stance.ties[tie].yielded_m.0[0] - elastic_m
+        });
         DVector::from_iterator(self.ties_kg.len(), lacks_m)
     }
 
@@ -333,8 +343,7 @@ impl<'a> Descent<'a> {
     /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
     fn way_kg(&self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
         let lengthen = &step.lengthen;
-        let ties = self.row.ties().iter();
-        let kg_m = ties.map(|tie| tie.stiffness_n_m / self.row.gravity_m_s2());
+        let kg_m = self.ties_m_kg.iter().map(|m_kg| 1.0 / m_kg);
         let kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
         let mut goes = self.may_go(step, lacks_m);
         loop {
@@ -418,9 +427,9 @@ impl<'a> Descent<'a> {
     fn respond(&mut self, step: &Step<'_>, kg: impl Fn(usize) -> f64) {
         let centres_m = step.stance.placement.centres_m();
         self.free.fill(Twist::ZERO);
-        for (tie, line) in step.lines.iter().enumerate() {
-            line.add_to(self.row.blocks(), centres_m, kg(tie), &mut self.free);
-        }
+        let ties = step.lines.iter().enumerate();
+        let ties = ties.map(|(tie, line)| (line, kg(tie)));
+        pull_blocks(self.row.blocks(), centres_m, ties, &mut self.free);
         self.program.solve_alike(&Load {
             free: &self.free,
             jumps: &self.jumps,
@@ -431,10 +440,10 @@ impl<'a> Descent<'a> {
     /// By how much less the ties lack, each times its part of a way, for the whole of that way.
     fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
         self.respond(step, |tie| way_kg[tie]);
-        let (row, velocities) = (self.row, self.program.velocities());
-        let each = row.ties().iter().zip(&step.lines).zip(way_kg);
-        each.map(|((tie, line), kg)| {
-            let elastic_m = kg * row.gravity_m_s2() / tie.stiffness_n_m;
+        let velocities = self.program.velocities();
+        let each = self.ties_m_kg.iter().zip(&step.lines).zip(way_kg);
+        each.map(|((m_kg, line), kg)| {
+            let elastic_m = kg * m_kg;
             kg * (elastic_m - step.length * line.lengthening(velocities))
         })
         .sum()
@@ -457,7 +466,7 @@ impl<'a> Descent<'a> {
         for _ in 0..MOST_TRIALS {
             for (tie, from_kg) in from_kg.iter().enumerate() {
                 self.ties_kg[tie] = if part >= ends[tie] {
-                    self.bounds_kg(step, tie)[usize::from(way_kg[tie] > 0.0)]
+                    step.bounds_kg[tie][usize::from(way_kg[tie] > 0.0)]
                 } else {
                     from_kg + part * way_kg[tie]
                 };

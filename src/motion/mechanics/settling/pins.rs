@@ -3,7 +3,7 @@
 //! With more than three hinges the bodies rest where the potential energy of their weight and of the ties is least, of all places in which
 //! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix2x3, Vector2};
+use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
 
 use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
@@ -14,7 +14,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
-use crate::mechanics::tie::{Anchor, TieLine, TieMemory};
+use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory};
 
 /// Steps of Newton's method, at most.
 const MOST_STEPS: usize = 30;
@@ -389,14 +389,108 @@ struct Chain<'a> {
     pins: &'a Pins,
     row: &'a Row,
     condition: &'a Condition,
-    before: &'a Stance,
     /// Of every body: from its first pin to its last one, in metres.
     arms_m: Vec<Vector2<f64>>,
     /// Of every body: its first moment of mass about its first pin, and what is beyond it at its last one, over the whole mass.
     moments_m: Vec<Vector2<f64>>,
-    /// Of every tie: how many hinges are before each of its ends.
-    tied: Vec<[usize; 2]>,
+    bars: Vec<Bar>,
     rotations_rad: Vec<f64>,
+}
+
+/// A tie of a chain that has not broken. Its forces are parts of the weight.
+struct Bar {
+    /// How many hinges are before each of its ends.
+    parts: [usize; 2],
+    /// Where they are in the undeformed row, how far apart, and their distance.
+    ends_m: [Vector2<f64>; 2],
+    apart_m: Vector2<f64>,
+    length_m: f64,
+    /// What it stretches there beyond what it had yielded.
+    stretch_m: f64,
+    /// It has broken beyond this, counted likewise.
+    breaks_m: f64,
+    stiffness_m: f64,
+    most: f64,
+}
+
+impl Bar {
+    fn new(tie: &Tie, parts: [usize; 2], yielded_m: f64, weight_n: f64) -> Self {
+        let ends_m = tie.ends.map(|anchor| anchor.at_m);
+        let (length_m, prestress_m) = (tie.length_m(), tie.prestress_n / tie.stiffness_n_m);
+        Self {
+            parts,
+            ends_m,
+            apart_m: ends_m[1] - ends_m[0],
+            length_m,
+            stretch_m: prestress_m - yielded_m,
+            breaks_m: tie.breaks_at_strain * (length_m - prestress_m) - yielded_m,
+            stiffness_m: tie.stiffness_n_m / weight_n,
+            most: tie.yield_force_n / weight_n,
+        }
+    }
+}
+
+/// What ties between two bodies do to these, each described by the place of its first pin and its rotation: slopes of their energy, and
+/// curvatures. Ends count as if a tie pulled both bodies the same way.
+struct Between {
+    force: Vector2<f64>,
+    moments: Vector2<f64>,
+    along: Vector2<f64>,
+    places: Matrix2<f64>,
+    /// By places (rows) and rotations (columns).
+    mixed: Matrix2<f64>,
+    rotations: Matrix2<f64>,
+}
+
+impl Between {
+    /// Of ties that are all between the same parts, at these poses, whose first pins are there.
+    fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
+        let mut all = Self {
+            force: Vector2::zeros(),
+            moments: Vector2::zeros(),
+            along: Vector2::zeros(),
+            places: Matrix2::zeros(),
+            mixed: Matrix2::zeros(),
+            rotations: Matrix2::zeros(),
+        };
+        for bar in bars {
+            let ends_m = [0, 1].map(|end| poses[end].of(bar.ends_m[end]));
+            let by_m = (ends_m[1] - bar.ends_m[1]) - (ends_m[0] - bar.ends_m[0]);
+            let now_m = bar.apart_m + by_m;
+            let length_m = now_m.norm();
+            // As in `Tie::span`, small changes keep their digits.
+            let lengthened_m = by_m.dot(&(by_m + bar.apart_m * 2.0)) / (length_m + bar.length_m);
+            let stretch_m = lengthened_m + bar.stretch_m;
+            if stretch_m <= 0.0 || stretch_m >= bar.breaks_m {
+                continue;
+            }
+            let elastic = bar.stiffness_m * stretch_m;
+            let (force, stiffness_m) = if elastic < bar.most {
+                (elastic, bar.stiffness_m)
+            } else {
+                (bar.most, 0.0)
+            };
+            let per_length = 1.0 / length_m;
+            let along = now_m * per_length;
+            let arms_m = [ends_m[0] - pins_m[0], ends_m[1] - pins_m[1]];
+            let turns = Vector2::new(arms_m[0].perp(&along), arms_m[1].perp(&along));
+            let across = Vector2::new(arms_m[0].dot(&along), arms_m[1].dot(&along));
+            all.force += along * force;
+            all.moments += turns * force;
+            all.along += across * force;
+            // It pulls harder as it lengthens, and turns with its ends.
+            for (way, turns, stiffness_m) in [
+                (along, turns, stiffness_m),
+                (turned(along), across, force * per_length),
+            ] {
+                let (push, turning) = (way * stiffness_m, turns * stiffness_m);
+                all.places += push * way.transpose();
+                all.mixed += push * turns.transpose();
+                all.rotations += turning * turns.transpose();
+            }
+        }
+        all
+    }
 }
 
 /// What is left of the equations of a chain, and its slopes.
@@ -434,19 +528,28 @@ impl<'a> Chain<'a> {
         let poses = before.placement.poses();
         let bodies = pins.hinges.iter().take(count);
         let support = |anchor: &Anchor| anchor.support(row.feet_m()) * (count + 1);
+        let parts: Vec<usize> = (0..row.blocks().len())
+            .map(|block| pins.part_of(block))
+            .collect();
         let part = |anchor: Anchor| {
             let block = anchor.block;
-            block.map_or_else(|| support(&anchor), |block| pins.part_of(block))
+            block.map_or_else(|| support(&anchor), |block| parts[block])
         };
+        let weight_n = row.mass_kg() * row.gravity_m_s2();
+        let ties = row.ties().iter().zip(&before.ties);
+        let ties = ties.filter(|(_, memory)| !memory.is_broken());
+        let bars = ties.map(|(tie, memory)| {
+            let yielded_m = memory.yielded_m.0[0];
+            Bar::new(tie, tie.ends.map(part), yielded_m, weight_n)
+        });
         Self {
             rotations_rad: bodies
                 .map(|hinge| poses[hinge.joint].rotation_rad())
                 .collect(),
-            tied: row.ties().iter().map(|tie| tie.ends.map(part)).collect(),
+            bars: bars.collect(),
             pins,
             row,
             condition,
-            before,
             arms_m,
             moments_m,
         }
@@ -497,37 +600,40 @@ impl<'a> Chain<'a> {
     /// their rotations; what all of them do to these is then told by the rotations.
     fn add_ties(&self, poses: &[Pose], slopes: &mut DVector<f64>, curvature: &mut DMatrix<f64>) {
         let count = poses.len();
-        let weight_n = self.row.mass_kg() * self.row.gravity_m_s2();
         let supports = &self.condition.supports;
         let parts = [&supports[..1], poses, &supports[1..]].concat();
         let pins_m = self.pins.at_m(&parts);
         let mut forces = DVector::zeros(3 * count);
         let mut stiffnesses = DMatrix::zeros(3 * count, 3 * count);
-        let ties = self.row.ties().iter().zip(&self.before.ties);
-        for ((tie, before), tied) in ties.zip(&self.tied) {
-            let ends_m = [0, 1].map(|end| parts[tied[end]].of(tie.ends[end].at_m));
-            let line = tie.line(ends_m);
-            let [force_n, stiffness_n_m] = before.pulls_then(tie, line.stretch_m);
-            if force_n == 0.0 {
-                continue;
-            }
-            let force = force_n / weight_n;
-            let across = force / (ends_m[1] - ends_m[0]).norm();
-            let along = stiffness_n_m / weight_n - across;
-            let ends = [0, 1].map(|end| {
-                let body = tied[end].checked_sub(1).filter(|body| *body < count)?;
-                let arm_m = (ends_m[end] - pins_m[body]) * ENDS[end];
-                let moves = Matrix2x3::new(ENDS[end], 0.0, -arm_m.y, 0.0, ENDS[end], arm_m.x);
-                Some((3 * body, arm_m, moves, moves.tr_mul(&line.along)))
-            });
-            for (one, arm_m, moves, lengthens) in ends.iter().flatten() {
-                let mut on_body = forces.fixed_rows_mut::<3>(*one);
-                on_body += lengthens * force;
-                stiffnesses[(one + 2, one + 2)] -= force * line.along.dot(arm_m);
-                for (other, _, others, other_lengthens) in ends.iter().flatten() {
-                    let mut between = stiffnesses.fixed_view_mut::<3, 3>(*one, *other);
-                    between += lengthens * other_lengthens.transpose() * along
-                        + moves.tr_mul(others) * across;
+        let alike = self.bars.chunk_by(|one, next| one.parts == next.parts);
+        for bars in alike {
+            let tied = bars[0].parts;
+            let body = tied.map(|part| part.checked_sub(1).filter(|body| *body < count));
+            // What is no body has no pin, and does not turn.
+            let pins_m = body.map(|body| body.map_or(Vector2::zeros(), |body| pins_m[body]));
+            let all = Between::new(bars, tied.map(|part| &parts[part]), pins_m);
+            for (one, first) in body.iter().enumerate() {
+                let Some(first) = first else { continue };
+                let on_body = Vector3::new(all.force.x, all.force.y, all.moments[one]);
+                let mut forces = forces.fixed_rows_mut::<3>(3 * first);
+                forces += on_body * ENDS[one];
+                stiffnesses[(3 * first + 2, 3 * first + 2)] -= ENDS[one] * all.along[one];
+                for (other, second) in body.iter().enumerate() {
+                    let Some(second) = second else { continue };
+                    let [places, mixed] = [&all.places, &all.mixed];
+                    let between = Matrix3::new(
+                        places.m11,
+                        places.m12,
+                        mixed[(0, other)],
+                        places.m21,
+                        places.m22,
+                        mixed[(1, other)],
+                        mixed[(0, one)],
+                        mixed[(1, one)],
+                        all.rotations[(one, other)],
+                    );
+                    let mut stiffnesses = stiffnesses.fixed_view_mut::<3, 3>(3 * first, 3 * second);
+                    stiffnesses += between * (ENDS[one] * ENDS[other]);
                 }
             }
         }
@@ -602,7 +708,6 @@ mod tests {
 
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
-    use crate::mechanics::tie::Tie;
 
     /// The curvature of the energy of weight, ties and the force in the last pin is the slope of its slopes, by central differences: on five
     /// hinges, with ties between bodies and from one to the ground.
