@@ -34,6 +34,10 @@ use crate::bisection::{Width, falls_below_zero, try_bisect};
 
 /// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
 const STEP: f64 = 1e-3;
+/// With ties, steps double as long as blocks turn at the same rates, but for this part of these,
+const EVEN: f64 = 0.05;
+/// up to this one.
+const LONGEST_STEP: f64 = 0.064;
 /// What gives way is pushed on by these parts of size, radian, or gravity, one after the other until it has found other hinges.
 const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
 /// Pushes by which a symmetric row chooses a side, in units of gravity.
@@ -455,15 +459,28 @@ impl<'a> Follower<'a> {
                 None => return Ok(Reached::Falls(low)),
             }
         }
+        let (mut step, mut rates) = (STEP, Vec::new());
         while low < to {
-            let next = (low + STEP * unit).min(to);
+            let next = (low + step * unit).min(to);
             let condition = way(next);
-            if let Some(state) = self.holds(&condition) {
-                low = next;
+            let held = self.holds(&condition);
+            let evenly = held
+                .as_ref()
+                .is_some_and(|state| self.goes_evenly(state, &rates, next - low));
+            if step > STEP && !evenly {
+                step = (0.25 * step).max(STEP);
+                continue;
+            }
+            if let Some(state) = held {
                 // What ties remember depends on the way.
                 if !self.row.ties().is_empty() {
+                    rates = self.rates(&state, next - low).collect();
                     self.stand(&condition, state);
                 }
+                if evenly {
+                    step = (2.0 * step).min(LONGEST_STEP);
+                }
+                low = next;
                 continue;
             }
             let margin = |at: f64| {
@@ -482,9 +499,32 @@ impl<'a> Follower<'a> {
                 Some(at) => low = at,
                 None => return Ok(Reached::Falls(last)),
             }
+            (step, rates) = (STEP, Vec::new());
         }
         self.stand_in(&way(to.max(low)));
         Ok(Reached::End)
+    }
+
+    /// How fast blocks turn on the way to a state so far on.
+    fn rates(&self, there: &State, way: f64) -> impl Iterator<Item = f64> {
+        let here = self.stance.placement.poses().iter();
+        let turns = there.rotations_rad.iter().zip(here);
+        turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / way)
+    }
+
+    /// Whether blocks turn on the way to a state so far on as fast as before, and no tie yields or breaks. Without ties there is no before.
+    fn goes_evenly(&self, there: &State, before: &[f64], way: f64) -> bool {
+        let most = before
+            .iter()
+            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let alike =
+            |(before, now): (&f64, f64)| (before - now).abs() <= EVEN * most + ROUNDING / way;
+        let mut ties = self.stance.ties.iter().zip(&there.ties);
+        !before.is_empty()
+            && before.iter().zip(self.rates(there, way)).all(alike)
+            && ties.all(|(here, there)| {
+                there.yielded_m == here.yielded_m && there.is_broken() == here.is_broken()
+            })
     }
 
     /// The row in a condition in which the present hinges hold it; `None` where they do not.

@@ -181,12 +181,10 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread
     let clear_span_m = across.norm();
     let settled = scenario.motion().supports().unwrap_or_default();
     let longest_m = LONGEST * clear_span_m;
-    let mut paths = Vec::new();
-    for way in ways {
-        paths.push(path(&row, settled, *way, longest_m)?);
-    }
+    let paths = ways.par_iter().with_max_len(1);
+    let paths = paths.map(|way| path(&row, settled, *way, longest_m));
     Ok(SpreadPaths {
-        paths,
+        paths: paths.collect::<Result<_, _>>()?,
         clear_span_m,
         row: row.clone(),
     })

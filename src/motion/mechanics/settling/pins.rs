@@ -17,7 +17,7 @@ use crate::mechanics::stance::{Stance, lines};
 use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory};
 
 /// Steps of Newton's method, at most.
-const MOST_STEPS: usize = 30;
+const MOST_STEPS: usize = 16;
 /// What is unbalanced by less than this part of the weight, or open by less than this part of the size, is rounding.
 const BALANCED: f64 = 1e-12;
 /// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
