@@ -70,8 +70,8 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
-/// Two neighbouring numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number;
-/// or two between which it falls by no more than its rounding, or that are no farther apart where it ends.
+/// Two numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number: neighbours, or
+/// two between which it falls by no more than this rounding, or, where it ends, that are no farther apart than this.
 ///
 /// It asks as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
 /// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2020).
@@ -146,6 +146,21 @@ mod tests {
             });
             assert_eq!(low.next_up(), high);
             assert!((low - SQRT_2).abs() < 1e-15 && asked <= most, "{asked}");
+        }
+    }
+
+    #[test]
+    fn rounding_is_not_followed() {
+        let noisy = |x: f64| SQRT_2 - x + 1e-9 * (1e12 * x).sin();
+        let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
+        for (value, most) in [(noisy as fn(f64) -> f64, 12), (cliff, 30)] {
+            let mut asked = 0;
+            let (low, high) = falls_below_zero(1.0, 2.0, 1e-8, |x| {
+                asked += 1;
+                value(x)
+            });
+            assert!(value(low) >= 0.0 && (value(high) < 0.0 || value(high).is_nan()));
+            assert!((low - SQRT_2).abs() < 2e-8 && asked <= most, "{asked}");
         }
     }
 
