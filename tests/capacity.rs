@@ -7,11 +7,19 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::settling::Held;
 use archrock::mechanics::stability::onset;
 use archrock::scenario::Structure;
-use archrock::studies::capacity::{NoCapacity, capacity};
+use archrock::studies::capacity::{self, NoCapacity};
 use archrock::{
-    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Sway,
+    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
 };
 use nalgebra::Vector2;
+
+/// The capacity curves to the right and to the left.
+fn capacity(
+    scenario: &Scenario,
+    point_m: Option<Vector2<f64>>,
+) -> Result<[Capacity; 2], NoCapacity> {
+    capacity::capacity(scenario, point_m).map(Into::into)
+}
 
 const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
 

@@ -723,7 +723,7 @@ fn a_run_tells_of_its_ties() {
     refuses(&["run", "s.toml", "--hinges", "four"], four);
     let words = printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
     let told = json(&folder.path().join("curve/capacity.json"));
-    let [right, left] = capacity(&parsed(text), None).unwrap();
+    let [right, left] = capacity(&parsed(text), None).unwrap().into();
     for side in [&right, &left] {
         let TieOnTheWay {
             yields_at_m,

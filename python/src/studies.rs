@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::{Batch, Figure};
-use archrock::studies::capacity::{capacity as capacities, tell as tell_capacity};
+use archrock::studies::capacity::{capacity as capacities, report as report_capacity};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::kept::Writer;
 use archrock::studies::map::OverturningMap;
@@ -182,7 +182,7 @@ pub fn capacity<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'
     scenario.check_as_built().map_err(refused)?;
     let files = watched(py, None, move |_| {
         let sides = capacities(&scenario, None).map_err(refused)?;
-        let results = tell_capacity(&scenario, &sides, Figure::SCREEN).map_err(not_written)?;
+        let results = report_capacity(&scenario, &sides, Figure::SCREEN).map_err(not_written)?;
         Ok(results.files)
     })?;
     Ok(to_python(py, files))

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use archrock::studies::capacity::{capacity as capacities, tell};
+use archrock::studies::capacity::{capacity as capacities, report};
 use nalgebra::Vector2;
 
 use super::figure::FigureOption;
@@ -51,7 +51,7 @@ pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         .figure
         .printed(input.results(arguments.out.as_deref())?)
         .locked(CAPACITY, &scenario, quiet)?;
-    let results = tell(&scenario, &sides, arguments.figure.get()?)?;
+    let results = report(&scenario, &sides, arguments.figure.get()?)?;
     place.write(&results, quiet)?;
     show(&results, arguments.format)
 }

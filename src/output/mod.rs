@@ -14,8 +14,10 @@ pub(crate) mod panels;
 pub mod print;
 pub mod record;
 pub mod scene;
+pub(crate) mod summary;
 pub(crate) mod svg;
 pub(crate) mod table;
+pub(crate) mod template;
 
 use std::io;
 use std::path::PathBuf;

@@ -18,6 +18,7 @@
 //! The sums run over the blocks that the mechanism moves. One block has `e* = 1`.
 
 use nalgebra::Vector2;
+use serde::Serialize;
 use thiserror::Error;
 
 use super::chain::{Mechanism as _, MechanismChain, Motion};
@@ -215,7 +216,7 @@ pub struct GivesWay {
 }
 
 /// At which displacements of the control point a tie gives way, in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TieOnTheWay {
     /// It yields, if it does.
     pub yields_at_m: Option<f64>,

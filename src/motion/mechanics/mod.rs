@@ -17,6 +17,7 @@ pub(crate) mod lanes;
 pub mod masonry;
 pub mod parts;
 pub mod settling;
+pub mod sides;
 pub(crate) mod slip;
 pub mod stability;
 pub(crate) mod stance;

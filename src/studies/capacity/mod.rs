@@ -1,11 +1,12 @@
 //! The capacity curves of a scenario: see [`crate::mechanics::capacity`].
 
-mod told;
+mod picture;
+mod report;
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use self::told::{FILES, tell};
+pub use self::report::{CapacitySide, FILES, Oscillator, SecantPeriods, Summary, report};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
@@ -13,6 +14,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::arch::FourLinkError;
 use crate::mechanics::parts::Parts;
 use crate::mechanics::settling::{Held, HeldError};
+use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{Scenario, Structure};
 
@@ -44,7 +46,7 @@ pub enum NoCapacity {
 pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
-) -> Result<[Capacity; 2], NoCapacity> {
+) -> Result<Sides<Capacity>, NoCapacity> {
     if let Some(row) = held_row(scenario.structure())? {
         return of_row(&row, point_m, scenario.gravity_m_s2());
     }
@@ -61,9 +63,9 @@ pub fn capacity(
         };
         let gravity_m_s2 = scenario.gravity_m_s2();
         let control = Control::point(carried(place, at_m));
-        Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
+        Capacity::new(sway, displaced, &masses, control, gravity_m_s2).map_err(NoCapacity::from)
     };
-    Ok([side(Sway::Right)?, side(Sway::Left)?])
+    Sides::try_of(side)
 }
 
 /// The blocks of a structure whose first mechanism is followed as a row: one with ties, or a stack on one support that is not
@@ -84,7 +86,7 @@ fn of_row(
     row: &Row,
     point_m: Option<Vector2<f64>>,
     gravity_m_s2: f64,
-) -> Result<[Capacity; 2], NoCapacity> {
+) -> Result<Sides<Capacity>, NoCapacity> {
     let (place, at_m) = control(row, point_m)?;
     let side = |sway| -> Result<Capacity, NoCapacity> {
         let held = Held::new(row, sway)?;
@@ -95,7 +97,7 @@ fn of_row(
         let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
         Ok(capacity.with_ties(&held.ties_give_way(), displaced, gravity_m_s2))
     };
-    Ok([side(Sway::Right)?, side(Sway::Left)?])
+    Sides::try_of(side)
 }
 
 /// The given point with its place, or else the crown.

@@ -1,0 +1,60 @@
+//! Results to the right and to the left.
+
+use serde::{Deserialize, Serialize};
+
+use super::sway::Sway;
+
+/// A result for either direction of sway.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Sides<T> {
+    /// Swaying to the right.
+    pub right: T,
+    /// Swaying to the left.
+    pub left: T,
+}
+
+impl<T> Sides<T> {
+    /// Computes both sides, the right one first.
+    pub fn of(mut side: impl FnMut(Sway) -> T) -> Self {
+        Self {
+            right: side(Sway::Right),
+            left: side(Sway::Left),
+        }
+    }
+
+    /// Computes both sides, the right one first.
+    ///
+    /// # Errors
+    /// The first error of a side.
+    pub fn try_of<E>(mut side: impl FnMut(Sway) -> Result<T, E>) -> Result<Self, E> {
+        Ok(Self {
+            right: side(Sway::Right)?,
+            left: side(Sway::Left)?,
+        })
+    }
+
+    /// The result to one side.
+    pub const fn to(&self, sway: Sway) -> &T {
+        match sway {
+            Sway::Right => &self.right,
+            Sway::Left => &self.left,
+        }
+    }
+
+    /// Both results with their sides, the right one first.
+    pub fn iter(&self) -> impl Iterator<Item = (Sway, &T)> {
+        [(Sway::Right, &self.right), (Sway::Left, &self.left)].into_iter()
+    }
+
+    /// Derives a result for either side from each of these.
+    pub fn map<U>(&self, mut result: impl FnMut(&T) -> U) -> Sides<U> {
+        Sides::of(|sway| result(self.to(sway)))
+    }
+}
+
+impl<T> From<Sides<T>> for [T; 2] {
+    /// The right one first.
+    fn from(sides: Sides<T>) -> Self {
+        [sides.right, sides.left]
+    }
+}

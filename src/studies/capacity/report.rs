@@ -1,0 +1,165 @@
+//! The report of capacity curves: a table, a picture, and the summary in JSON and words.
+
+use askama::Template;
+use nalgebra::Vector2;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::held_row;
+use super::picture::draw;
+use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
+use crate::mechanics::parts::Parts as _;
+use crate::mechanics::sides::Sides;
+use crate::mechanics::sway::Sway;
+use crate::output::summary::summary_of;
+use crate::output::table::{column, csv};
+use crate::output::template::{filters, render};
+use crate::output::{Figure, OutputError, pretty};
+use crate::scenario::Scenario;
+use crate::studies::results::Results;
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
+
+/// Summary of the capacity curves of a structure.
+#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[template(path = "studies/capacity/words.txt")]
+pub struct Summary {
+    /// The curves to the right and to the left, without their points.
+    pub capacity: Sides<CapacitySide>,
+    /// Parts of the structure whose centres carry its masses.
+    pub masses: String,
+    /// The scenario with all defaults.
+    pub scenario: Value,
+}
+
+/// Summary of the capacity curve to one side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CapacitySide {
+    /// The control point in the undeformed structure, in metres.
+    pub control_point_m: Vector2<f64>,
+    /// `a(0) = A_L`, in units of gravity.
+    pub acceleration_g: f64,
+    /// Displacement of the control point at the unstable equilibrium, in metres.
+    pub ultimate_displacement_m: f64,
+    /// The equivalent oscillator.
+    pub oscillator: Oscillator,
+    /// Displacements at which ties give way, if there are ties.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ties: Vec<TieOnTheWay>,
+}
+
+/// The equivalent oscillator of a capacity curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Oscillator {
+    /// Participating mass `M*`, in kg.
+    pub participating_mass_kg: f64,
+    /// `e*`: the participating mass as a fraction of the mass that moves.
+    pub mass_fraction: f64,
+    /// `a0*`, in units of gravity.
+    pub acceleration_g: f64,
+    /// `d0*`, in metres.
+    pub ultimate_displacement_m: f64,
+    /// Secant periods in seconds, at parts of `d0*`.
+    pub secant_period_s_at_part_of_ultimate: SecantPeriods,
+}
+
+/// Secant periods in seconds, at parts of the ultimate displacement; absent where ties have no force left.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SecantPeriods {
+    /// At a fifth of the ultimate displacement.
+    #[serde(rename = "0.2")]
+    pub at_20: Option<f64>,
+    /// At two fifths of the ultimate displacement.
+    #[serde(rename = "0.4")]
+    pub at_40: Option<f64>,
+    /// At three fifths of the ultimate displacement.
+    #[serde(rename = "0.6")]
+    pub at_60: Option<f64>,
+    /// At four fifths of the ultimate displacement.
+    #[serde(rename = "0.8")]
+    pub at_80: Option<f64>,
+}
+
+impl CapacitySide {
+    fn of(side: &Capacity, gravity_m_s2: f64) -> Self {
+        let (start, end) = (side.start(), side.end());
+        let period_s = |part| side.secant_period_s(part, gravity_m_s2);
+        Self {
+            control_point_m: side.control.at_m,
+            acceleration_g: start.acceleration_g,
+            ultimate_displacement_m: end.displacement_m,
+            oscillator: Oscillator {
+                participating_mass_kg: side.participating_mass_kg,
+                mass_fraction: side.mass_fraction,
+                acceleration_g: start.oscillator_acceleration_g,
+                ultimate_displacement_m: end.oscillator_displacement_m,
+                secant_period_s_at_part_of_ultimate: SecantPeriods {
+                    at_20: period_s(0.2),
+                    at_40: period_s(0.4),
+                    at_60: period_s(0.6),
+                    at_80: period_s(0.8),
+                },
+            },
+            ties: side.ties.clone(),
+        }
+    }
+}
+
+/// Files, words and JSON for the curves of a scenario to both sides.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn report(
+    scenario: &Scenario,
+    sides: &Sides<Capacity>,
+    figure: Figure,
+) -> Result<Results, OutputError> {
+    let masses = match held_row(scenario.structure()) {
+        Ok(Some(row)) => row.parts_in_words(),
+        _ => scenario.structure().as_parts().parts_in_words(),
+    };
+    let summary = Summary {
+        capacity: sides.map(|side| CapacitySide::of(side, scenario.gravity_m_s2())),
+        masses,
+        scenario: scenario.to_json(),
+    };
+    let json = summary_of(&summary)?;
+    let title = scenario.title().unwrap_or("Capacity");
+    let contents = [
+        figure
+            .fitted(|figure| draw(figure, title, sides))
+            .into_bytes(),
+        table(sides)?,
+        pretty(&json).into_bytes(),
+    ];
+    Ok(Results {
+        files: FILES.into_iter().zip(contents).collect(),
+        words: render(&summary),
+        summary: json,
+        ..Results::default()
+    })
+}
+
+/// A row for each point of the curves, those to the right first. The secant period is empty at the unstable equilibrium.
+fn table(sides: &Sides<Capacity>) -> Result<Vec<u8>, OutputError> {
+    type Row<'a> = (Sway, &'a CurvePoint);
+    let rows: Vec<Row<'_>> = sides
+        .iter()
+        .flat_map(|(sway, side)| side.curve.iter().map(move |point| (sway, point)))
+        .collect();
+    let columns = [
+        column("sway", |row: &Row<'_>| row.0.name()),
+        column("q_rad", |row: &Row<'_>| row.1.q_rad),
+        column("displacement_m", |row: &Row<'_>| row.1.displacement_m),
+        column("acceleration_g", |row: &Row<'_>| row.1.acceleration_g),
+        column("oscillator_displacement_m", |row: &Row<'_>| {
+            row.1.oscillator_displacement_m
+        }),
+        column("oscillator_acceleration_g", |row: &Row<'_>| {
+            row.1.oscillator_acceleration_g
+        }),
+        column("secant_period_s", |row: &Row<'_>| row.1.secant_period_s),
+    ];
+    csv(columns, &rows)
+}
