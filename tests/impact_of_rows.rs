@@ -237,7 +237,6 @@ fn on_a_pier(folder: &Path) -> (Row, f64) {
 }
 
 /// Velocities of the blocks in m/s and rad/s.
-#[expect(clippy::cast_precision_loss, reason = "few blocks")]
 fn velocities(field: &Field, row: &Row) -> Vec<Twist> {
     let blocks = 0..row.blocks().len();
     let twists = blocks.map(|block| field.at(block as f64 + 0.5, Side::After));

@@ -224,11 +224,6 @@ fn a_film_is_numbered_pictures() {
             .unwrap()
     };
     let names = frames("20");
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a few"
-    )]
     let due = (end_s(folder.path()) * 20.0) as usize + 1;
     assert_eq!(names.len(), due);
     for (number, name) in (1..).zip(&names) {

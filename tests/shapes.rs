@@ -295,7 +295,6 @@ fn buttresses(folder: &Path, sides: usize) {
         let (sin, cos) = degrees.to_radians().sin_cos();
         (radius * cos, 16.4 + radius * sin)
     };
-    #[expect(clippy::cast_precision_loss)]
     let at = |from: f64, to: f64, i: usize| from + (to - from) * (i as f64 / sides as f64);
     let angle = |joint: usize| 150.0 - 10.0 * f64::from(u32::try_from(joint).unwrap());
     let mut joints = "xi,yi,xe,ye\n-10,0,-15,0\n".to_owned();

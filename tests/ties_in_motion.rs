@@ -299,7 +299,6 @@ fn a_stiff_tie_between_springings_on_piers_is_as_good_as_fixed_supports() {
         let piers = "[piers]\nheight_m = 1.0\nwidth_m = 1.2\nblocks = 1\n";
         let tie = format!("[[tie]]\nbetween = \"springings\"\nstiffness_n_m = {stiffness_n_m:e}\n");
         let [thrust_n, gap_m, tie_n] = rest(&format!("{piers}{}", tie.repeat(count)), 11);
-        #[expect(clippy::cast_precision_loss, reason = "few ties")]
         let ties_n = tie_n * count as f64;
         [thrust_n, gap_m, ties_n]
     };

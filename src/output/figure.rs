@@ -286,11 +286,6 @@ impl Figure {
     /// Ticks along the width where there are so many on the screen.
     #[must_use]
     pub fn ticks(&self, on_screen: u32) -> u32 {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a few"
-        )]
         let ticks = (f64::from(on_screen) * self.width_px / Self::SCREEN.width_px).round() as u32;
         ticks.max(3)
     }
@@ -298,11 +293,6 @@ impl Figure {
     /// How many things stand side by side that are at least so wide, of `wanted` at most.
     #[must_use]
     pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a few"
-        )]
         let fit = (self.width_px / least_px) as usize;
         fit.clamp(1, wanted)
     }

@@ -515,7 +515,6 @@ impl Scale {
             _ if decades < 4.0 => &[1, 2, 5],
             _ => &[1],
         };
-        #[expect(clippy::cast_possible_truncation, reason = "exponents of an f64")]
         let [first, last] = [self.low, self.high].map(|end| end.log10().floor() as i32);
         (first..=last)
             .flat_map(|exponent| digits.iter().map(move |digit| (*digit, exponent)))
@@ -536,11 +535,6 @@ impl Scale {
         // Very large and very small values are written with powers of ten.
         let exponent = step.log10().floor();
         let plain = largest < 1e5 && exponent >= -5.0;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "small whole numbers"
-        )]
         let (count, digits) = (count.max(0.0) as u32, (-exponent).max(0.0) as usize);
         (0..=count)
             .map(|i| {

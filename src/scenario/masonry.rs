@@ -202,7 +202,6 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
     let mut lines = Vec::new();
     for (line, [block, x, y]) in rows {
         let index = (1..=blocks).find(|index| {
-            #[expect(clippy::cast_precision_loss, reason = "counts are small")]
             let number = *index as f64;
             number == block
         });

@@ -145,11 +145,6 @@ impl Sequence {
 /// number twelve digits, or more if a millionth of a step needs them.
 fn round(value: f64, largest: f64, step: f64) -> f64 {
     let digits = (12.0 - largest.log10().floor()).max(6.0 - step.log10().floor());
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small whole number"
-    )]
     let digits = digits.clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
     // Turns negative zero into zero.
@@ -157,7 +152,6 @@ fn round(value: f64, largest: f64, step: f64) -> f64 {
 }
 
 /// A number of a range. The ends are exact, and so is every number with few digits.
-#[expect(clippy::cast_precision_loss, reason = "at most ten thousand")]
 fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     let part = index as f64 / last as f64;
     match spacing {

@@ -181,7 +181,6 @@ impl<'a> Place<'a> {
             };
             let at = seen(at_m);
             let mirrored = Vector2::new(sway.sign() * at.x, at.y);
-            #[expect(clippy::cast_precision_loss, reason = "few blocks")]
             let section = block.map_or(0.0, |block| block as f64 + 0.5);
             let section = match sway {
                 Sway::Right => section,

@@ -56,7 +56,6 @@ impl ThrustRecord {
     /// Shares of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None`
     /// if no sample is in motion.
     #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "sample counts are below 2^53")]
     pub fn shares_within(&self) -> Option<[f64; 2]> {
         (self.moving > 0).then(|| self.within.map(|count| count as f64 / self.moving as f64))
     }

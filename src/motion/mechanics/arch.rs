@@ -198,7 +198,6 @@ impl Arch {
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
     pub fn with_voussoirs(self, voussoirs: usize) -> Result<Self, ArgumentError> {
         if !VOUSSOIRS.contains(&voussoirs) {
-            #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
             return Err(ArgumentError {
                 argument: "voussoirs",
                 value: voussoirs as f64,

@@ -155,9 +155,7 @@ impl Column {
     /// # Errors
     /// When there is none, or more than a row of blocks may have.
     pub fn with_drums(self, drums: usize) -> Result<Self, ArgumentError> {
-        #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
         let count = drums as f64;
-        #[expect(clippy::cast_precision_loss, reason = "the limit is small")]
         within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
         let heights_m = vec![self.height_m / count; drums];
         Ok(Self {
@@ -172,7 +170,6 @@ impl Column {
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
     /// there are none or too many.
     pub fn with_drum_heights_m(self, heights_m: Vec<f64>) -> Result<Self, ArgumentError> {
-        #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
         within("drums", heights_m.len() as f64, 1.0..=MAX_BLOCKS as f64)?;
         for height_m in &heights_m {
             within("drum_heights_m", *height_m, MAGNITUDE)?;
@@ -366,7 +363,6 @@ impl RockingColumn {
         let model = law.model;
         let drums = column.drum_heights_m().len();
         if drums > 1 {
-            #[expect(clippy::cast_precision_loss, reason = "counts of drums are small")]
             return Err(ArgumentError {
                 argument: "drums",
                 value: drums as f64,

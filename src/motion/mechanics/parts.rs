@@ -297,7 +297,6 @@ impl Row {
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "blocks are few")]
 fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5
 }

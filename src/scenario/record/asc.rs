@@ -49,7 +49,6 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFaul
         }
     }
     let found = accelerations.len();
-    #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     if let Some((line, count)) = header.count
         && count != found as f64
     {

@@ -51,7 +51,6 @@ pub(super) fn parse(
             }
             let value = sample(word).map_err(fault)?;
             // Counts below 2^53 are exact.
-            #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
             samples.push((samples.len() as f64 * header.step_s, value));
         }
     }
@@ -186,7 +185,6 @@ impl Header {
                 short(MIN_STEP_S)
             ));
         }
-        #[expect(clippy::cast_precision_loss, reason = "the bound is below 2^53")]
         let max_count = MAX_SAMPLES as f64;
         if !(count.fract() == 0.0 && (2.0..=max_count).contains(&count)) {
             return Err(format!(
@@ -197,11 +195,6 @@ impl Header {
         if (count - 1.0) * step_s > MAX_TIME_S {
             return Err(format!("NPTS and DT {}", too_long((count - 1.0) * step_s)));
         }
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "the range was checked"
-        )]
         let count = count as usize;
         Ok(Self {
             line,

@@ -66,7 +66,6 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
     let samples = evenly(step_s, accelerations)
         .map_err(|wrong| fault(format!("{FREQUENCY} and the number of samples {wrong}")))?;
     // The header gives the duration in whole seconds.
-    #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     let lasts_s = count as f64 * step_s;
     if let Some((line, duration_s)) = header.duration_s
         && (lasts_s - duration_s).abs() > 1.0

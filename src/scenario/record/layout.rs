@@ -409,7 +409,6 @@ impl Rule for AnyColumn {
 /// Samples with times at even steps, which must not last too long; the error continues the key that sets the step.
 pub(super) fn evenly(step_s: f64, accelerations: Vec<f64>) -> Result<Samples, String> {
     // Counts below 2^53 are exact.
-    #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
     let time_s = |index: usize| index as f64 * step_s;
     let last_s = time_s(accelerations.len().saturating_sub(1));
     if last_s > MAX_TIME_S {

@@ -368,7 +368,6 @@ impl Series {
         const EVEN: f64 = 1e-3;
         let steps = || self.samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let duration_s = self.last_s() - self.first_s();
-        #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
         let mean_s = duration_s / (self.samples.len() - 1) as f64;
         Sampling {
             count: self.samples.len(),

@@ -174,7 +174,6 @@ fn place_of_hinge(hinge: &Hinge) -> f64 {
     }
 }
 
-#[expect(clippy::cast_precision_loss, reason = "joints are few")]
 const fn place_of_joint(joint: usize) -> f64 {
     joint as f64
 }

@@ -63,11 +63,6 @@ impl Histories {
         let end_s = request.end_s.min(2.0 * summary.end_s);
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "at most some hundred"
-        )]
         let times = (samples / stride).floor() as usize + 1;
         Ok(Self {
             body,
@@ -124,10 +119,6 @@ impl Histories {
             let wanted = self.step_s * course_rad.len() as f64 - 0.5 * request.output_step_s;
             if sample.time_s >= wanted && course_rad.len() < self.times {
                 let rotation = sample.rotations_rad.get(self.body).copied();
-                #[expect(
-                    clippy::cast_possible_truncation,
-                    reason = "seven digits are enough to draw"
-                )]
                 course_rad.push(rotation.unwrap_or(0.0) as f32);
             }
             ControlFlow::Continue(())

@@ -82,11 +82,6 @@ fn between(
     let place = (part * ascending.len() as f64 - 0.5).clamp(0.0, last as f64);
     // A rounding error must not reach for the next value, which may be infinite.
     let below = (place + 1e-9).floor();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "an index"
-    )]
     let index = below as usize;
     let (low, way) = (ascending[index], place - below);
     if way <= 1e-9 || low.is_infinite() || ascending[index + 1] == low {
@@ -185,7 +180,6 @@ fn draws() -> impl FnMut(usize) -> usize {
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         mixed ^ (mixed >> 31)
     };
-    #[expect(clippy::cast_possible_truncation, reason = "below a count")]
     move |below| ((u128::from(next()) * below as u128) >> 64) as usize
 }
 

@@ -127,7 +127,6 @@ const fn ended(row: &CellRow) -> Option<&Ending> {
 /// The numbers of a cell, by their names.
 fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
     type Of = fn(&CellRow) -> Option<f64>;
-    #[expect(clippy::cast_precision_loss, reason = "numbers of impacts are small")]
     let all: [(&str, Of); 5] = [
         ("impacts", |row| Some(ended(row)?.known_impacts()? as f64)),
         ("outcome_time_s", |row| ended(row)?.known_time_s()),

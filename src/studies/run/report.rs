@@ -354,7 +354,6 @@ impl Report {
         let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
         let thrust_unit = FARTHEST / MOST;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
-        #[expect(clippy::cast_possible_truncation, reason = "the ratio is clamped")]
         let thrust: Vec<i16> = ratios
             .map(|ratio| {
                 ratio.map_or(NO_THRUST, |ratio| {

@@ -156,7 +156,6 @@ impl Picture for RowTimeline {
         }
         // An empty panel would only take up room.
         if shows(Panel::Joints) && self.joints.any() {
-            #[expect(clippy::cast_precision_loss, reason = "few joints")]
             let (height, highest) = (
                 (14 * self.joints.count).clamp(60, 260) as f64,
                 self.joints.count as f64 - 0.5,
@@ -346,7 +345,6 @@ impl OpenJoints {
     }
 
     fn draw(&self, drawing: &mut Drawing, axes: &Axes, end_s: f64) {
-        #[expect(clippy::cast_precision_loss, reason = "few joints")]
         let row_px = axes.frame.height / self.count as f64;
         for (kind, bit) in KINDS {
             // Divided strips this narrow would look pale.
@@ -357,7 +355,6 @@ impl OpenJoints {
             };
             let mut path = String::new();
             for joint in 0..self.count {
-                #[expect(clippy::cast_precision_loss, reason = "few joints")]
                 let [low, high] = part.map(|part| joint as f64 + part);
                 let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
                 let mut columns = 0..self.starts_s.len();

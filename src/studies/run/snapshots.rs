@@ -127,7 +127,6 @@ impl Snapshots {
 
     fn sheet(&self, figure: Figure, title: &str, shown: &[&Sample]) -> String {
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
-        #[expect(clippy::cast_precision_loss, reason = "few pictures")]
         let cell_px = figure.width_px() / columns as f64;
         let [low_m, high_m] = self.scene.frame_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);

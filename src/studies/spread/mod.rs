@@ -241,11 +241,6 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
 fn stage(follower: &Follower<'_>, movement_m: f64) -> Stage {
     let row = follower.row();
     let (place, crown_m) = row.crown();
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the index of a block and a half"
-    )]
     let block = place as usize;
     let poses = follower.placement().poses();
     let mut not_found = Vec::new();

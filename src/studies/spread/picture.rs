@@ -21,7 +21,6 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Sc
     let top = drawing.title(title);
     let top = draw_pushes(&mut drawing, figure, top, spread);
     let columns = figure.columns(spread.paths.len().clamp(1, COLUMNS), LEAST_PX);
-    #[expect(clippy::cast_precision_loss, reason = "few pictures")]
     let cell_px = figure.width_px() / columns as f64;
     let mut top = top;
     for paths in spread.paths.chunks(columns) {

@@ -432,11 +432,6 @@ fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
 
 /// Number of decimals that show two digits of an error.
 fn digits(error: f64) -> usize {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small whole number"
-    )]
     let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
     digits
 }

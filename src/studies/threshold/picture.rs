@@ -57,7 +57,6 @@ pub fn draw(
     } else {
         Scale::logarithmic(first, last)
     };
-    #[expect(clippy::cast_precision_loss, reason = "a handful of models")]
     let strips = thresholds.len() as f64 * (EDGE_LABELS + STRIP);
     let axes = Axes {
         frame: figure.plot(top + strips + 16.0, figure.height_px(320.0)),
@@ -323,11 +322,6 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
 /// Positions for labels near the given ascending positions, side by side between `left` and `right`; fewer if
 /// there is not enough room for all.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small whole number, not negative"
-    )]
     let room = ((right - left) / LABEL_ADVANCE) as usize + 1;
     let mut least = left;
     let mut spread: Vec<f64> = Vec::new();

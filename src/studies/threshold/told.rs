@@ -109,11 +109,6 @@ fn decimals(value: f64) -> usize {
     } else {
         1.0
     };
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a small whole number, not negative"
-    )]
     let decimals = (4.0 - before_point).max(0.0) as usize;
     decimals
 }

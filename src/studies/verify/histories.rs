@@ -343,7 +343,6 @@ fn spectrum_ratios(
             let own_m = records
                 .iter()
                 .map(|samples| peak_displacement(samples, period_s, 5.0));
-            #[expect(clippy::cast_precision_loss, reason = "records are few")]
             let mean_m = own_m.sum::<f64>() / records.len() as f64;
             let circular = 2.0 * std::f64::consts::PI / period_s;
             let demand_g = spectrum.acceleration_g(period_s, 5.0).ok()?;

@@ -27,7 +27,6 @@ impl GroundMotion {
     /// When there are fewer than two samples, or a number is outside its range.
     pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
         within("step_s", step_s, MIN_STEP_S..=1e9)?;
-        #[expect(clippy::cast_precision_loss, reason = "counts are below 2^53")]
         let samples: Vec<_> = horizontal_m_s2
             .iter()
             .enumerate()

@@ -575,7 +575,6 @@ impl<'r> Sampler<'r> {
         }
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "sample counts are below 2^53")]
     fn next_s(&self) -> f64 {
         self.next as f64 * self.output_step_s
     }

@@ -175,7 +175,6 @@ impl Program {
 
     fn interior_from(&mut self, start: f64, tolerance: f64, passes: &mut usize) -> bool {
         let joints = self.own.len();
-        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
         let count = joints as f64;
         self.impulses.copy_from_slice(&self.before);
         self.find_rates();
@@ -345,7 +344,6 @@ mod tests {
             state = state
                 .wrapping_mul(6_364_136_223_846_793_005)
                 .wrapping_add(1);
-            #[expect(clippy::cast_precision_loss, reason = "a random number")]
             let part = (state >> 11) as f64 / (1_u64 << 53) as f64;
             2.0 * part - 1.0
         };

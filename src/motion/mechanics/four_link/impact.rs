@@ -107,7 +107,6 @@ impl ImpactLaw {
     }
 
     /// Whether impacts are those of the model, unchanged.
-    #[expect(clippy::float_cmp, reason = "the factor of the model itself")]
     pub fn is_theory(self) -> bool {
         self.restitution_factor == 1.0
     }

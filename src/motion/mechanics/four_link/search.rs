@@ -251,7 +251,6 @@ fn ascend_all_sides(
     objective: &impl Objective,
 ) -> Option<(f64, FourLink)> {
     let mut top = ascend(profile, ends, start, objective)?;
-    #[expect(clippy::cast_precision_loss, reason = "a small number")]
     let interval = profile.end() / LATTICE_INTERVALS as f64;
     loop {
         let angles = top.1.hinges_rad();

@@ -282,11 +282,6 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()
         .max(4.0);
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "4 to 180"
-    )]
     let samples: Vec<(f64, Demand)> = (0..=intervals as u32)
         .map(|i| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals))
         .map(|angle_rad| (angle_rad, at(angle_rad)))

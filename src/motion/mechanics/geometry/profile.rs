@@ -173,11 +173,6 @@ impl JointedProfile {
     }
 
     /// The joint at a section.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "sections are joints, which are few"
-    )]
     fn index(&self, section: f64) -> usize {
         (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }
@@ -188,7 +183,6 @@ impl JointedProfile {
 }
 
 impl Profile for JointedProfile {
-    #[expect(clippy::cast_precision_loss, reason = "joints are few")]
     fn end(&self) -> f64 {
         (self.joints.len() - 1) as f64
     }
@@ -209,7 +203,6 @@ impl Profile for JointedProfile {
         self.moments[self.index(section)]
     }
 
-    #[expect(clippy::cast_precision_loss, reason = "joints are few")]
     fn sections(&self, _: usize) -> Vec<f64> {
         (0..self.joints.len()).map(|joint| joint as f64).collect()
     }

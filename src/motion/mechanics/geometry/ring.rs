@@ -120,11 +120,6 @@ impl Ring {
     #[must_use]
     pub fn sector_outline(&self, start_rad: f64, end_rad: f64) -> Vec<Vector2<f64>> {
         let lines = ((end_rad - start_rad) / OUTLINE_STEP_RAD).ceil().max(1.0);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "1 to 60"
-        )]
         let count = lines as u32;
         let at = |i: u32, edge: Edge| {
             let part = f64::from(i) / lines;
@@ -138,7 +133,6 @@ impl Ring {
     /// The sections that cut the ring into `parts` equal parts, springings included, in radians.
     #[must_use]
     pub fn sections(&self, parts: usize) -> Vec<f64> {
-        #[expect(clippy::cast_precision_loss, reason = "part counts are small")]
         (0..=parts)
             .map(|i| self.embrace_rad * (i as f64 / parts as f64))
             .collect()

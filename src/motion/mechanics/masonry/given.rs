@@ -108,7 +108,6 @@ impl GivenBlocks {
         if blocks > 0 && (densities == 1 || densities == blocks) {
             return Ok(());
         }
-        #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
         Err(ArgumentError {
             argument: "density_kg_m3",
             value: densities as f64,

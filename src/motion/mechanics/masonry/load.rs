@@ -21,7 +21,6 @@ pub struct PlacedLoad {
     pub width_m: f64,
 }
 
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks for it")]
 fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }

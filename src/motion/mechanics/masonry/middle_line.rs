@@ -71,7 +71,6 @@ fn cut_equally(middle: &[Curve], dimensions: &Dimensions) -> CutArch {
     cut(middle, dimensions.thickness_m, &at_m)
 }
 
-#[expect(clippy::cast_precision_loss, reason = "counts are small")]
 pub(super) fn part(index: usize, count: usize) -> f64 {
     index as f64 / count as f64
 }

@@ -85,7 +85,6 @@ impl Dimensions {
         if VOUSSOIRS.contains(&self.voussoirs) {
             return Ok(());
         }
-        #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
         Err(ArgumentError {
             argument: "voussoirs",
             value: self.voussoirs as f64,

@@ -70,7 +70,6 @@ impl Pier {
             within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
         }
         if !(1..=MAX_BLOCKS).contains(&self.blocks) {
-            #[expect(clippy::cast_precision_loss, reason = "to be shown only")]
             return Err(ArgumentError {
                 argument: "blocks",
                 value: self.blocks as f64,
@@ -95,7 +94,6 @@ impl Pier {
         let inner = springing.intrados_m;
         let outer_x = inner.x + side.sign() * self.width_m;
         let base_y = inner.y - self.height_m;
-        #[expect(clippy::cast_precision_loss, reason = "counts are small")]
         let level = |course: usize| {
             let y = base_y + self.height_m * (course as f64 / self.blocks as f64);
             Joint {

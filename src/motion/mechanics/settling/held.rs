@@ -206,11 +206,6 @@ impl<'a> Held<'a> {
 
     /// What its ties remember of the steps on the way there.
     fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "steps of less than a quarter of a turn, from zero on"
-        )]
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]
     }

@@ -104,7 +104,6 @@ fn off_line_m(point_m: Vector2<f64>, from_m: Vector2<f64>, to_m: Vector2<f64>) -
 fn outlined(body: Option<usize>, corners_m: &[Vector2<f64>], unit_m: f64) -> Value {
     let corners = corners_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
-    #[expect(clippy::cast_possible_truncation, reason = "a few ten thousand units")]
     let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
     json!({ "body": body_number(body), "outline": outline })
 }
@@ -116,11 +115,6 @@ pub(super) fn body_number(body: Option<usize>) -> i64 {
 
 /// A fraction in eight bits; only zero becomes zero.
 pub(super) fn eighth(part: f64) -> u8 {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "it is clamped"
-    )]
     let bits = (255.0 * part).ceil().clamp(0.0, 255.0) as u8;
     bits
 }
@@ -131,10 +125,6 @@ fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
         .clone()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
     let unit = if most > 0.0 { most / MOST } else { 1.0 };
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "the unit is such that they fit"
-    )]
     let whole = values.map(|value| (value / unit).round() as i16).collect();
     (whole, unit)
 }
@@ -144,10 +134,6 @@ pub(super) fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> 
 }
 
 pub(super) fn floats(values: impl Iterator<Item = f64>) -> String {
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a picture needs no more digits"
-    )]
     encoded(values.map(|value| (value as f32).to_le_bytes()))
 }
 
