@@ -224,7 +224,6 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
         "run",
         "limit",
         "impact",
-        "chart",
         "map",
         "spectrum",
         "suite",
@@ -343,7 +342,6 @@ fn a_place_that_cannot_be_written_is_said_before_the_work() {
     for (command, option) in [
         ("run", "--out"),
         ("threshold", "--out"),
-        ("chart", "--out"),
         ("limit", "--plot"),
         ("impact", "--plot"),
         ("impact", "--line"),
@@ -568,7 +566,6 @@ fn every_help_has_examples_that_are_right() {
         "capacity",
         "spread",
         "verify",
-        "chart",
         "map",
         "spectrum",
         "suite",

@@ -250,7 +250,7 @@ fn faults(picture: &str, width_mm: f64, height_mm: Option<f64>, text_pt: f64) ->
 /// Pictures and the arguments that draw them into the folder `out`, or as `plot.svg`.
 fn pictures(map: &str) -> Vec<(Vec<String>, Vec<&'static str>)> {
     let scenario = |name: &str| scenarios().join(name).to_str().unwrap().to_owned();
-    let cases: [(&str, &str, &[&str], &[&str]); 17] = [
+    let cases: [(&str, &str, &[&str], &[&str]); 16] = [
         ("check", "semicircle-pulse.toml", &[], &[]),
         ("check", "pointed-arch-on-piers.toml", &[], &[]),
         ("check", "free-hinges.toml", &[], &[]),
@@ -280,7 +280,6 @@ fn pictures(map: &str) -> Vec<(Vec<String>, Vec<&'static str>)> {
         ),
         ("map", map, &[], &["map.svg"]),
         ("suite", "column-suite.toml", &[], &["suite.svg", "ida.svg"]),
-        ("chart", "voussoirs-step-pair.toml", &[], &["chart.svg"]),
         (
             "threshold",
             "column-pulse.toml",

@@ -6,12 +6,10 @@ use std::path::Path;
 use crate::program::{done, printed, scenarios};
 use crate::results::{Table, named, number, points, strokes, texts};
 use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::output::Figure;
 use archrock::output::scene::Scene;
 use archrock::scenario::Structure;
-use archrock::studies::chart::shape_result;
 use archrock::studies::impact::LinkImpact;
 use archrock::studies::map::boundary::ImpactFreeBoundary;
 use archrock::studies::map::{OverturningMap, outcome, picture};
@@ -506,53 +504,6 @@ fn a_run_in_which_nothing_moves_has_its_picture_too() {
     let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     Document::parse(&text).unwrap();
-}
-
-#[test]
-fn chart_has_a_curve_for_every_angle_and_the_published_values() {
-    let folder = tempfile::tempdir().unwrap();
-    scenario(folder.path(), "");
-    done(folder.path(), &["chart", "s.toml", "--out", "out"]);
-    let table = fs::read_to_string(folder.path().join("out/chart.csv")).unwrap();
-    let header = table.lines().next().unwrap();
-    assert_eq!(
-        header,
-        "embrace_deg,thickness_ratio,incipient_acceleration_g,first_restitution,last_restitution"
-    );
-    // Published: A_L of the semicircle with t/R = 0.30, and the least thickness of Milankovitch.
-    let rows: Vec<Vec<Option<f64>>> = table
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').map(|cell| cell.parse().ok()).collect())
-        .collect();
-    let semicircle: Vec<_> = rows.iter().filter(|row| row[0] == Some(180.0)).collect();
-    assert_eq!(semicircle.len(), 24);
-    assert!((semicircle[0][1].unwrap() / 1.001 - 0.10748).abs() < 1e-5);
-    assert!((semicircle[23][2].unwrap() - 0.518069).abs() < 1e-6);
-    let picture = fs::read_to_string(folder.path().join("out/chart.svg")).unwrap();
-    let document = Document::parse(&picture).unwrap();
-    for angle in ["180", "170", "157.5", "140", "120"] {
-        for label in ["A_L (g)", "r, first impact", "r, repeating impacts"] {
-            let curve = curve_of(&document, &format!("{label} {angle} deg"));
-            assert!(curve.len() > 10 && curve.len() <= 24, "{}", curve.len());
-        }
-    }
-    // A_L grows with the thickness: upwards on the sheet.
-    let curve = curve_of(&document, "A_L (g) 180 deg");
-    assert!(curve.is_sorted_by(|a, b| a.x < b.x && a.y > b.y));
-}
-
-/// 0.6812 is from the paper. Other tests check the rest of the chain; this one that it has settled.
-#[test]
-fn a_shape_has_the_restitution_of_its_first_and_its_last_impacts() {
-    let sites = HingeSites::Anywhere;
-    let result = shape_result(180.0, 0.15, sites, ImpactModel::MaxRestitution).unwrap();
-    assert!((result.first_restitution.unwrap() - 0.681_185_59).abs() < 1e-8);
-    let arch = arch(0.15, 180.0);
-    let chain = arch.chain();
-    let limit = chain.link(400).unwrap().link.restitution;
-    assert!((result.last_restitution.unwrap() - limit).abs() < 1e-5);
-    assert!(shape_result(180.0, 0.1, sites, ImpactModel::MaxRestitution).is_none());
 }
 
 /// Bands wide enough to be seen have the sway between the events on either side; narrower hops

@@ -216,7 +216,6 @@ fn every_command_takes_assignments() {
         "limit",
         "impact",
         "run",
-        "chart",
         "map",
         "spectrum",
         "suite",

@@ -1375,10 +1375,7 @@ fn distributions_of_models_are_compared() {
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
     // Peaks that differ by the steps of the row change places, one in fifteen at a time.
-    assert!(
-        distance < 0.14 && pair["p"].as_f64().unwrap() > 0.2,
-        "{pair}"
-    );
+    assert!(distance < 0.14, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }

@@ -38,11 +38,6 @@ pub const VERIFY: &str = "\
 Examples:
   archrock verify arch.toml --out check     verify.html is the page to file";
 
-pub const CHART: &str = "\
-Examples:
-  archrock chart arch.toml
-  archrock chart arch.toml --figure-width 84mm";
-
 pub const MAP: &str = "\
 Examples:
   archrock map arch.toml --threads 4

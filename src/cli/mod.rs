@@ -4,7 +4,6 @@
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
 mod capacity;
-mod chart;
 mod check;
 mod commands;
 mod examples;
@@ -85,9 +84,6 @@ enum Command {
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
     Verify(verify::Arguments),
-    /// Chart the incipient acceleration and the restitution against thickness for several embrace angles.
-    #[command(after_help = examples::CHART)]
-    Chart(chart::Arguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
@@ -185,7 +181,6 @@ pub fn main() -> ExitCode {
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
         Command::Spread(spread) => spread::spread(&spread, arguments.quiet),
         Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
-        Command::Chart(chart) => chart::chart(&chart, arguments.quiet),
         Command::Map(map) => studies::map(&map, arguments.quiet),
         Command::Spectrum(spectrum) => studies::spectrum(&spectrum, arguments.quiet),
         Command::Suite(suite) => studies::suite(&suite, arguments.quiet),

@@ -8,7 +8,7 @@ use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::boundary::MapWithBoundary;
-use archrock::studies::peaks::{self, Peak};
+use archrock::studies::peaks;
 use archrock::studies::results::{Look, Results};
 use clap::ValueEnum;
 use serde_json::Map;
@@ -293,18 +293,18 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
 /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
 pub fn compare(
     title: Option<&str>,
-    models: &[(&str, Vec<Peak>)],
+    models: &[(&str, Vec<f64>)],
     place: &Destination,
     figure: Figure,
 ) -> Result<Option<Results>, Failure> {
     if models.len() < 2 {
         return Ok(None);
     }
-    let models: Vec<(&str, &[Peak])> = models
+    let models: Vec<(&str, &[f64])> = models
         .iter()
         .map(|(name, peaks)| (*name, &peaks[..]))
         .collect();
-    let results = peaks::tell(
+    let results = peaks::results(
         title.unwrap_or("Largest rotations of several models"),
         &models,
         figure,

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::catalogue::StudyKind;
 use super::part::{Shard, rows_in};
-use super::{capacity, chart, peaks, run, spread, threshold, verify};
+use super::{capacity, peaks, run, spread, threshold, verify};
 use crate::output::print::PictureFormat;
 use crate::scenario::{Hinges, Scenario};
 
@@ -102,15 +102,9 @@ pub const VERIFY: Writer = Writer {
     summary: Some("verify.json"),
     ..PLAIN
 };
-/// `archrock chart`.
-pub const CHART: Writer = Writer {
-    name: "chart",
-    files: &chart::FILES,
-    ..PLAIN
-};
 
-const ALL: [Writer; 9] = [
-    RUN, THRESHOLD, MAP, SPECTRUM, SUITE, CAPACITY, SPREAD, VERIFY, CHART,
+const ALL: [Writer; 8] = [
+    RUN, THRESHOLD, MAP, SPECTRUM, SUITE, CAPACITY, SPREAD, VERIFY,
 ];
 
 /// The folder that compares the results of several models of motion.

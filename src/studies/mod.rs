@@ -14,12 +14,10 @@
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
 //! - [`spread`]: how far a springing may move until the arch falls, without a history;
-//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page;
-//! - [`chart`]: arches of many shapes compared, without a history.
+//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page.
 
 pub mod capacity;
 pub mod catalogue;
-pub mod chart;
 pub mod ending;
 pub mod ensemble;
 pub mod impact;

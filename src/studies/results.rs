@@ -4,7 +4,6 @@ use std::io::Write as _;
 
 use serde_json::Value;
 
-use super::peaks::Peak;
 use crate::output::{Figure, Folder, OutputError};
 
 /// The results of a study.
@@ -18,8 +17,9 @@ pub struct Results {
     pub words: String,
     /// The summary for programs, with all numbers.
     pub summary: Value,
-    /// How far each case rocked, of suites and samples of a run, to be [compared](super::peaks) with other models of motion.
-    pub peaks: Vec<Peak>,
+    /// The largest rotation of each case of a suite or sample of a run, in radians, infinite if it overturned, to be
+    /// [compared](super::peaks) with other models of motion.
+    pub peaks: Vec<f64>,
 }
 
 impl Results {

@@ -156,21 +156,6 @@ pub const REPLICATES: usize = 300;
 
 /// Draws indices below `count` with replacement, `count` at a time, [`REPLICATES`] times; the same ones on every machine.
 pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
-    let mut draw = draws();
-    (0..REPLICATES).map(move |_| (0..count).map(|_| draw(count)).collect())
-}
-
-/// Number of permutations of a test.
-const PERMUTATIONS: usize = 999;
-
-/// Draws which of `count` pairs are swapped, each with even odds, 999 times; the same ones on every machine.
-pub fn swaps(count: usize) -> impl Iterator<Item = Vec<bool>> {
-    let mut draw = draws();
-    (0..PERMUTATIONS).map(move |_| (0..count).map(|_| draw(2) == 1).collect())
-}
-
-/// Draws whole numbers below the one that it is asked with, evenly.
-fn draws() -> impl FnMut(usize) -> usize {
     let mut state = 0_u64;
     // SplitMix64 (Steele, Lea and Flood 2014).
     let mut next = move || {
@@ -180,7 +165,8 @@ fn draws() -> impl FnMut(usize) -> usize {
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         mixed ^ (mixed >> 31)
     };
-    move |below| ((u128::from(next()) * below as u128) >> 64) as usize
+    let mut index = move || ((u128::from(next()) * count as u128) >> 64) as usize;
+    (0..REPLICATES).map(move |_| (0..count).map(|_| index()).collect())
 }
 
 /// The ends of the 95 % interval of bootstrapped values.

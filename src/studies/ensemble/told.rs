@@ -8,12 +8,11 @@ use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{AtLevel, Capacities, Capacity, Fragilities};
 use super::statistics::{Share, band, fractile};
-use super::{NoAnswer, SampleRow, Told, picture};
+use super::{NoAnswer, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::{Uncertain, UncertainKey, shown};
 use crate::studies::ending::columns::{self, UNCERTAIN, yes};
-use crate::studies::peaks::Peak;
 use crate::studies::remarks::warnings;
 use crate::studies::results::Results;
 use crate::studies::threshold::{rounded, rounded_range};
@@ -320,20 +319,8 @@ pub(super) fn histories(
     }
     lines_of_words.push(far_in_words(told));
     lines_of_words.extend(without_answer(told));
-    let peak_of = |(group, row): (usize, &SampleRow<Went>)| {
-        let rotation_rad = row.answer.as_ref().ok()?.peak_rad();
-        Some(Peak {
-            group,
-            rotation_rad,
-        })
-    };
     Ok(Results {
-        peaks: told
-            .samples
-            .iter()
-            .enumerate()
-            .filter_map(peak_of)
-            .collect(),
+        peaks: told.answered().map(|(_, went)| went.peak_rad()).collect(),
         files: vec![
             (
                 "bands.svg",

@@ -1,6 +1,5 @@
 //! A run: one history of a scenario, with its model of motion, as tables, pictures, a page, a summary and words.
 
-mod beside;
 mod comparison;
 mod feet;
 mod film;
@@ -265,10 +264,6 @@ impl<'a> Run<'a> {
         if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
             // The cost of a computation is reported here; the results do not contain it.
             summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
-        }
-        if let Some(report) = &mut shown.report {
-            let body = history.largest_body();
-            report.beside(beside::first_samples(scenario, body));
         }
         if let Some(mut folder) = folder {
             shown.write(self, &mut folder, &history, &mut text)?;

@@ -10,10 +10,8 @@ use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
 use self::packed::{
-    MOST, body_number, curve, eighth, encoded, faint_piece, floats, layouts, motion,
-    piece as drawn_piece,
+    MOST, body_number, curve, eighth, encoded, floats, layouts, motion, piece as drawn_piece,
 };
-use super::beside::Beside;
 use super::film::{Film, Frame};
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
@@ -62,7 +60,6 @@ pub struct Report {
     excess_ratio: Envelope,
     leaves: bool,
     points: Option<Points>,
-    samples: Vec<Beside>,
 }
 
 impl Report {
@@ -86,7 +83,6 @@ impl Report {
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
             leaves: false,
             points: None,
-            samples: Vec::new(),
         }
     }
 
@@ -96,11 +92,6 @@ impl Report {
             points: Some(points),
             ..self
         }
-    }
-
-    /// Draws these samples of `[uncertain]` behind the history.
-    pub(super) fn beside(&mut self, samples: Vec<Beside>) {
-        self.samples = samples;
     }
 
     /// Takes a sample. Samples come in the order of time.
@@ -285,7 +276,6 @@ impl Report {
             "frames": self.frames(ground, frames, layout_of, joints.len()),
             "points": self.points.as_ref().map(|points| points.on_page(curve)),
             "energy_label": energy_label,
-            "samples": self.samples.iter().map(|sample| of_sample(sample, unit_m)).collect::<Vec<_>>(),
             "curves": {
                 "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
                 "energy": curve(&self.energy.points().collect::<Vec<_>>()),
@@ -425,23 +415,6 @@ impl Report {
         all.extend(others.map(|(name, value)| (name.to_owned(), value)));
         Value::Object(all)
     }
-}
-
-/// A sample that is drawn behind the history.
-fn of_sample(sample: &Beside, unit_m: f64) -> Value {
-    let frames = sample.film.frames();
-    let (hinges, layout_of) = layouts(&sample.scene, &frames);
-    let layouts = hinges.iter().map(|open| {
-        let pieces = sample.scene.pieces(open);
-        let pieces = pieces.iter().map(|piece| faint_piece(piece, unit_m));
-        json!({ "pieces": pieces.collect::<Vec<_>>() })
-    });
-    json!({
-        "layouts": layouts.collect::<Vec<_>>(),
-        "frames": motion(&frames, layout_of),
-        "turning": curve(&sample.turning.points().collect::<Vec<_>>()),
-        "falls": sample.falls,
-    })
 }
 
 /// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.

@@ -10,7 +10,6 @@ use crate::dynamics::history::Outcome;
 use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::ensemble::statistics;
-use crate::studies::peaks::Peak;
 
 /// Number of records whose curves have looks and names of their own.
 const NAMED: usize = CURVES.len();
@@ -201,30 +200,19 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
-/// How far all cases rocked, by record, to be compared with other models of motion.
-pub(super) fn by_record(cases: &[CaseRow]) -> Vec<Peak> {
-    let mut records: Vec<&str> = Vec::new();
-    let mut peaks = Vec::new();
-    for case in cases {
-        let known = records.iter().position(|record| *record == case.record);
-        let group = known.unwrap_or_else(|| {
-            records.push(&case.record);
-            records.len() - 1
-        });
-        let (Ok(ending), Some(_)) = (&case.result, case.known_verdict()) else {
-            continue;
-        };
-        let rotation_rad = if goes_over(case) {
-            f64::INFINITY
-        } else {
-            ending.peak_rotation_rad
-        };
-        peaks.push(Peak {
-            group,
-            rotation_rad,
-        });
-    }
-    peaks
+/// The largest rotation of each case that counts, in radians, infinite if it overturned.
+pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
+    let known = cases.iter().filter(|case| case.known_verdict().is_some());
+    known
+        .filter_map(|case| {
+            let peak_rad = case.result.as_ref().ok()?.peak_rotation_rad;
+            Some(if goes_over(case) {
+                f64::INFINITY
+            } else {
+                peak_rad
+            })
+        })
+        .collect()
 }
 
 /// Whether the history itself overturned, whether certain or not.

@@ -72,7 +72,7 @@ impl Heading {
         let results = SuiteFragility::new(self.measure, rows);
         let summary = to_json(self, &results)?;
         Ok(Results {
-            peaks: ida::by_record(&results.cases),
+            peaks: ida::rotations_rad(&results.cases),
             files: vec![
                 (
                     "suite.svg",

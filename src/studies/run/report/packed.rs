@@ -2,7 +2,6 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use nalgebra::Vector2;
 use serde_json::{Map, Value, json};
 
 use super::super::film::Frame;
@@ -12,9 +11,6 @@ use crate::output::scene::{Piece, Scene};
 
 /// The largest integer that stands for a rotation or displacement.
 pub(super) const MOST: f64 = 32767.0;
-
-/// How far the outline of what is drawn faintly may be off, in units of the page: a seven hundredth of the structure.
-const FAINT_UNITS: f64 = 30.0;
 
 /// The distinct layouts of frames by their hinges, and which of them each frame has. The joints of a row are written for each frame
 /// instead.
@@ -68,44 +64,10 @@ pub(super) fn motion(frames: &[&Frame], layout_of: Vec<u16>) -> Map<String, Valu
 
 /// The body and the outline of a piece, in units of the page.
 pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
-    outlined(piece.body, &piece.outline_m, unit_m)
-}
-
-/// The same for what is drawn faintly: corners that turn the outline by less than can be seen there are left out.
-pub(super) fn faint_piece(piece: &Piece, unit_m: f64) -> Value {
-    let farthest_m = FAINT_UNITS * unit_m;
-    let corners_m = &piece.outline_m;
-    let mut kept_m: Vec<Vector2<f64>> = Vec::new();
-    let mut last = 0;
-    for (index, corner_m) in corners_m.iter().enumerate() {
-        let straight = index > 0
-            && corners_m.get(index + 1).is_some_and(|next_m| {
-                let passed_m = &corners_m[last + 1..=index];
-                let off_m = |corner_m| off_line_m(corner_m, corners_m[last], *next_m);
-                passed_m
-                    .iter()
-                    .all(|corner_m| off_m(*corner_m) < farthest_m)
-            });
-        if !straight {
-            kept_m.push(*corner_m);
-            last = index;
-        }
-    }
-    outlined(piece.body, &kept_m, unit_m)
-}
-
-/// How far a point is from the line through two others.
-fn off_line_m(point_m: Vector2<f64>, from_m: Vector2<f64>, to_m: Vector2<f64>) -> f64 {
-    let along_m = to_m - from_m;
-    let across_m2 = along_m.perp(&(point_m - from_m));
-    across_m2.abs() / along_m.norm().max(f64::MIN_POSITIVE)
-}
-
-fn outlined(body: Option<usize>, corners_m: &[Vector2<f64>], unit_m: f64) -> Value {
-    let corners = corners_m.iter();
+    let corners = piece.outline_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
     let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
-    json!({ "body": body_number(body), "outline": outline })
+    json!({ "body": body_number(piece.body), "outline": outline })
 }
 
 /// The number of a body; -1 for parts that stand still.

@@ -7,18 +7,12 @@
   const { frames, sections, unit_m: unitM } = data;
   const bodies = data.bodies.length;
 
-  /** A motion: the poses of its bodies, and the layout of each frame. */
-  const unpacked = ({ frames, layouts }) => ({
-    times: new Float64Array(buffer(frames.times_s)),
-    rotations: new Int16Array(buffer(frames.rotations)),
-    rotationUnit: frames.rotation_unit_rad,
-    shifts: new Int16Array(buffer(frames.shifts)),
-    shiftUnit: frames.shift_unit_m,
-    layoutOf: new Uint16Array(buffer(frames.layouts)),
-    layouts,
-  });
-  const own = unpacked(data);
-  const { times, rotations, layoutOf, layouts } = own;
+  // The poses of the bodies, and the layout of each frame.
+  const { layouts } = data;
+  const times = new Float64Array(buffer(frames.times_s));
+  const rotations = new Int16Array(buffer(frames.rotations));
+  const shifts = new Int16Array(buffer(frames.shifts));
+  const layoutOf = new Uint16Array(buffer(frames.layouts));
   const groundM = new Float32Array(buffer(frames.ground_m));
   const groundG = new Float32Array(buffer(frames.ground_g));
   // Where the feet move differently: how far the right one has gone from the left one.
@@ -42,8 +36,7 @@
   const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   /** The frame before a time, and how far the time is on the way to the next: frames of other hinges do not blend. */
-  function moment(t, { times, layoutOf } = own) {
-    const count = times.length;
+  function moment(t) {
     let low = 0;
     let high = count - 1;
     while (low < high) {
@@ -61,11 +54,11 @@
     values[frame * width + index] * (1 - part) + values[next * width + index] * part;
 
   /** Rotation and displacement of the origin of a body. */
-  function pose(body, at, { rotations, rotationUnit, shifts, shiftUnit }) {
+  function pose(body, at) {
     return {
-      rotation: blend(rotations, bodies, body, at) * rotationUnit,
-      x: blend(shifts, 2 * bodies, 2 * body, at) * shiftUnit,
-      y: blend(shifts, 2 * bodies, 2 * body + 1, at) * shiftUnit,
+      rotation: blend(rotations, bodies, body, at) * frames.rotation_unit_rad,
+      x: blend(shifts, 2 * bodies, 2 * body, at) * frames.shift_unit_m,
+      y: blend(shifts, 2 * bodies, 2 * body + 1, at) * frames.shift_unit_m,
     };
   }
 
@@ -86,11 +79,7 @@
     return Number(text) === 0 ? text.replace("-", "") : text;
   }
 
-  const posesAt = (at, motion = own) => Array.from({ length: bodies }, (_, body) => pose(body, at, motion));
-
-  // Samples of [uncertain] are drawn behind the history itself, until they have overturned.
-  const samples = data.samples.map((sample) => ({ ...sample, ...unpacked(sample) }));
-  const lasts = ({ falls, times }, t) => !falls || t <= times[times.length - 1];
+  const posesAt = (at) => Array.from({ length: bodies }, (_, body) => pose(body, at));
 
   // ---- the stage ----
   const stage = find("stage");
@@ -194,8 +183,7 @@
     // The blocks: where they were, and where they are.
     const layout = layouts[layoutOf[at.frame]];
     const poses = posesAt(at);
-    const placed = (poses) => ([body, x, y]) => moved(body, x, y, poses, exaggeration);
-    const point = placed(poses);
+    const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
     const outline = (piece) => {
       const corners = [];
       for (let i = 0; i < piece.outline.length; i += 2) {
@@ -203,19 +191,6 @@
       }
       return corners;
     };
-    if (find("samples").checked) {
-      pen.strokeStyle = css("--sample");
-      pen.lineWidth = 0.7;
-      for (const sample of samples) {
-        if (!lasts(sample, time)) continue;
-        const at = moment(time, sample);
-        const corner = placed(posesAt(at, sample));
-        for (const piece of sample.layouts[sample.layoutOf[at.frame]].pieces) {
-          path(outline(piece).map(corner), true);
-          pen.stroke();
-        }
-      }
-    }
     const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone", "--stone"];
     pen.lineWidth = 1;
     pen.setLineDash([4, 4]);
@@ -594,18 +569,7 @@
   if (!few) order.push(...order.splice(most, 1));
   const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
   const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
-  const faint = { name: `${few ? look(most).name : `block ${data.bodies[most]}`} in samples`, color: "--sample", width: 0.8 };
-  const beside = samples.map((sample) => {
-    const [ts, ys] = curve(sample.turning);
-    return { ...faint, beyond: sample.falls, values: Array.from(times.subarray(0, historyCount), (t) => (lasts(sample, t) ? valueAt(ts, ys, t) : null)) };
-  });
-  addPlot(
-    "Rotation (rad, anticlockwise)",
-    230,
-    Array.from(times.subarray(0, historyCount)),
-    beside.concat(turning),
-    beside.length > 0 ? named.concat(faint) : named,
-  );
+  addPlot("Rotation (rad, anticlockwise)", 230, Array.from(times.subarray(0, historyCount)), turning, named);
   for (const { curves } of data.points ?? []) {
     // Each is thinned by itself, so that their times differ.
     const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
@@ -682,8 +646,6 @@
   find("thrust").addEventListener("change", draw);
   find("ride").addEventListener("change", draw);
   find("sizes").addEventListener("change", draw);
-  find("samples").addEventListener("change", draw);
-  find("samples-choice").hidden = find("beside").hidden = samples.length === 0;
   // What had turned far enough as it overturned has no fall to follow.
   find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
   find("fall-from").textContent = Number(historyEnd.toFixed(3));
@@ -784,10 +746,6 @@
     hingesAt,
     pressure,
     zoom,
-    samples: samples.map((sample, i) => ({
-      turning: beside[i].values,
-      poses: (t) => (lasts(sample, t) ? posesAt(moment(t, sample), sample) : null),
-    })),
     range: () => plots.map(({ scales }) => [scales.x.min, scales.x.max]),
     shown: () => ({ time, playing, poses: posesAt(moment(time)), state: STATES[states[moment(time).frame]] }),
   };
