@@ -27,7 +27,6 @@ fn four_links_are_a_rough_guide_in_every_study() {
     fs::copy(scenarios().join("records/wave-1.at2"), at.join("w.at2")).unwrap();
     let tables = "[map]\nduration_s = [0.4, 0.8]\namplitude_g = [0.2, 0.6]\n\
                   [suite]\nrecords = 'w.at2'\npeaks_g = [0.2, 0.8]\n\
-                  [spectrum]\np_t = [1.0, 2.0]\nacceleration_over_incipient = [1.5, 3.0]\n\
                   [simulation]\nduration_s = 60.0\n[uncertain]\nsamples = 2\n";
     let arch = format!("{ARCH}{PULSE}{tables}'arch.thickness_ratio' = {{ deviation = 0.001 }}\n");
     let column = format!("{COLUMN}{PULSE}{tables}'column.width_m' = {{ deviation = 0.001 }}\n");
@@ -43,7 +42,6 @@ fn four_links_are_a_rough_guide_in_every_study() {
             "threshold",
             &["threshold.json", "uncertain_threshold/uncertain.json"],
         ),
-        ("spectrum", &["spectrum.json"]),
     ] {
         for (name, is_arch) in [("arch.toml", true), ("column.toml", false)] {
             let out = format!("{command}-{name}");

@@ -406,7 +406,7 @@ fn blocks_too_unlike_in_weight_are_named() {
         fs::write(folder.path().join("s.toml"), text(density)).unwrap();
         archrock(
             folder.path(),
-            &["run", "s.toml", "--no-spread", "--no-report"],
+            &["run", "s.toml", "--no-repeat", "--no-report"],
         )
     };
     let output = run("0.001");

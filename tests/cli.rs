@@ -111,7 +111,7 @@ fn every_scenario_of_the_repository_runs_and_says_what_it_is() {
         // What repetitions say is another matter, and takes most of the time.
         let repeated = ["[free_hinges]", "[elastic_joints]"];
         let more = repeated.iter().any(|table| text.contains(table));
-        let more = if more { &["--no-spread"][..] } else { &[] };
+        let more = if more { &["--no-repeat"][..] } else { &[] };
         run_with(path.file_stem().unwrap().to_str().unwrap(), more);
     }
     assert!(scenario_files().len() >= 6);
@@ -225,7 +225,6 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
         "limit",
         "impact",
         "map",
-        "spectrum",
         "suite",
         "threshold",
         "check",
@@ -254,7 +253,6 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
     scenario(folder, ARCH);
     for (command, words) in [
         ("map", "the scenario has no [map]"),
-        ("spectrum", "a spectrum needs a pulse"),
         ("suite", "the scenario has no [suite]"),
         ("threshold", "a threshold needs a ground motion"),
     ] {
@@ -567,7 +565,6 @@ fn every_help_has_examples_that_are_right() {
         "spread",
         "verify",
         "map",
-        "spectrum",
         "suite",
         "threshold",
         "merge",

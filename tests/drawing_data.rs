@@ -159,7 +159,7 @@ fn exaggerated_snapshots_move_so_many_times_as_far() {
             folder.path(),
             "free-hinges.toml",
             &[
-                &["--no-spread", "--snapshots", "0.6"][..],
+                &["--no-repeat", "--snapshots", "0.6"][..],
                 &["--set", "simulation.duration_s=0.7"],
                 more,
             ]

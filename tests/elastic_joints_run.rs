@@ -221,7 +221,7 @@ fn friction_is_needed_where_a_joint_presses() {
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let said = printed(
         folder.path(),
-        &["run", "s.toml", "--out", "o", "--no-spread", "--no-report"],
+        &["run", "s.toml", "--out", "o", "--no-repeat", "--no-report"],
     );
     let weight_n = 0.75 * 5.0 * PI * 2000.0 * 9.81;
     let joints = Table::read(folder.path().join("o/joints.csv"));
@@ -295,11 +295,6 @@ fn studies_take_elastic_joints() {
     assert!(peaks.iter().any(|peak| *peak > 1e-3), "{peaks:?}");
     refused(
         folder.path(),
-        &["spectrum", "s.toml"],
-        &["leave [elastic_joints] out"],
-    );
-    refused(
-        folder.path(),
         &["run", "s.toml", "--hinges", "plastic"],
         &["elastic"],
     );
@@ -360,7 +355,7 @@ fn a_run_says_what_it_hangs_on() {
     let points = "contact_points = 3";
     let (said, own) = run("own", &elastic("10", points), &[]);
     let variations = own["variations"].as_array().unwrap();
-    let alone = ["--no-spread"];
+    let alone = ["--no-repeat"];
     for (with, text) in [
         ("30 GPa/m", elastic("30", points)),
         ("continuous contact", elastic("10", "")),
@@ -387,7 +382,7 @@ fn a_run_says_what_it_hangs_on() {
     // With rigid joints the words suggest elastic ones, unless a run with elastic joints stands beside.
     let (said, _) = run("rigid", &arch("[free_hinges]"), &alone);
     assert!(said.contains("compare with --hinges elastic"), "{said}");
-    let models = ["--hinges", "free,elastic", "--no-spread"];
+    let models = ["--hinges", "free,elastic", "--no-repeat"];
     fs::write(folder.path().join("both.toml"), elastic("10", points)).unwrap();
     let arguments = [
         &["run", "both.toml", "--out", "both", "--no-report"][..],
@@ -415,7 +410,7 @@ fn the_page_draws_what_joints_bear() {
     .unwrap();
     printed(
         folder.path(),
-        &["run", "s.toml", "--out", "o", "--no-spread"],
+        &["run", "s.toml", "--out", "o", "--no-repeat"],
     );
     let page = fs::read_to_string(folder.path().join("o/report.html")).unwrap();
     let joints = Table::read(folder.path().join("o/joints.csv"));

@@ -113,13 +113,13 @@ fn cells_of_a_map_are_runs() {
     }
     assert!(uncertain < outcomes.len());
     // With all repetitions of all cells.
-    let scenario = parsed(&block(&format!("{PULSE}{pulses}spread = true\n")));
+    let scenario = parsed(&block(&format!("{PULSE}{pulses}repeat = true\n")));
     let map = OverturningMap::of(&scenario).unwrap();
     let cells = rows(&map, 2);
     assert!(
         cells
             .iter()
-            .all(|cell| matches!(cell.spread, Some(Ok(1..))))
+            .all(|cell| matches!(cell.outcomes, Some(Ok(1..))))
     );
     assert_eq!(cells[7], map.row(7));
 }

@@ -67,7 +67,7 @@ fn refusal(scenario: &str, arguments: &[&str]) -> String {
 
 #[test]
 fn tables_of_a_row_fit_together() {
-    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let results = Results::of(&free(SEVEN), &["--no-repeat"]);
     let names = [
         "events.csv",
         "history.svg",
@@ -218,7 +218,7 @@ fn tables_of_a_row_fit_together() {
     ] {
         assert!(summary[key].is_number(), "{key}: {}", summary[key]);
     }
-    assert_eq!(summary.get("spread"), None);
+    assert_eq!(summary.get("repeatability"), None);
     assert!(summary["scenario"].get("impact").is_none());
     for name in names {
         let text = fs::read_to_string(results.path(name)).unwrap();
@@ -272,7 +272,7 @@ fn it_starts_when_and_where_limit_analysis_says() {
             .collect();
         for options in ["", "friction_coefficient = 1.5\n"] {
             let scenario = free(&shaken(arch, amplitude_g)) + options;
-            let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+            let results = Results::of(&scenario, &["--no-repeat", "--no-report"]);
             let events = Table::read(results.path("events.csv"));
             assert_eq!(events.rows[0]["kind"], "uplift");
             assert_eq!(events.rows[0]["phase"], "1");
@@ -288,7 +288,7 @@ fn it_starts_when_and_where_limit_analysis_says() {
     }
     for (amplitude_g, side, edge) in [(-0.3, "right", "extrados"), (0.3, "left", "intrados")] {
         let scenario = free(&shaken(column, amplitude_g));
-        let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+        let results = Results::of(&scenario, &["--no-repeat", "--no-report"]);
         let events = Table::read(results.path("events.csv"));
         let due_s = (0.2_f64 / 0.3).asin() / std::f64::consts::PI;
         assert!((events.rows[0].number("time_s") - due_s).abs() < 3e-4);
@@ -297,7 +297,7 @@ fn it_starts_when_and_where_limit_analysis_says() {
     }
     // A released structure already moves.
     let released = free(column) + "[initial]\nsway = \"right\"\nrotation_rad = 0.02\n";
-    let results = Results::of(&released, &["--no-spread", "--no-report"]);
+    let results = Results::of(&released, &["--no-repeat", "--no-report"]);
     let events = Table::read(results.path("events.csv"));
     assert_eq!(events.rows[0]["kind"], "impact");
     // It lands flat, and continues to the other side, about the other toe.
@@ -315,7 +315,7 @@ fn events_name_the_joints_that_are_open() {
     for options in ["", "friction_coefficient = 0.7\n"] {
         let scenario =
             free(SEVEN) + options + "[simulation]\noutput_step_s = 0.0005\nduration_s = 1.0\n";
-        let results = Results::of(&scenario, &["--no-spread", "--no-report"]);
+        let results = Results::of(&scenario, &["--no-repeat", "--no-report"]);
         let events = Table::read(results.path("events.csv"));
         let impacts = Table::read(results.path("impacts.csv"));
         let joints = Table::read(results.path("joints.csv"));
@@ -413,7 +413,7 @@ fn the_vertical_ground_has_a_column_and_the_end_of_an_overturning_is_an_event() 
         "amplitude_g = -0.5336",
         "amplitude_g = -1.3\nvertical_amplitude_g = 0.2",
     );
-    let results = Results::of(&scenario, &["--no-spread"]);
+    let results = Results::of(&scenario, &["--no-repeat"]);
     let rotations = Table::read(results.path("rotations.csv"));
     let last = rotations.header.last().unwrap();
     assert_eq!(last, "vertical_acceleration_m_s2");
@@ -434,7 +434,7 @@ fn the_vertical_ground_has_a_column_and_the_end_of_an_overturning_is_an_event() 
 
 #[test]
 fn the_picture_shows_every_block_and_which_joints_are_open() {
-    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let results = Results::of(&free(SEVEN), &["--no-repeat"]);
     let picture = fs::read_to_string(results.path("history.svg")).unwrap();
     for name in [
         "ground", "1", "7", "intrados", "extrados", "energy", "right", "left",
@@ -445,7 +445,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
     assert!(picture.contains(">block 5, which turns most<"));
     // For two drums no barrier is known.
     let column = format!("[column]\ndrums = 2\n{SHAKEN_COLUMN}[free_hinges]\n");
-    let results = Results::of(&column, &["--no-spread"]);
+    let results = Results::of(&column, &["--no-repeat"]);
     let picture = fs::read_to_string(results.path("history.svg")).unwrap();
     assert!(picture.contains(">Energy (J)<"));
     assert!(picture.contains(">hinge at the left edge<"));
@@ -457,7 +457,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
 fn what_repetitions_change_is_said_and_written() {
     let results = Results::of(&free(SEVEN), &[]);
     let summary = results.summary();
-    let spread = &summary["spread"];
+    let spread = &summary["repeatability"];
     for which in ["own", "double_steps", "landings_merged"] {
         assert_eq!(spread["outcomes"][which], "rest");
     }
@@ -558,7 +558,7 @@ fn the_largest_half_cycles_are_reported() {
     assert!(said.contains(words), "{said}");
     // What differs among the repetitions does so after the rattling.
     assert!(
-        summary["spread"]["parts_at_s"]
+        summary["repeatability"]["parts_at_s"]
             .as_f64()
             .is_none_or(|at_s| at_s > 2.0)
     );
@@ -622,7 +622,7 @@ fn a_push_is_compared_with_the_one_that_starts_it_to_that_side() {
             "--out",
             "out",
             "--no-report",
-            "--no-spread",
+            "--no-repeat",
         ];
         let output = archrock(root.path(), &arguments);
         let said = String::from_utf8(output.stdout).unwrap();
@@ -661,7 +661,7 @@ fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
             "--out",
             "out",
             "--no-report",
-            "--no-spread",
+            "--no-repeat",
         ];
         let output = archrock(root.path(), &arguments);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -687,7 +687,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         .into_iter()
         .find_map(|step_s| {
             let results = Results::of(&scenario(step_s), &[]);
-            let reason = results.summary()["spread"]["failed"]
+            let reason = results.summary()["repeatability"]["failed"]
                 .as_str()
                 .map(str::to_owned);
             reason.map(|reason| (step_s, results, reason))
@@ -705,7 +705,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         "{said}"
     );
     // Everything else is as without repetitions.
-    let alone = Results::of(&scenario(step_s), &["--no-spread"]);
+    let alone = Results::of(&scenario(step_s), &["--no-repeat"]);
     assert_eq!(results.files(""), alone.files(""));
     for name in [
         "rotations.csv",
@@ -768,21 +768,21 @@ fn hinges_override_the_scenario() {
     let impact = "[impact]\nmodel = \"same_sections\"\n";
     let free_of_four = Results::of(
         &format!("{SEVEN}{impact}"),
-        &["--hinges", "free", "--no-spread"],
+        &["--hinges", "free", "--no-repeat"],
     );
     let said = &free_of_four.said;
     assert!(
         said.contains("[impact] is ignored: with free hinges"),
         "{said}"
     );
-    let chosen = Results::of(&free(SEVEN), &["--no-spread"]);
+    let chosen = Results::of(&free(SEVEN), &["--no-repeat"]);
     let read = |results: &Results| fs::read(results.path("rotations.csv")).unwrap();
     assert!(read(&free_of_four) == read(&chosen));
 }
 
 #[test]
 fn both_models_stand_side_by_side_with_one_picture() {
-    let results = Results::of(SEVEN, &["--hinges", "both", "--no-spread"]);
+    let results = Results::of(SEVEN, &["--hinges", "both", "--no-repeat"]);
     assert_eq!(results.files(""), ["four", "free", "overlay.svg"]);
     let outcome = |name: &str| json(&results.path(name))["outcome"].clone();
     assert_eq!(outcome("four/summary.json"), "rest");
@@ -808,12 +808,12 @@ fn both_models_stand_side_by_side_with_one_picture() {
 fn rotations_go_to_standard_output() {
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("s.toml"), free(SEVEN)).unwrap();
-    let arguments = ["run", "s.toml", "--no-spread", "--rotations", "-"];
+    let arguments = ["run", "s.toml", "--no-repeat", "--rotations", "-"];
     let output = archrock(root.path(), &arguments);
     assert_eq!(output.status.code(), Some(0));
     assert!(!root.path().join("results").exists());
     let table = String::from_utf8(output.stdout).unwrap();
-    let results = Results::of(&free(SEVEN), &["--no-spread"]);
+    let results = Results::of(&free(SEVEN), &["--no-repeat"]);
     let file = fs::read_to_string(results.path("rotations.csv")).unwrap();
     assert!(table == file);
 }
@@ -826,7 +826,7 @@ fn a_column_of_drums_is_released_from_its_base() {
             "[column]\nheight_m = 4.0\nwidth_m = 0.8\n{drums}[free_hinges]\n[initial]\nsway = \"right\"\n\
              rotation_rad = 0.05\n[simulation]\nduration_s = 1.0\n"
         );
-        Table::read(Results::of(&text, &["--no-spread"]).path("rotations.csv"))
+        Table::read(Results::of(&text, &["--no-repeat"]).path("rotations.csv"))
     };
     let [one, three] = ["", "drums = 3\n"].map(released);
     // The first impact is at 0.38 s.
@@ -852,7 +852,7 @@ fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
             "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 14\n[free_hinges]\n\
              [initial]\nsway = \"left\"\nrotation_rad = {rotation_rad}\n"
         );
-        json(&Results::of(&text, &["--no-spread"]).path("summary.json"))
+        json(&Results::of(&text, &["--no-repeat"]).path("summary.json"))
     };
     let rested = released(0.05);
     assert_eq!(rested["outcome"], "rest");
@@ -882,12 +882,12 @@ fn what_a_model_cannot_do_is_refused() {
     assert!(said.contains("too thick"), "{said}");
     // There are no repetitions to leave out.
     for more in [&[][..], &["--hinges", "four"]] {
-        let said = refusal(SEVEN, &[&["--no-spread"], more].concat());
-        assert!(said.contains("--no-spread goes with free hinges"), "{said}");
+        let said = refusal(SEVEN, &[&["--no-repeat"], more].concat());
+        assert!(said.contains("--no-repeat goes with free hinges"), "{said}");
     }
     // An arch that does not start as four links cannot be released in a mechanism.
     let released = free(&thick) + "[initial]\nsway = \"left\"\nrotation_rad = 0.001\n";
-    let said = refusal(&released, &["--no-spread"]);
+    let said = refusal(&released, &["--no-repeat"]);
     assert!(
         said.starts_with("error: s.toml:11:1: ") && said.contains("does not start as one"),
         "{said}"
@@ -906,7 +906,7 @@ fn what_a_model_cannot_do_is_refused() {
 #[test]
 fn a_column_of_one_block_moves_as_housner_s() {
     let column = format!("[column]\n{SHAKEN_COLUMN}");
-    let results = Results::of(&column, &["--hinges", "both", "--no-spread"]);
+    let results = Results::of(&column, &["--hinges", "both", "--no-repeat"]);
     let [four, free] = ["four", "free"].map(|model| {
         let table = Table::read(results.path(&format!("{model}/rotations.csv")));
         let name = if model == "four" {
@@ -948,7 +948,7 @@ fn joints_that_slip_are_told_of() {
     let slipping = format!(
         "{SEVEN}[free_hinges]\nfriction_coefficient = 0.4\n[simulation]\nduration_s = 12\n"
     );
-    let results = Results::of(&slipping, &["--no-spread"]);
+    let results = Results::of(&slipping, &["--no-repeat"]);
     let summary = results.summary();
     assert_eq!(summary["friction_coefficient"], 0.4);
     // It has slipped so far down that its height means nothing for overturning.
@@ -1051,7 +1051,7 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
             "[column]\nheight_m = {height_m}\nwidth_m = {width_m}\n[free_hinges]\nfriction_coefficient = {friction}\n\
              [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.1\n[simulation]\nduration_s = 0.2\n"
         );
-        let results = Results::of(&scenario, &["--no-spread"]);
+        let results = Results::of(&scenario, &["--no-repeat"]);
         let words = format!(
             "  incipient acceleration with friction {push_g:.4} g; the ground reaches 0.5000 g, {:.2} times as much\n",
             0.5 / push_g
@@ -1083,7 +1083,7 @@ fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
     let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
                     [free_hinges]\n[ground.one_sine]\namplitude_g = 2.309\nduration_s = 0.482\n\
                     [simulation]\nduration_s = 3\n";
-    let results = Results::of(scenario, &["--no-spread"]);
+    let results = Results::of(scenario, &["--no-repeat"]);
     let summary = results.summary();
     assert_eq!(summary["outcome"], "overturned");
     assert!(summary["peak_potential_over_barrier"].as_f64().unwrap() < 1.0);

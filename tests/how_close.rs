@@ -237,7 +237,7 @@ fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
             "{COLUMN}[free_hinges]\n[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 0.8\n"
         );
         fs::write(folder.path().join("s.toml"), scenario).unwrap();
-        let arguments = ["run", "s.toml", "--out", "o", "--no-spread"];
+        let arguments = ["run", "s.toml", "--out", "o", "--no-repeat"];
         let said = stdout(&archrock(folder.path(), &arguments));
         let summary = json(&folder.path().join("o/summary.json"));
         assert_eq!(summary["outcome"] == "overturned", overturns);
@@ -293,7 +293,7 @@ fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
     fs::write(folder.path().join("s.toml"), scenario).unwrap();
     let said = stdout(&archrock(
         folder.path(),
-        &["run", "s.toml", "--out", "o", "--no-spread"],
+        &["run", "s.toml", "--out", "o", "--no-repeat"],
     ));
     assert!(!said.contains("first mechanism"), "{said}");
     let summary = json(&folder.path().join("o/summary.json"));
@@ -317,7 +317,7 @@ fn the_picture_marks_the_barrier() {
         fs::write(folder.path().join("s.toml"), scenario).unwrap();
         stdout(&archrock(
             folder.path(),
-            &["run", "s.toml", "--out", "o", "--no-spread"],
+            &["run", "s.toml", "--out", "o", "--no-repeat"],
         ));
         let picture = fs::read_to_string(folder.path().join("o/history.svg")).unwrap();
         let picture = roxmltree::Document::parse(&picture).unwrap();

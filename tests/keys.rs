@@ -73,7 +73,6 @@ fn the_reference_has_the_keys_that_are_read() {
         ("initial", vec!["initial"]),
         ("simulation", vec!["simulation"]),
         ("suite", vec!["suite"]),
-        ("spectrum", vec!["spectrum"]),
         ("uncertain", vec!["uncertain"]),
     ];
     for (heading, tables) in tables {

@@ -1,4 +1,4 @@
-//! The overturning map: its cells, its boundaries, and computing it in parts.
+//! The overturning map: its cells, and computing it in parts.
 
 use crate::common;
 use crate::common::parsed;
@@ -10,8 +10,8 @@ use std::time::{Duration, Instant};
 
 use crate::common::{ARCH, GRAVITY, request, seven_voussoirs};
 use crate::program::{command, done, files, refused};
+use crate::threshold_along::without_impact;
 use archrock::studies::ending::Ending;
-use archrock::studies::map::boundary::{Boundary, ImpactFreeBoundary};
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
@@ -21,15 +21,6 @@ fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {
         CellResult::Ended(ending) => ending,
         other => panic!("cell {index}: {other:?}"),
     }
-}
-
-/// The boundaries with their x.
-fn boundaries(map: &OverturningMap<'_>) -> Vec<(f64, Boundary)> {
-    let boundary = ImpactFreeBoundary::new(map).unwrap();
-    (0..boundary.count())
-        .map(|x| boundary.row(x))
-        .map(|row| (row.x, row.result.unwrap().unwrap()))
-        .collect()
 }
 
 #[test]
@@ -130,96 +121,6 @@ fn shapes_that_are_no_four_link_arches_have_no_history() {
     );
 }
 
-/// Slender columns under a rectangular pulse overturn without impact from `x = a / A_L` with
-/// `cosh(p t) = 1 + 1 / (2 x (x - 1))`. The neglected terms are of the order of `alpha^2`, here 1e-4.
-#[test]
-fn the_impact_free_boundary_of_a_slender_column_is_the_closed_form() {
-    let (height_m, width_m) = (10.0_f64, 0.1_f64);
-    let scenario = parsed(&format!(
-        "[column]\nheight_m = {height_m}\nwidth_m = {width_m}\n\
-         [ground.rectangular]\namplitude_g = 0.1\nduration_s = 1.0\n\
-         [simulation]\nduration_s = 100\n\
-         [map]\nduration_s = {{ from = 0.05, to = 5.0, count = 9, spacing = \"logarithmic\" }}\n\
-         amplitude_g = {{ from = 0.0105, to = 0.3, count = 12, spacing = \"logarithmic\" }}"
-    ));
-    let cells = OverturningMap::new(&scenario).unwrap();
-    let p = (0.75 * GRAVITY / (0.5 * height_m.hypot(width_m))).sqrt();
-    for (column, (x, boundary)) in boundaries(&cells).into_iter().enumerate() {
-        // x (x - 1) = 1 / (2 (cosh(p t) - 1))
-        let product = 0.5 / ((p * x).cosh() - 1.0);
-        let expected = 0.5 + (0.25 + product).sqrt();
-        let found_g = boundary.impact_free_g.unwrap();
-        let found = found_g / boundary.incipient_g;
-        assert!(
-            (found / expected - 1.0).abs() < 2e-4,
-            "{}: {found} {expected}",
-            x
-        );
-        // The sampled cells agree with the boundary.
-        for row in 0..12 {
-            let index = column * 12 + row;
-            let verdict = ending(&cells, index);
-            let at_once =
-                matches!(verdict.outcome, Outcome::Overturned(_)) && verdict.impacts == Some(0);
-            assert_eq!(
-                at_once,
-                cells.coordinates(index)[1] >= found_g,
-                "cell {index}"
-            );
-        }
-    }
-}
-
-/// Published values of an independent computation (relative tolerance 1e-10), with three or four digits.
-#[test]
-fn the_impact_free_boundary_of_seven_voussoirs_under_a_step_pair() {
-    let scenario = parsed(
-        "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n\
-         [ground.step_pair]\namplitude_g = 1.0\nduration_s = 0.5\n\
-         [map]\nduration_s = [0.2, 0.5, 1.0]\namplitude_g = [0.4, 4.0]",
-    );
-    let cells = OverturningMap::new(&scenario).unwrap();
-    for ((_, boundary), expected_g) in boundaries(&cells).into_iter().zip([3.066, 0.820, 0.465]) {
-        let found_g = boundary.impact_free_g.unwrap();
-        assert!(
-            (found_g / expected_g - 1.0).abs() < 1e-3,
-            "{found_g} {expected_g}"
-        );
-    }
-}
-
-/// Pulses with side lobes overturn without impact within narrow windows, far below the amplitudes that surely do: one
-/// lobe just carries the column over, and the next does not catch it. The windows were found by an integration
-/// that shares nothing with this one (of order eight, relative tolerance 1e-11), and by maps of 300 amplitudes.
-#[test]
-fn the_impact_free_boundary_sees_narrow_windows() {
-    for (pulse, duration_s, low_g, high_g) in [
-        ("ricker", 1.7494, 0.4422, 0.4426),
-        ("antisymmetric_ricker", 1.2228, 0.70, 0.735),
-        ("gabor]\ngamma = 3\nphase_deg = 40 #", 0.9595, 0.70, 0.741),
-        (
-            "mavroeidis_papageorgiou]\ngamma = 3\nphase_deg = 60 #",
-            2.375,
-            0.43,
-            0.4425,
-        ),
-        (
-            "windowed_sine]\ncycles = 4\nphase_deg = 30 #",
-            1.881,
-            0.70,
-            0.7165,
-        ),
-    ] {
-        let scenario = parsed(&format!(
-            "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.{pulse}]\namplitude_g = 1\nduration_s = 1\n\
-             [simulation]\nduration_s = 60\n[map]\nduration_s = [{duration_s}]\namplitude_g = [20]"
-        ));
-        let cells = OverturningMap::new(&scenario).unwrap();
-        let found_g = boundaries(&cells)[0].1.impact_free_g.unwrap();
-        assert!(low_g < found_g && found_g < high_g, "{pulse}: {found_g}");
-    }
-}
-
 #[test]
 fn a_map_does_not_cut_pulses_off() {
     let text = |axis: &str| {
@@ -254,7 +155,6 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
              amplitude_g = {{ from = 0.2, to = 2.0, count = 37 }}"
         ));
         let cells = OverturningMap::new(&scenario).unwrap();
-        let free_g = boundaries(&cells)[0].1.impact_free_g.unwrap();
         let found: Vec<_> = (0..cells.count())
             .map(|index| {
                 let verdict = ending(&cells, index);
@@ -262,9 +162,11 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
                 (cells.coordinates(index)[1], overturns, verdict.impacts)
             })
             .collect();
-        (found, free_g)
+        found
     };
-    let (found, free_g) = outcomes(1e-9);
+    let found = outcomes(1e-9);
+    let pulse = "[ground.one_cosine]\namplitude_g = 1.0\nduration_s = 0.8\n";
+    let free_g = without_impact(&format!("{ARCH}{pulse}"), "one_cosine", &[0.8])[0];
     let first = found
         .iter()
         .position(|(_, overturns, _)| *overturns)
@@ -284,7 +186,7 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
             .map(|(a, overturns, n)| (a.to_bits(), overturns, overturns.then_some(n)))
             .collect()
     };
-    assert_eq!(verdicts(found), verdicts(outcomes(1e-12).0));
+    assert_eq!(verdicts(found), verdicts(outcomes(1e-12)));
 }
 
 // The program, computing in parts.
@@ -305,18 +207,12 @@ fn folder_with_map(count: usize) -> tempfile::TempDir {
 fn threads_and_parts_do_not_change_a_bit() {
     let folder = folder_with_map(13);
     let path = folder.path();
-    let said = done(path, &["map", "s.toml", "--threads", "1", "--no-impact"]);
+    let said = done(path, &["map", "s.toml", "--threads", "1"]);
     assert!(said.contains("169 cells: "), "{said}");
     let whole = files(&path.join("results/s"));
     assert_eq!(
         whole.keys().collect::<Vec<_>>(),
-        [
-            "map.csv",
-            "map.html",
-            "map.json",
-            "map.svg",
-            "no_impact.csv"
-        ]
+        ["map.csv", "map.html", "map.json", "map.svg"]
     );
     let table = String::from_utf8(whole["map.csv"].clone()).unwrap();
     assert_eq!(table.lines().count(), 170);
@@ -333,7 +229,6 @@ fn threads_and_parts_do_not_change_a_bit() {
             "s.toml",
             "--threads",
             "3",
-            "--no-impact",
             "--out",
             "three",
         ],
@@ -349,12 +244,9 @@ fn threads_and_parts_do_not_change_a_bit() {
         "parts/map-1-of-3.part",
         "parts/map-3-of-3.part",
     ];
-    done(
-        path,
-        &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
-    );
+    done(path, &[&["merge", "--out", "merged"], &parts[..]].concat());
     assert_eq!(files(&path.join("merged")), whole);
-    // Without the option no boundary is left, not even an old one; the parts stay where they are.
+    // The parts stay where they are.
     done(path, &[&["merge"], &parts[..]].concat());
     assert_eq!(
         fs::read(path.join("parts/map.csv")).unwrap(),
@@ -420,13 +312,13 @@ fn parts_that_do_not_belong_together_are_refused() {
     refused(
         path,
         &["merge", one, "short.part"],
-        &["9 of its 10 cases", "--shard 2/2 --resume"],
+        &["7 of its 8 cases", "--shard 2/2 --resume"],
     );
     fs::write(path.join("twice.part"), format!("{part}{}\n", lines[3])).unwrap();
     refused(
         path,
         &["merge", one, "twice.part"],
-        &["line 12", "appears twice"],
+        &["line 10", "appears twice"],
     );
     let other = fs::read_to_string(path.join(one)).unwrap();
     let alien = other.lines().last().unwrap();
@@ -434,7 +326,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     refused(
         path,
         &["merge", one, "alien.part"],
-        &["line 12", "another part"],
+        &["line 10", "another part"],
     );
     // Whatever is changed in a row is detected.
     let row = lines[4];
@@ -460,21 +352,10 @@ fn parts_that_do_not_belong_together_are_refused() {
 fn a_torn_part_is_resumed_to_the_same_results() {
     let folder = folder_with_map(7);
     let path = folder.path();
-    done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
+    done(path, &["map", "s.toml", "--out", "whole"]);
     let whole = files(&path.join("whole"));
     // Part 1 of 1 is the whole.
-    done(
-        path,
-        &[
-            "map",
-            "s.toml",
-            "--out",
-            "one",
-            "--shard",
-            "1/1",
-            "--no-impact",
-        ],
-    );
+    done(path, &["map", "s.toml", "--out", "one", "--shard", "1/1"]);
     assert_eq!(files(&path.join("one")), whole);
     done(path, &["map", "s.toml", "--out", "parts", "--shard", "1/2"]);
     done(path, &["map", "s.toml", "--out", "parts", "--shard", "2/2"]);
@@ -498,10 +379,7 @@ fn a_torn_part_is_resumed_to_the_same_results() {
             ],
         );
         let parts = ["parts/map-1-of-2.part", "parts/map-2-of-2.part"];
-        done(
-            path,
-            &[&["merge", "--no-impact", "--out", "merged"], &parts[..]].concat(),
-        );
+        done(path, &[&["merge", "--out", "merged"], &parts[..]].concat());
         assert_eq!(files(&path.join("merged")), whole, "cut at {cut}");
     }
 }
@@ -598,12 +476,12 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
     let folder = folder_with_map(36);
     let path = folder.path();
     let begun = Instant::now();
-    done(path, &["map", "s.toml", "--out", "whole", "--no-impact"]);
+    done(path, &["map", "s.toml", "--out", "whole"]);
     let whole_s = begun.elapsed().as_secs_f64();
     let mut kills = 0;
     let mut random = common::Random(7);
     for _ in 0..40 {
-        let mut child = start_long_work(path, &["--no-impact"]);
+        let mut child = start_long_work(path, &[]);
         sleep(Duration::from_secs_f64(0.4 * whole_s * random.next()));
         if child.try_wait().unwrap().is_none() {
             child.kill().unwrap();
@@ -613,14 +491,14 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
         // Results are either complete or absent.
         if let Ok(table) = fs::read(path.join("r/map.csv")) {
             assert!(table == fs::read(path.join("whole/map.csv")).unwrap());
-            for name in ["map.svg", "map.json", "no_impact.csv"] {
+            for name in ["map.svg", "map.json"] {
                 assert!(path.join("r").join(name).exists(), "{name}");
             }
             break;
         }
     }
     assert!(kills >= 2, "{kills} kills");
-    let again = ["map", "s.toml", "--out", "r", "--resume", "--no-impact"];
+    let again = ["map", "s.toml", "--out", "r", "--resume"];
     done(path, &again);
     assert_eq!(files(&path.join("r")), files(&path.join("whole")));
 }
@@ -772,7 +650,6 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
     let shapes = "[ground.ricker]\namplitude_g = 1\nduration_s = 1\n\
                   [map]\nthickness_ratio = [0.15]\nembrace_deg = [180]\n";
     fs::write(path.join("s.toml"), format!("{ARCH}{shapes}")).unwrap();
-    refused(path, &["map", "s.toml", "--no-impact"], &["amplitude_g"]);
     let initial = "[initial]\nsway = \"left\"\nrotation_rad = 0.01\n";
     fs::write(path.join("s.toml"), format!("{ARCH}{initial}{shapes}")).unwrap();
     refused(path, &["map", "s.toml"], &["leave [initial] out"]);

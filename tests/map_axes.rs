@@ -158,7 +158,7 @@ fn axes_that_do_not_suit_are_refused() {
         said.contains("no cell of [map] makes a valid scenario: unknown key `depht_m`"),
         "{said}"
     );
-    let said = refused(pulse, "amplitude_g = [1, 2]\n'map.spread' = [1, 2]");
+    let said = refused(pulse, "amplitude_g = [1, 2]\n'map.repeat' = [1, 2]");
     assert!(said.contains("names no number of the structure"), "{said}");
     let said = refused(pulse, "amplitude_g = [1, 2]");
     assert!(

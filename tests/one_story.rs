@@ -45,7 +45,7 @@ fn words_page_picture_and_tables_agree() {
         fs::write(folder.path().join("s.toml"), &text).unwrap();
         let mut arguments = vec!["run", "s.toml", "--out", "o"];
         if !model.is_empty() {
-            arguments.push("--no-spread");
+            arguments.push("--no-repeat");
         }
         let said = printed(folder.path(), &arguments);
         let out = folder.path().join("o");

@@ -300,30 +300,24 @@ fn a_default_is_not_frozen() {
 /// A block that a pulse of 0.6 g leaves with more than a quarter of the energy barrier for long.
 const ROCKING_LONG: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[impact]\nmodel = \"prescribed\"\nrestitution = 0.999\n";
 
-/// An overturning spectrum counts histories without a verdict apart, and does not say that nothing overturns there.
+/// A threshold along a range has no value where a history has no verdict, and warns of it.
 #[test]
-fn a_spectrum_counts_histories_without_a_verdict() {
+fn a_threshold_along_a_range_needs_verdicts() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
-    let text = format!(
-        "{ROCKING_LONG}[ground.rectangular]\namplitude_g = -1.0\nduration_s = 1.0\n\
-         [spectrum]\np_t = [0.3]\nacceleration_over_incipient = [0.5, 3.0]\n"
-    );
+    let text = format!("{ROCKING_LONG}[ground.rectangular]\namplitude_g = 1.0\nduration_s = 0.2\n");
     fs::write(at.join("s.toml"), text).unwrap();
-    let said = printed(at, &["spectrum", "s.toml", "--out", "o", "--quiet"]);
-    let row = &Table::read(at.join("o/spectrum.csv")).rows[0];
-    let cells = [
-        "incomplete",
-        "failed",
-        "still_rocking",
-        "least_over_incipient",
-    ];
-    assert_eq!(cells.map(|name| row[name].as_str()), ["1", "0", "0", ""]);
-    let told = json(&at.join("o/spectrum.json"));
-    assert_eq!(told.get("failures"), None);
-    assert!(warns_of_no_verdict(&at.join("o/spectrum.json")));
+    let along = "column.width_m=0.8..0.9:2";
+    let said = printed(at, &["threshold", "s.toml", "--along", along, "--out", "o"]);
+    let row = &Table::read(at.join("o/threshold_along.csv")).rows[0];
+    assert_eq!(
+        (&*row["overturns_from_factor"], &*row["why_not"]),
+        ("", "incomplete")
+    );
+    let summary = at.join("o/threshold_along.json");
+    assert_eq!(json(&summary).get("failures"), None);
     assert!(
-        !said.contains("no pulse up to") && !said.contains("failed"),
+        warns_of_no_verdict(&summary) && !said.contains("failed"),
         "{said}"
     );
 }

@@ -67,7 +67,7 @@ fn a_point_of_a_voussoir_moves_with_it() {
             folder.path(),
             &format!("{ARCH}{model}"),
             &["0,5.375", &place],
-            &["--poses", "--no-spread"],
+            &["--poses", "--no-repeat"],
         );
         let poses = Table::read(folder.path().join("o/poses.csv"));
         for (row, pose) in table.rows.iter().zip(&poses.rows) {
@@ -98,7 +98,7 @@ fn a_point_of_a_voussoir_moves_with_it() {
             "p",
             "--point",
             "0,5.375",
-            "--no-spread",
+            "--no-repeat",
             "--quiet",
         ],
     );
@@ -119,7 +119,7 @@ fn mirrored_points_have_mirrored_displacements() {
         let options: &[&str] = if model.is_empty() {
             &[]
         } else {
-            &["--no-spread"]
+            &["--no-repeat"]
         };
         let (right, _) = run(folder.path(), &scenario, &["2,4.6"], options);
         let mirrored = scenario.replace("-0.27", "0.27");

@@ -129,7 +129,7 @@ fn a_fall_is_on_the_page_and_in_no_table() {
             let mut arguments = vec!["run", "s.toml", "--out", out];
             arguments.extend(more);
             if !model.is_empty() {
-                arguments.push("--no-spread");
+                arguments.push("--no-repeat");
             }
             let said = program::printed(folder.path(), &arguments);
             assert!(said.contains("overturns"), "{said}");
@@ -174,7 +174,7 @@ fn an_arch_on_piers_on_a_phone_and_on_paper() {
     fs::write(folder.path().join("s.toml"), format!("{arch}{ground}")).unwrap();
     let record = program::scenarios().join("synthetic.at2");
     fs::copy(record, folder.path().join("synthetic.at2")).unwrap();
-    let arguments = ["run", "s.toml", "--out", ".", "--no-spread"];
+    let arguments = ["run", "s.toml", "--out", ".", "--no-repeat"];
     program::printed(folder.path(), &arguments);
     let page = folder.path().join("report.html");
     let text = fs::read_to_string(&page).unwrap();
@@ -249,7 +249,7 @@ fn ten_seconds_of_thirty_six_blocks_are_small() {
                     [free_hinges]\n[ground.record]\nfile = \"synthetic.at2\"\npeak_g = 0.2\n\
                     [simulation]\nduration_s = 10.0\n";
     fs::write(folder.path().join("long.toml"), scenario).unwrap();
-    let arguments = ["run", "long.toml", "--out", ".", "--no-spread"];
+    let arguments = ["run", "long.toml", "--out", ".", "--no-repeat"];
     let output = program::archrock(folder.path(), &arguments);
     assert!(output.status.success(), "{}", program::stderr(&output));
     let table = Table::read(folder.path().join("rotations.csv"));

@@ -340,7 +340,7 @@ fn comparisons_of_models_do_not_replace_one_another() {
     succeeds(
         at,
         &[
-            &["run", "s.toml", "--no-report", "--no-spread"][..],
+            &["run", "s.toml", "--no-report", "--no-repeat"][..],
             &models,
         ]
         .concat(),

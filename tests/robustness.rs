@@ -441,7 +441,7 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
     };
     fs::write(root.path().join("long.toml"), scenario(8.0)).unwrap();
     fs::write(root.path().join("short.toml"), scenario(1e-2)).unwrap();
-    let run = |more: &str| format!("{PROGRAM} run --no-spread --no-report --out out {more}");
+    let run = |more: &str| format!("{PROGRAM} run --no-repeat --no-report --out out {more}");
     let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
         eprintln!("script is missing: progress is not tested");
         return;
@@ -454,7 +454,7 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
     // Progress is not written to a file.
     let (code, said) = within_a_minute(
         root.path(),
-        &["run", "--no-spread", "--out", "out", "long.toml"],
+        &["run", "--no-repeat", "--out", "out", "long.toml"],
     );
     assert_eq!((code, said), (Some(0), String::new()));
 }

@@ -47,7 +47,7 @@ fn the_summary_as_json_is_that_of_the_file() {
     let text = format!("{TEXT}[free_hinges]\n").replace("[ground", "voussoirs = 9\n[ground");
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let run = |options: &[&str]| {
-        let mut arguments = vec!["run", "s.toml", "--format", "json", "--no-spread"];
+        let mut arguments = vec!["run", "s.toml", "--format", "json", "--no-repeat"];
         arguments.extend(options);
         archrock(folder.path(), &arguments)
     };

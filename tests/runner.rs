@@ -9,15 +9,10 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use crate::common::parsed;
-use crate::common::{GRAVITY, pairs, request};
 use crate::program::{archrock, stderr};
-use archrock::studies::map::boundary::{ImpactFreeBoundary, MapRow, MapWithBoundary};
-use archrock::studies::map::{CellResult, OverturningMap};
+use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 use archrock::studies::part::{self, Header, PartError, PartFile, Shard};
 use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
-use archrock::{
-    Column, GroundMotion, ImpactModel, MechanismModel as _, Model as _, Pulse, RockingColumn, Sway,
-};
 
 /// Cases of a few milliseconds whose rows are hard to write exactly; some of them fail.
 #[derive(Default)]
@@ -198,31 +193,23 @@ fn failed_cells_keep_their_reason() {
         "[column]\nheight_m = 4\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 1\nduration_s = 1\n\
          [simulation]\nduration_s = 60\n[map]\nduration_s = [0.3, 0.6]\namplitude_g = [0.1, 0.4, 1.6]",
     );
-    let map = OverturningMap::new(&scenario).unwrap();
-    let study = MapWithBoundary::new(&map);
+    let study = OverturningMap::new(&scenario).unwrap();
     let mut rows = Runner::default().rows(&study, go_on).unwrap();
     for (index, reason) in [(1, "the first reason"), (4, "another")] {
-        let MapRow::Cell(cell) = &mut rows[index] else {
-            panic!("cells come first");
-        };
-        cell.result = CellResult::Failed(reason.to_owned());
+        rows[index].result = CellResult::Failed(reason.to_owned());
     }
-    let MapRow::Boundary(last) = &mut rows[7] else {
-        panic!("boundaries come last");
-    };
-    last.result = Err("no boundary".to_owned());
     let path = folder.path().join("map.part");
     let header = Header::new(&study, Shard::WHOLE);
-    let (mut part, _) = PartFile::open::<MapRow>(&path, &header, false).unwrap();
+    let (mut part, _) = PartFile::open::<CellRow>(&path, &header, false).unwrap();
     let rows: Vec<_> = rows.into_iter().enumerate().collect();
     part.append(&rows).unwrap();
     drop(part);
-    let output = archrock(folder.path(), &["merge", "map.part", "--no-impact"]);
+    let output = archrock(folder.path(), &["merge", "map.part"]);
     let said = stderr(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(
         said.contains(": the first reason; all are in map.json\n")
-            && said.contains("failed: 3; the first: "),
+            && said.contains("failed: 2; the first: "),
         "{said}"
     );
     let summary = fs::read_to_string(folder.path().join("map.json")).unwrap();
@@ -233,7 +220,7 @@ fn failed_cells_keep_their_reason() {
         .iter()
         .map(|failed| &failed["reason"])
         .collect();
-    assert_eq!(reasons, ["the first reason", "another", "no boundary"]);
+    assert_eq!(reasons, ["the first reason", "another"]);
     let lines = |name| {
         let text = fs::read_to_string(folder.path().join(name)).unwrap();
         text.lines().map(str::to_owned).collect::<Vec<_>>()
@@ -243,75 +230,4 @@ fn failed_cells_keep_their_reason() {
         (&*table[2], &*table[5]),
         ("0.3,0.4,failed,,,,,,", "0.6,0.4,failed,,,,,,")
     );
-    assert_eq!(lines("no_impact.csv").len(), 2);
-}
-
-/// The edge by a plain search, in which every pulse is built from scratch.
-fn plain_edge_g(column: &RockingColumn, pulse: Pulse, duration_s: f64) -> Option<f64> {
-    let overturns = |amplitude_g: f64| {
-        let ground = GroundMotion::pulse(pulse, amplitude_g * GRAVITY, duration_s, 0.0).unwrap();
-        let overturns = column.overturns_without_impact(&ground, &request(60.0));
-        overturns.unwrap().is_some()
-    };
-    let one_sided = matches!(
-        pulse,
-        Pulse::Rectangular | Pulse::HalfSine | Pulse::Triangular
-    );
-    let stride = if one_sided { 1.5 } else { 1.005 };
-    let mut low_g = column.incipient_acceleration_g(Sway::Right).unwrap();
-    let mut high_g = low_g;
-    while !overturns(high_g) {
-        if high_g >= 1000.0 {
-            return None;
-        }
-        (low_g, high_g) = (high_g, (high_g * stride).min(1000.0));
-    }
-    while high_g - low_g > 1e-9 * high_g {
-        let middle_g = 0.5 * (low_g + high_g);
-        if overturns(middle_g) {
-            high_g = middle_g;
-        } else {
-            low_g = middle_g;
-        }
-    }
-    Some(high_g)
-}
-
-/// They are equal to the last bit.
-#[test]
-fn the_boundary_is_that_of_the_plain_search() {
-    let mut edges = 0;
-    for (width_m, durations_s) in [(0.4, [0.2, 2.0]), (1.7, [0.9, 5.5])] {
-        let column = Column::new(4.0, width_m).unwrap();
-        let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
-        for pulse in Pulse::ALL {
-            let scenario = parsed(&format!(
-                "[column]\nheight_m = 4.0\nwidth_m = {width_m}\n\
-                 [ground.{}]\namplitude_g = 1\nduration_s = 1\n[simulation]\nduration_s = 60\n\
-                 [map]\nduration_s = {durations_s:?}\namplitude_g = [0.0001]",
-                pulse.name()
-            ));
-            let map = OverturningMap::new(&scenario).unwrap();
-            let rows = Runner::default()
-                .rows(&ImpactFreeBoundary::new(&map).unwrap(), go_on)
-                .unwrap();
-            for (row, duration_s) in pairs(&rows, durations_s) {
-                let found = row.result.clone().unwrap().unwrap();
-                let expected_g = plain_edge_g(&column, *pulse, duration_s);
-                assert_eq!(row.x, duration_s);
-                edges += usize::from(expected_g.is_some());
-                assert_eq!(
-                    Some(found.incipient_g),
-                    column.incipient_acceleration_g(Sway::Right)
-                );
-                assert_eq!(
-                    found.impact_free_g.map(f64::to_bits),
-                    expected_g.map(f64::to_bits),
-                    "{pulse:?} of {duration_s} s: {found:?} {expected_g:?}"
-                );
-            }
-        }
-    }
-    // All but a few durations have an amplitude that overturns.
-    assert!(edges > 3 * Pulse::ALL.len(), "{edges}");
 }

@@ -90,7 +90,6 @@ fn defaults() {
     assert!(
         !scenario.motion().hinges().has_joints()
             && scenario.map().is_none()
-            && scenario.spectrum().is_none()
             && scenario.suite().is_none()
     );
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
@@ -222,8 +221,6 @@ fn every_key() {
         [map]
         duration_s = { from = 0.1, to = 1, count = 3 }
         amplitude_g = [1, 2]
-        [spectrum]
-        p_t = [1]
         "#,
     )
     .unwrap();
@@ -265,10 +262,6 @@ gravity_m_s2 = 1.62
 [map]
 duration_s = { from = 0.1, to = 1.0, count = 3, spacing = "linear" }
 amplitude_g = [1.0, 2.0]
-
-[spectrum]
-p_t = [1.0]
-acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "logarithmic" }
 "#
     );
     // The resolved scenario is written, not only what was given.
@@ -309,8 +302,7 @@ acceleration_over_incipient = { from = 1.0, to = 20.0, count = 400, spacing = "l
     let axes = [&map.x, &map.y].map(|axis| (axis.quantity, axis.sequence.values()));
     assert_eq!(axes[0], (Quantity::Duration, vec![0.1, 0.55, 1.0]));
     assert_eq!(axes[1], (Quantity::Amplitude, vec![1.0, 2.0]));
-    assert!(!map.spread);
-    assert_eq!(scenario.spectrum().unwrap().p_t.values(), [1.0]);
+    assert!(!map.repeat);
     assert_eq!(
         scenario.motion().impact(),
         ImpactModel::Prescribed { restitution: 1.0 }.into()
@@ -420,7 +412,7 @@ fn errors_display_as_file_line_column_message() {
         errors.to_string(),
         "s.toml:1:1: unknown key `titel` in the scenario (did you mean `title`?); known keys: \
          title, free_hinges, elastic_joints, supports, simulation, piers, fill, load, tie, arch, column, pointed_arch, \
-         elliptic_arch, basket_arch, blocks, ground, impact, initial, map, spectrum, suite, verify, demand, uncertain\n\
+         elliptic_arch, basket_arch, blocks, ground, impact, initial, map, suite, verify, demand, uncertain\n\
          s.toml:6:13: `voussoirs = 2` is out of range; must be a whole number from 3 (four \
          hinges need four joints) to 200"
     );

@@ -217,7 +217,6 @@ fn every_command_takes_assignments() {
         "impact",
         "run",
         "map",
-        "spectrum",
         "suite",
         "threshold",
     ] {

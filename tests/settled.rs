@@ -415,7 +415,7 @@ fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
         words.contains("joint 6 (intrados), joint 18 (extrados), joint 30 (intrados)"),
         "{words}"
     );
-    let run = ["--quiet", "run", "arch.toml", "--no-spread", "--no-report"];
+    let run = ["--quiet", "run", "arch.toml", "--no-repeat", "--no-report"];
     printed(folder.path(), &run);
     let told = json(&folder.path().join("results/arch/summary.json"));
     let told_g = told["incipient_acceleration_g"]["right"].as_f64().unwrap();

@@ -1484,7 +1484,7 @@ fn a_scenario_says_where_its_springings_have_gone() {
             "--quiet",
             "run",
             "arch.toml",
-            "--no-spread",
+            "--no-repeat",
             "--format",
             "json",
         ],

@@ -461,15 +461,8 @@ fn parts_make_the_same_files_where_the_records_are_not() {
     let entries = fs::read_dir(folder.join("whole")).unwrap();
     assert_eq!(entries.count(), FILES.len());
 
-    merge.push("--no-impact");
-    refused(
-        folder,
-        &merge,
-        &["--no-impact is for maps with amplitude_g as an axis"],
-    );
     let damaged = read(&folder.join(&parts[0])).replace("\"mirrored\":false", "\"mirrored\":true");
     write(folder, &parts[0], &damaged);
-    merge.pop();
     refused(folder, &merge, &["damaged"]);
 }
 
@@ -1391,7 +1384,7 @@ fn distributions_of_models_are_compared() {
         "--hinges",
         "four,free",
         "--no-report",
-        "--no-spread",
+        "--no-repeat",
         "--out",
         "u",
     ];

@@ -638,7 +638,7 @@ fn a_run_tells_of_its_ties() {
             "s.toml",
             "--out",
             hinges,
-            "--no-spread",
+            "--no-repeat",
             "--hinges",
             hinges,
             "--snapshots",

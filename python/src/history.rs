@@ -490,10 +490,10 @@ impl History {
         Scenario::new(self.shaken())
     }
 
-    /// `summary.json` of the program; with `spread`, the repetitions of a row of blocks are simulated too.
-    fn summary_json(&self, py: Python<'_>, spread: bool) -> PyResult<String> {
+    /// `summary.json` of the program; with `repeat`, the repetitions of a row of blocks are simulated too.
+    fn summary_json(&self, py: Python<'_>, repeat: bool) -> PyResult<String> {
         let (scenario, model) = (self.shaken(), &*self.model);
-        let repeats = spread && model.row().is_some();
+        let repeats = repeat && model.row().is_some();
         let spread = repeats.then(|| {
             py.detach(|| {
                 Repetitions::start(model, scenario.ground_motion(), &scenario.request())

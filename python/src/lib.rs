@@ -23,7 +23,9 @@ mod _native {
     #[pymodule_export]
     use crate::scenario::{Ground, Scenario};
     #[pymodule_export]
-    use crate::studies::{capacity, compute_part, merge, save, study, threshold, verify};
+    use crate::studies::{
+        capacity, compute_part, merge, save, study, threshold, threshold_along, verify,
+    };
 
     /// Memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]

@@ -8,11 +8,10 @@ use archrock::output::{Batch, Figure};
 use archrock::studies::capacity::{capacity as capacities, report as report_capacity};
 use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
 use archrock::studies::kept::Writer;
-use archrock::studies::map::OverturningMap;
-use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::part::Shard;
 use archrock::studies::results::Look;
 use archrock::studies::runner::{Runner, Task};
+use archrock::studies::threshold::along::AlongOptions;
 use archrock::studies::threshold::{Factors, ThresholdError, check, tell, thresholds};
 use archrock::studies::verify::{Check, tell as tell_check};
 use pyo3::exceptions::PyValueError;
@@ -40,7 +39,7 @@ fn to_python(py: Python<'_>, files: Files) -> PyFiles<'_> {
 fn kind_of(name: &str) -> PyResult<StudyKind> {
     StudyKind::of_name(name).ok_or_else(|| {
         PyValueError::new_err(format!(
-            "{name:?} is no study: give \"map\", \"spectrum\", \"suite\", \"uncertain\", \"uncertain_threshold\", \"uncertain_suite\" or \"uncertain_map\""
+            "{name:?} is no study: give \"map\", \"suite\", \"uncertain\", \"uncertain_threshold\", \"uncertain_suite\" or \"uncertain_map\""
         ))
     })
 }
@@ -55,14 +54,8 @@ fn failed(error: StudyError) -> PyErr {
     }
 }
 
-/// The most complete look for a scenario's study.
-fn look(scenario: Option<&archrock::Scenario>) -> Look {
-    let map = scenario.and_then(OverturningMap::new);
-    Look {
-        no_impact: map.is_some_and(|map| MapWithBoundary::new(&map).has_boundary()),
-        ..Look::of(Figure::SCREEN)
-    }
-}
+/// The look of all results.
+const LOOK: Look = Look::of(Figure::SCREEN);
 
 /// A runner with this many threads, or with as many as there are processors.
 fn runner(threads: Option<u16>) -> Runner {
@@ -83,8 +76,7 @@ pub fn study<'py>(
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let scenario = Arc::clone(scenario.moving()?);
     let done = watched(py, progress, move |watch| {
-        let look = look(Some(&scenario));
-        kind.compute(&scenario, look, runner, None, watch)
+        kind.compute(&scenario, LOOK, runner, None, watch)
             .map_err(failed)
     })?;
     match done {
@@ -113,8 +105,7 @@ pub fn compute_part(
             shard,
             resume: true,
         };
-        let look = look(Some(&scenario));
-        kind.compute(&scenario, look, runner, Some(task), watch)
+        kind.compute(&scenario, LOOK, runner, Some(task), watch)
             .map_err(failed)
     })?;
     match done {
@@ -137,9 +128,7 @@ pub fn merge<'py>(
         return Err(PyValueError::new_err("no parts given"));
     }
     let (kind, results) = watched(py, None, move |_| {
-        studies::merge(&parts, scenario.as_deref(), |_, scenario| {
-            Ok(look(scenario))
-        })
+        studies::merge(&parts, scenario.as_deref(), |_, _| Ok(LOOK))
         .map_err(failed)
     })?;
     Ok((kind.name().to_owned(), to_python(py, results.files)))
@@ -173,6 +162,34 @@ pub fn threshold<'py>(
         Ok(results.files)
     })?;
     Ok(to_python(py, files))
+}
+
+/// Finds the threshold for each value of a key.
+#[pyfunction]
+pub fn threshold_along<'py>(
+    py: Python<'py>,
+    scenario: &Scenario,
+    along: &str,
+    no_impact: bool,
+    factors: (f64, f64, f64),
+    threads: Option<u16>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<PyFiles<'py>> {
+    let (from, to, stride) = factors;
+    let options = AlongOptions {
+        along: along.parse().map_err(refused)?,
+        factors: Factors::new(from, to, stride).map_err(refused)?,
+        no_impact,
+    };
+    let runner = runner(threads);
+    let scenario = Arc::clone(scenario.moving()?);
+    let done = watched(py, progress, move |watch| {
+        studies::thresholds_along(&scenario, options, LOOK, runner, None, watch).map_err(failed)
+    })?;
+    match done {
+        Done::Whole(results, _) => Ok(to_python(py, results.files)),
+        Done::Part { .. } => unreachable!("what is computed in memory is no part"),
+    }
 }
 
 /// The capacity curves of a scenario to both sides, as `archrock capacity`.

@@ -29,9 +29,9 @@ from archrock import (
     overturning_map,
     simulate,
     span,
-    spectrum,
     suite,
     threshold,
+    threshold_along,
 )
 
 
@@ -210,7 +210,10 @@ def test_arguments_that_nobody_means_are_exceptions(arch: Arch, pulse: Pulse) ->
         ),
         (overturning_map, {"of": arch, "ground": pulse, "axes": {"duration_s": [0.1], "amplitude_g": [0.2]}}),
         (suite, {"of": arch, "records": [], "peaks_g": [0.1], "both_signs": True}),
-        (spectrum, {"of": arch, "ground": pulse, "p_t": [1.0], "acceleration_over_incipient": [1.0]}),
+        (
+            threshold_along,
+            {"of": arch, "ground": pulse, "key": "arch.depth_m", "start": 1.0, "end": 2.0, "count": 2, "to_factor": 0.2, "stride": 0.5},
+        ),
         (threshold, {"of": arch, "ground": pulse, "from_factor": 1.0, "to_factor": 1.1, "stride": 0.1}),
         (merge, {"parts": []}),
         (compute_part, {"scenario": Scenario.of(arch, pulse), "study": "map", "shard": (1, 2), "folder": "/dev/null"}),

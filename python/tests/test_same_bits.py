@@ -166,7 +166,7 @@ def test_a_hundred_random_scenarios_have_the_bits_of_the_program(
     assert {history.outcome for history in histories.values()} >= {"rest", "overturned"}
 
     files = [tmp_path / f"{name}.toml" for name in histories]
-    options = ["--no-spread"] if free else []
+    options = ["--no-repeat"] if free else []
     ran = program("run", *files, "--out", tmp_path / "results", "--no-report", *options)
     assert ran.returncode == 0, ran.stderr
     for name, history in histories.items():
@@ -185,7 +185,7 @@ def test_gaps_are_those_of_joints_csv(program: Program, tmp_path: Path) -> None:
     assert history.gaps.max() > 0.0
     # With half and double steps, as the program does by default.
     summary = json.loads((tmp_path / "out" / "summary.json").read_text())
-    assert history.spread() == summary["spread"]
+    assert history.repeatability() == summary["repeatability"]
 
 
 def test_poses_are_those_of_the_program(program: Program, tmp_path: Path, arch: Arch, pulse: Pulse) -> None:

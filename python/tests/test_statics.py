@@ -21,7 +21,6 @@ from archrock import (
     compute_part,
     ensemble,
     overturning_map,
-    spectrum,
     threshold,
     verify,
 )
@@ -83,7 +82,6 @@ def test_whatever_moves_the_structure_raises_the_error_of_the_program(path: Path
         Scenario.memory_gb,
         threshold,
         overturning_map,
-        spectrum,
         ensemble,
         verify,
         lambda of: compute_part(of, "map", (1, 2), tmp_path / "parts"),

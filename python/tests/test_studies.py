@@ -27,9 +27,9 @@ from archrock import (
     merge,
     overturning_map,
     span,
-    spectrum,
     suite,
     threshold,
+    threshold_along,
 )
 
 from .conftest import ROOT, Program, issued
@@ -62,13 +62,12 @@ def test_a_map_is_that_of_the_program(program: Program, tmp_path: Path, arch: Ar
     found = overturning_map(arch, COSINE, AXES, duration_s=20.0)
     scenario = map_scenario(arch, COSINE, AXES, duration_s=20.0)
     assert overturning_map(scenario) == found
-    assert_files(found, by_program(program, tmp_path, "map", scenario.to_toml(), "--no-impact"))
+    assert_files(found, by_program(program, tmp_path, "map", scenario.to_toml()))
 
     assert found.axes == ("duration_s", "amplitude_g")
     assert found.x.tolist() == pytest.approx([0.4, 0.6, 0.8, 1.0, 1.2])
     assert len(found.y) == 6 and found.outcome.shape == found.impacts.shape == (5, 6)
     assert set(found.outcome.ravel()) == {"never_moved", "rest", "overturned"}
-    assert found.boundary is not None and len(found.boundary["duration_s"]) == 5
     assert found._repr_svg_().startswith("<svg") or "<svg" in found._repr_svg_()
     assert pickle.loads(pickle.dumps(found)) == found
     table = found.to_pandas()
@@ -88,17 +87,15 @@ def test_axes_are_anything_like_an_array() -> None:
         overturning_map(column, COSINE, {"amplitude_g": values})
 
 
-def test_a_spectrum_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+def test_thresholds_along_a_key_are_those_of_the_program(program: Program, tmp_path: Path) -> None:
     column, pulse = Column(4.0, 0.8), Pulse.one_sine(0.5, 0.5)
-    tried: dict[str, Any] = {
-        "p_t": [1.0, 3.0],
-        "acceleration_over_incipient": span(1.0, 6.0, 20, "logarithmic"),
-    }
-    found = spectrum(column, pulse, **tried)
-    scenario = Scenario.of(column, pulse, spectrum=tried)
-    assert spectrum(scenario) == found
-    assert_files(found, by_program(program, tmp_path, "spectrum", scenario.to_toml()))
-    assert found.columns()["p_t"].tolist() == [1.0, 3.0]
+    scenario = Scenario.of(column, pulse)
+    how: dict[str, Any] = {"key": "column.width_m", "start": 0.6, "end": 1.0, "count": 3, "no_impact": True, "stride": 0.1}
+    found = threshold_along(column, pulse, **how)
+    assert threshold_along(scenario, **how) == found
+    options = ("--along", "column.width_m=0.6..1:3", "--no-impact", "--stride", "0.1")
+    assert_files(found, by_program(program, tmp_path, "threshold", scenario.to_toml(), *options))
+    assert found.columns()["column.width_m"].tolist() == [0.6, 0.8, 1.0]
 
 
 def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
@@ -219,7 +216,7 @@ def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, 
     assert parts[0].read_bytes() == before
     merged = merge(parts)
     assert isinstance(merged, OverturningMap) and merged == whole
-    ran = program("merge", *parts, "--out", tmp_path / "out", "--no-impact")
+    ran = program("merge", *parts, "--out", tmp_path / "out")
     assert ran.returncode == 0, ran.stderr
     assert_files(whole, tmp_path / "out")
 
@@ -276,7 +273,7 @@ def test_studies_that_are_none(arch: Arch, pulse: Pulse) -> None:
         (lambda: suite(plain), "no [suite]"),
         (lambda: overturning_map(plain, pulse), "leave ground out"),
         (lambda: overturning_map(arch, pulse), "two axes"),
-        (lambda: spectrum(arch), "needs a pulse"),
+        (lambda: threshold_along(plain, key="arch.depht_m", start=1, end=2, count=2), "unknown key `depht_m`"),
         (lambda: threshold(arch), "needs a ground motion"),
         (lambda: compute_part(plain, "maps", (1, 1), "/nowhere"), "is no study"),  # type: ignore[arg-type]
     ]
@@ -305,9 +302,9 @@ def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, progr
     uncertain = '[uncertain]\nsamples = 2\n"arch.depth_m" = { deviation = 0.01 }\n'
     table = {name: list(values) for name, values in axes.items()}
     (tmp_path / "s.toml").write_text(Scenario.of(arch, pulse, map=table, duration_s=5.0).to_toml() + uncertain)
-    ran = program("map", tmp_path / "s.toml", "--no-impact", "--out", folder)
+    ran = program("map", tmp_path / "s.toml", "--out", folder)
     assert ran.returncode == 0, ran.stderr
-    assert names | {"no_impact.csv", "uncertain_map"} <= {path.name for path in folder.iterdir()}
+    assert names | {"uncertain_map"} <= {path.name for path in folder.iterdir()}
     column = Column(height_m=4.0, width_m=0.8, drums=3)
     found = overturning_map(column, pulse, axes, model="free_hinges", duration_s=1.0)
     assert issued(lambda: found.save(folder)) == []

@@ -41,12 +41,8 @@ Examples:
 pub const MAP: &str = "\
 Examples:
   archrock map arch.toml --threads 4
+  archrock map arch.toml --resume      goes on after Ctrl-C
   archrock map arch.toml --shard 1/3 --out part-1    and 2/3, 3/3 elsewhere; then archrock merge";
-
-pub const SPECTRUM: &str = "\
-Examples:
-  archrock spectrum arch.toml
-  archrock spectrum arch.toml --resume      goes on after Ctrl-C";
 
 pub const SUITE: &str = "\
 Examples:
@@ -56,7 +52,8 @@ Examples:
 pub const THRESHOLD: &str = "\
 Examples:
   archrock threshold arch.toml
-  archrock threshold arch.toml --from 0.8 --to 1.5 --stride 0.005 --hinges four,free";
+  archrock threshold arch.toml --from 0.8 --to 1.5 --stride 0.005 --hinges four,free
+  archrock threshold arch.toml --along arch.mean_radius_m=4..6:5";
 
 pub const MERGE: &str = "\
 Examples:

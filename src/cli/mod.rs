@@ -87,14 +87,11 @@ enum Command {
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
-    /// Find the weakest pulse that overturns, against size, for a structure and its equivalent column: see
-    /// [spectrum] in the scenario.
-    #[command(after_help = examples::SPECTRUM)]
-    Spectrum(studies::SpectrumArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
     #[command(after_help = examples::SUITE)]
     Suite(studies::SuiteArguments),
-    /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them.
+    /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them; or the least factor for
+    /// each value of a key.
     #[command(after_help = examples::THRESHOLD)]
     Threshold(threshold::Arguments),
     /// Merge the parts of a study computed with --shard.
@@ -182,7 +179,6 @@ pub fn main() -> ExitCode {
         Command::Spread(spread) => spread::spread(&spread, arguments.quiet),
         Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
         Command::Map(map) => studies::map(&map, arguments.quiet),
-        Command::Spectrum(spectrum) => studies::spectrum(&spectrum, arguments.quiet),
         Command::Suite(suite) => studies::suite(&suite, arguments.quiet),
         Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
         Command::Merge(merge) => studies::merge(&merge, arguments.quiet),
@@ -199,8 +195,35 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Names the command that was probably meant by a mistyped one; two swapped letters count as one mistake.
+/// Commands and options of earlier versions, and what replaces them.
+const REPLACED: [(&str, &str); 4] = [
+    (
+        "chart",
+        "was removed: `limit` and `impact` give these numbers for one arch, and python/examples/shapes_of_arches.py for many",
+    ),
+    (
+        "spectrum",
+        "was removed: use `threshold SCENARIO --along TABLE.KEY=FROM..TO:COUNT`",
+    ),
+    ("--no-spread", "is now called `--no-repeat`"),
+    (
+        "--no-impact",
+        "is an option of `threshold SCENARIO --along TABLE.KEY=FROM..TO:COUNT`, such as --along ground.half_sine.duration_s=0.1..1:10",
+    ),
+];
+
+/// Names what replaces a command or an option of earlier versions, and the command that was probably meant by a mistyped one; two swapped
+/// letters count as one mistake.
 fn likely(mut error: clap::Error) -> clap::Error {
+    for kind in [ContextKind::InvalidSubcommand, ContextKind::InvalidArg] {
+        let Some(ContextValue::String(given)) = error.get(kind) else {
+            continue;
+        };
+        if let Some((name, successor)) = REPLACED.iter().find(|(name, _)| name == given) {
+            let message = format!("`{name}` {successor}\n");
+            return Arguments::command().error(error.kind(), message);
+        }
+    }
     if let Some(ContextValue::String(given)) = error.get(ContextKind::InvalidSubcommand) {
         let commands = Arguments::command();
         let names = commands.get_subcommands().map(clap::Command::get_name);

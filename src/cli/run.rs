@@ -56,7 +56,7 @@ pub struct Arguments {
     hinges: Vec<Models>,
     /// Do not repeat a run with free hinges or elastic joints in other steps, nor elastic joints with other stiffness and contact.
     #[arg(long)]
-    no_spread: bool,
+    no_repeat: bool,
     /// Write no report.html.
     #[arg(long)]
     no_report: bool,
@@ -307,8 +307,8 @@ impl Job {
             return Err(Failure::Input(message.to_owned()));
         }
         let in_steps = |one: &Scenario| one.motion().hinges().has_joints();
-        if arguments.no_spread && !scenarios.iter().any(in_steps) {
-            let message = "--no-spread goes with free hinges and elastic joints: four links and columns are not repeated";
+        if arguments.no_repeat && !scenarios.iter().any(in_steps) {
+            let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(Failure::Input(message.to_owned()));
         }
         // If one scenario cannot be run, none is.
@@ -395,7 +395,7 @@ impl Arguments {
             figure: self.panels.of(self.figure.get()?),
             rotations: !to_stdout,
             dimensionless: self.dimensionless,
-            spread: !self.no_spread,
+            repeat: !self.no_repeat,
             report: !self.no_report,
             snapshots_s: self.snapshots.clone(),
             film_a_second: self.film,

@@ -1,4 +1,4 @@
-//! The commands `map`, `suite` and `spectrum`, and `merge`, which joins the parts of a study.
+//! The commands `map` and `suite`, and `merge`, which joins the parts of a study.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,6 @@ use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::map::boundary::MapWithBoundary;
 use archrock::studies::peaks;
 use archrock::studies::results::{Look, Results};
 use clap::ValueEnum;
@@ -19,7 +18,7 @@ use super::scenario_file::{Destination, Input};
 use super::study::{HingesOption, Options, Pending, say};
 use super::uncertain::{Asked, ITSELF, Telling};
 use super::{Failure, Format, print};
-use archrock::studies::kept::{MAP, Origin, SPECTRUM, SUITE, Writer};
+use archrock::studies::kept::{MAP, Origin, SUITE, Writer};
 
 #[derive(clap::Args)]
 pub struct MapArguments {
@@ -46,14 +45,6 @@ pub struct SuiteArguments {
 }
 
 #[derive(clap::Args)]
-pub struct SpectrumArguments {
-    #[command(flatten)]
-    options: Options,
-    #[command(flatten)]
-    figure: FigureOption,
-}
-
-#[derive(clap::Args)]
 pub struct MergeArguments {
     /// All parts of one study.
     #[arg(required = true, value_name = "PART")]
@@ -70,12 +61,9 @@ pub struct MergeArguments {
     figure: FigureOption,
 }
 
-/// What else is written for a map, and how its picture looks.
+/// How the picture of a map looks.
 #[derive(clap::Args, Clone, Copy)]
 pub struct MapOption {
-    /// Also write the least amplitude that overturns without impact, as no_impact.csv.
-    #[arg(long)]
-    no_impact: bool,
     /// What colours the surviving cells of a map.
     #[arg(long, value_enum, value_name = "WHAT", default_value_t)]
     color: Color,
@@ -99,17 +87,6 @@ impl MapOption {
     fn look(self, scenario: &Scenario, figure: Figure) -> Result<Look, String> {
         let by_peak = self.color == Color::Peak;
         let free_hinges = scenario.motion().hinges().has_joints();
-        if self.no_impact && free_hinges {
-            return Err(
-                "--no-impact is about four links, and the hinges of this map are free: leave it out, or give \
-                 --hinges four"
-                    .to_owned(),
-            );
-        }
-        let map = OverturningMap::new(scenario);
-        if self.no_impact && map.is_none_or(|map| !MapWithBoundary::new(&map).has_boundary()) {
-            return Err(NO_BOUNDARY.to_owned());
-        }
         if by_peak && free_hinges {
             return Err(
                 "--color peak goes with four links and columns: free hinges have no critical rotation"
@@ -123,15 +100,14 @@ impl MapOption {
             factors: factors
                 .transpose()
                 .map_err(|wrong| format!("--dimensionless {wrong}"))?,
-            no_impact: self.no_impact,
         })
     }
 
     /// The look of a map of probability.
     fn of_samples(self, scenario: &Scenario, figure: Figure) -> Result<Look, String> {
-        if self.no_impact || self.color != Color::Outcome {
+        if self.color != Color::Outcome {
             return Err(
-                "--no-impact and --color are about maps of outcomes, and these are parts of a map of probability"
+                "--color is about maps of outcomes, and these are parts of a map of probability"
                     .to_owned(),
             );
         }
@@ -140,17 +116,12 @@ impl MapOption {
 
     /// The look of a study that is not a map.
     fn of_no_map(self, figure: Figure) -> Result<Look, String> {
-        if self.no_impact {
-            return Err(NO_BOUNDARY.to_owned());
-        }
         if self.dimensionless || self.color != Color::Outcome {
             return Err("--color and --dimensionless are for maps only".to_owned());
         }
         Ok(Look::of(figure))
     }
 }
-
-const NO_BOUNDARY: &str = "--no-impact is for maps with amplitude_g as an axis";
 
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
@@ -312,26 +283,6 @@ pub fn compare(
     let results = results.map_err(StudyError::from)?;
     place.of_models().prepare(&results)?;
     Ok(Some(results))
-}
-
-pub fn spectrum(arguments: &SpectrumArguments, quiet: bool) -> Result<(), Failure> {
-    let options = &arguments.options;
-    let input = options.open()?;
-    let scenario = input.read_as_built()?;
-    let look = Look::of(arguments.figure.get()?);
-    if !quiet {
-        super::warn(&scenario.unlikely());
-    }
-    let place = options.place(SPECTRUM, (&input, &scenario), arguments.figure, quiet)?;
-    let mut pending = Pending::default();
-    let results = options.compute(
-        StudyKind::Spectrum,
-        &input,
-        &scenario,
-        (look, &place),
-        (&mut pending, quiet),
-    )?;
-    publish_if_whole(results, &place, pending, options.format(), quiet)
 }
 
 pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {

@@ -5,18 +5,20 @@ use std::path::PathBuf;
 
 use archrock::dynamics::model::Model;
 use archrock::scenario::Scenario;
-use archrock::studies::results::Results;
+use archrock::studies::catalogue::{StudyKind, thresholds_along as study_along};
+use archrock::studies::results::{Look, Results};
+use archrock::studies::threshold::along::{Along, AlongOptions, KeyRange};
 use archrock::studies::threshold::{
     FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds, vary,
 };
 
 use super::figure::FigureOption;
 use super::run::Models;
-use super::scenario_file::{Destination, ScenarioFile, SuiteOption};
+use super::scenario_file::{Destination, Input, ScenarioFile, SuiteOption};
 use super::study::{Display, Pending, Work, say};
 use super::uncertain::{Asked, ITSELF, Telling};
-use super::{Failure, Format, print, print_all};
-use archrock::studies::kept::{Origin, THRESHOLD};
+use super::{Failure, Format, print, print_all, show};
+use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -41,6 +43,16 @@ pub struct Arguments {
     /// Relative step from one factor to the next; narrower bands and gaps may be missed.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
     stride: f64,
+    /// Find the least factor that overturns for each value of a key, such as --along arch.mean_radius_m=4..6:5.
+    #[arg(
+        long,
+        value_name = "TABLE.KEY=FROM..TO:COUNT",
+        conflicts_with = "suite"
+    )]
+    along: Option<KeyRange>,
+    /// Also find the least factor that overturns before any impact.
+    #[arg(long, requires = "along")]
+    no_impact: bool,
     /// How the samples of [uncertain], and everything else, are computed.
     #[command(flatten)]
     work: Work,
@@ -53,6 +65,9 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
+    if let Some(along) = &arguments.along {
+        return thresholds_along(arguments, along, factors, &input, quiet);
+    }
     let models = Models::read(&arguments.hinges, &input)?;
     let origin = Origin::of(&models[0]);
     let about = |failure| input.about(failure);
@@ -136,6 +151,66 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
     }
+}
+
+/// Finds the threshold for each value of a key.
+fn thresholds_along(
+    arguments: &Arguments,
+    along: &KeyRange,
+    factors: Factors,
+    input: &Input<'_>,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let models = Models::read(&arguments.hinges, input)?;
+    let about = |message: &str| input.about(Failure::Input(message.to_owned()));
+    let [scenario] = &models[..] else {
+        return Err(about("--along is for one model: choose it by --hinges"));
+    };
+    if scenario.uncertain().is_some() {
+        return Err(about(
+            "--along varies one key and ignores [uncertain]: give --no-uncertain",
+        ));
+    }
+    if !quiet {
+        super::warn(&scenario.unlikely());
+        scenario.ignored().into_iter().for_each(say);
+    }
+    let options = AlongOptions {
+        along: along.clone(),
+        factors,
+        no_impact: arguments.no_impact,
+    };
+    Along::of(scenario, options.clone()).map_err(|message| about(&message))?;
+    let look = Look::of(arguments.figure.get()?);
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
+    let place = if arguments.work.is_part() {
+        place.locked_for_a_part(ALONG)?
+    } else {
+        place.locked(ALONG, scenario, quiet)?
+    };
+    let kind = StudyKind::ThresholdAlong;
+    let done = arguments
+        .work
+        .compute(kind.name(), &place, quiet, |runner, task, watch| {
+            let task = Some(task);
+            Ok(study_along(scenario, options, look, runner, task, watch)?)
+        })?;
+    let mut pending = Pending::default();
+    let results = done.map(|(results, part)| {
+        pending.prepare(&place, &results, part)?;
+        Ok::<_, Failure>(results)
+    });
+    let results = results.transpose()?;
+    pending.publish(&place)?;
+    let Some(results) = results else {
+        return Ok(());
+    };
+    if !quiet {
+        say(&format!("results in {}", place.holds(&results)));
+    }
+    show(&results, arguments.format)
 }
 
 /// Finds the thresholds of a scenario, for one model of motion or for several, and writes them.

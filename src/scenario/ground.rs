@@ -101,16 +101,6 @@ impl Ground {
         kinds.push((RECORD, record));
         table.exactly_one("tables", kinds)
     }
-
-    /// Refuses the table of a study of pulses if `[ground]` has no pulse. `None` means that `[ground]` is faulty.
-    pub(super) fn check_pulse(table: &mut Table<'_>, ground: Option<&Option<Self>>) -> Reading<()> {
-        match ground {
-            Some(None | Some(Self::Record(_))) => Err(table.wrong_itself(
-                "needs a pulse: give a table [ground.<kind>], such as [ground.rectangular]",
-            )),
-            Some(Some(Self::Pulse(_))) | None => Ok(()),
-        }
-    }
 }
 
 impl Serialize for Ground {

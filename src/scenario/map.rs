@@ -8,7 +8,7 @@
 //!
 //! Two quantities of the scenario vary; everything else stays the same. With a record, its strength varies as `scale` or
 //! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
-//! `spread = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
+//! `repeat = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
 
 use std::ops::Bound::{Included, Unbounded};
 
@@ -106,7 +106,7 @@ pub struct Map {
     /// Upwards; this is the amplitude if that is one of the two.
     pub y: Axis,
     /// Whether every cell is repeated with half and with double steps; with free hinges only.
-    pub spread: bool,
+    pub repeat: bool,
 }
 
 /// Largest number of cells: more would fit neither into a picture nor, as rows, into memory.
@@ -120,7 +120,7 @@ impl Map {
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
     ) -> Reading<Self> {
-        let spread = read_spread(table, hinges);
+        let repeat = read_repeat(table, hinges);
         let read = Quantity::ALL
             .iter()
             .filter(|quantity| **quantity != Quantity::Other)
@@ -169,8 +169,8 @@ impl Map {
                 "has {cells} cells; at most {MAX_CELLS} are allowed"
             )));
         }
-        let spread = spread?;
-        Ok(Self { x, y, spread })
+        let repeat = repeat?;
+        Ok(Self { x, y, repeat })
     }
 
     /// Checks that its axes suit the ground, and that every ground motion ends within the simulation.
@@ -238,29 +238,29 @@ fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), St
 }
 
 impl Serialize for Map {
-    /// Writes the two sequences, named by what varies, and `spread` if it is set.
+    /// Writes the two sequences, named by what varies, and `repeat` if it is set.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for axis in [&self.x, &self.y] {
             map.serialize_entry(&axis.key, &axis.sequence)?;
         }
-        if self.spread {
-            map.serialize_entry(SPREAD, &true)?;
+        if self.repeat {
+            map.serialize_entry(REPEAT, &true)?;
         }
         map.end()
     }
 }
 
-const SPREAD: &str = "spread";
+const REPEAT: &str = "repeat";
 
-/// Reads `spread`, which only free hinges and elastic joints allow.
-fn read_spread(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
-    let spread = table.or(SPREAD, &Switch, false)?;
-    if spread && !hinges.has_joints() {
+/// Reads `repeat`, which only free hinges and elastic joints allow.
+fn read_repeat(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
+    let repeat = table.or(REPEAT, &Switch, false)?;
+    if repeat && !hinges.has_joints() {
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
-        return Err(table.wrong(SPREAD, wrong));
+        return Err(table.wrong(REPEAT, wrong));
     }
-    Ok(spread)
+    Ok(repeat)
 }
 
 /// Refuses a quantity that the scenario does not have.

@@ -44,7 +44,6 @@ mod shown;
 mod simulation;
 mod source;
 mod span;
-mod spectrum;
 mod structure;
 mod suite;
 mod supports;
@@ -72,7 +71,6 @@ pub use assignment::Assignment;
 pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use free_hinges::FreeTable;
-pub(crate) use ground::MAX_ACCELERATION_G;
 pub use ground::{Ground, PulseGround};
 pub use input_file::InputFile;
 use input_file::InputFiles;
@@ -89,8 +87,6 @@ pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
 use span::Circular;
-pub use spectrum::Spectrum;
-pub(crate) use spectrum::block;
 pub(crate) use structure::four_digits;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
@@ -137,7 +133,6 @@ pub struct Scenario {
     initial: Option<Initial>,
     simulation: Simulation,
     map: Option<Map>,
-    spectrum: Option<Spectrum>,
     suite: Option<Suite>,
     demand: Option<Demand>,
     verify: Option<Verify>,
@@ -228,12 +223,6 @@ impl Scenario {
     #[must_use]
     pub const fn map(&self) -> Option<&Map> {
         self.map.as_ref()
-    }
-
-    /// The cases of an overturning spectrum; `None`: the defaults.
-    #[must_use]
-    pub const fn spectrum(&self) -> Option<&Spectrum> {
-        self.spectrum.as_ref()
     }
 
     /// The records that shake the structure for its fragility.
@@ -379,10 +368,6 @@ impl Scenario {
             let motion = motion.as_ref().ok().map(|(motion, _)| motion);
             Map::read(table, structure.as_ref().ok(), (hinges, motion))
         });
-        let spectrum = table.table("spectrum", |table| {
-            let structure = structure.as_ref().ok();
-            Spectrum::read(table, structure, ground.as_ref().ok(), gravity_m_s2)
-        });
         let suite = table.table("suite", |table| {
             Suite::read(table, folder, simulation.as_ref().ok())
         });
@@ -430,7 +415,6 @@ impl Scenario {
             initial: initial?,
             simulation: simulation?,
             map: map?,
-            spectrum: spectrum?,
             suite: suite?,
             demand,
             verify,
@@ -477,7 +461,6 @@ impl Scenario {
             unread_ground: None,
             right_foot,
             map: None,
-            spectrum: None,
             suite: None,
             uncertain: None,
             as_given: serde_json::Map::new(),
@@ -717,7 +700,6 @@ impl Scenario {
             ("initial", json(&self.initial)),
             ("simulation", json(&self.simulation)),
             ("map", json(&self.map)),
-            ("spectrum", json(&self.spectrum)),
             ("suite", json(&self.suite)),
             ("demand", json(&self.demand)),
             ("verify", json(&self.verify)),

@@ -517,13 +517,18 @@ impl<'a> Table<'a> {
         for key in self.entries.keys() {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
             if !self.known.iter().any(|known| known == name) {
-                let message = format!(
-                    "unknown key `{}` in {}{}; known keys: {}",
-                    excerpt(name),
-                    self.name,
-                    did_you_mean(name, &self.known),
-                    self.known.join(", ")
-                );
+                let mut replaced = REPLACED.iter();
+                let replaced = replaced.find(|(table, key, _)| self.name == *table && name == *key);
+                let message = match replaced {
+                    Some((_, key, successor)) => format!("`{key}` in {} {successor}", self.name),
+                    None => format!(
+                        "unknown key `{}` in {}{}; known keys: {}",
+                        excerpt(name),
+                        self.name,
+                        did_you_mean(name, &self.known),
+                        self.known.join(", ")
+                    ),
+                };
                 self.faults.push(Fault {
                     offset,
                     message,
@@ -533,6 +538,16 @@ impl<'a> Table<'a> {
         }
     }
 }
+
+/// Keys of earlier versions, by their table, and what replaces them.
+const REPLACED: [(&str, &str, &str); 2] = [
+    (
+        "the scenario",
+        "spectrum",
+        "was removed: `archrock threshold SCENARIO --along TABLE.KEY=FROM..TO:COUNT` finds the threshold for each value of a key",
+    ),
+    ("[map]", "spread", "is now called `repeat`"),
+];
 
 /// A rule for a value.
 pub(super) trait Rule {

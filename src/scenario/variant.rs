@@ -8,7 +8,7 @@ use super::{Assignment, Changes, Ground, Scenario, Source};
 use std::sync::Arc;
 
 /// Tables that describe a study, not the structure or ground motion under study.
-const STUDIES: [&str; 4] = ["map", "spectrum", "suite", "uncertain"];
+const STUDIES: [&str; 3] = ["map", "suite", "uncertain"];
 /// Tables of the check, which needs no history.
 const CHECK: [&str; 2] = ["demand", "verify"];
 /// What precedes the keys of a record.

@@ -11,13 +11,12 @@ use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
-use super::map::boundary::MapWithBoundary;
 use super::part::{self, PartError, PartFile};
 use super::results::{Look, Results};
 use super::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
-use super::spectrum::{OverturningSpectrum, PointRow};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::Factors;
+use super::threshold::along::{self, Along, AlongOptions};
 use crate::output::OutputError;
 use crate::scenario::{Scenario, ScenarioErrors};
 
@@ -26,8 +25,8 @@ named! {
     pub enum StudyKind {
         /// Which pulses overturn the structure, over two quantities.
         Map = "map",
-        /// How strong a pulse must be, against the size of the structure.
-        Spectrum = "spectrum",
+        /// The threshold for each value of a key along a range.
+        ThresholdAlong = "threshold_along",
         /// Which records overturn the structure.
         Suite = "suite",
         /// How histories end and proceed, for samples of the uncertain numbers.
@@ -88,14 +87,8 @@ impl StudyKind {
     #[must_use]
     pub const fn files(self) -> &'static [&'static str] {
         match self {
-            Self::Map => &[
-                "no_impact.csv",
-                "map.svg",
-                "map.html",
-                "map.json",
-                "map.csv",
-            ],
-            Self::Spectrum => &["spectrum.svg", "spectrum.json", "spectrum.csv"],
+            Self::Map => &["map.svg", "map.html", "map.json", "map.csv"],
+            Self::ThresholdAlong => &along::FILES,
             Self::Suite => &[
                 "suite.svg",
                 "ida.svg",
@@ -156,15 +149,11 @@ impl StudyKind {
         match self {
             Self::Map => {
                 let map = OverturningMap::of(scenario).map_err(StudyError::Scenario)?;
-                let study = MapWithBoundary::new(&map);
-                complete(&study, runner, task, watch, |rows| map.tell(rows, look))
+                complete(&map, runner, task, watch, |rows| map.tell(&rows, look))
             }
-            Self::Spectrum => {
-                let spectrum = spectrum_of(scenario)?;
-                complete(&spectrum, runner, task, watch, |rows| {
-                    spectrum.tell(&rows, look.figure)
-                })
-            }
+            Self::ThresholdAlong => Err(StudyError::Scenario(
+                "a threshold along a range needs its key and its values".to_owned(),
+            )),
             Self::Suite => {
                 let study = RecordSuite::of(scenario).map_err(StudyError::Scenario)?;
                 let heading = study.heading();
@@ -208,6 +197,24 @@ pub fn first_edges(
     let question = FirstEdges::of(scenario, factors).map_err(StudyError::Scenario)?;
     let study = ensemble(scenario, question)?;
     complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
+}
+
+/// [`StudyKind::compute`] for [`StudyKind::ThresholdAlong`], with its options.
+///
+/// # Errors
+/// As [`StudyKind::compute`].
+pub fn thresholds_along(
+    scenario: &Scenario,
+    options: AlongOptions,
+    look: Look,
+    runner: Runner,
+    task: Option<Task<'_>>,
+    watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Done, StudyError> {
+    let study = Along::of(scenario, options).map_err(StudyError::Scenario)?;
+    complete(&study, runner, task, watch, |rows| {
+        study.results(&rows, look.figure)
+    })
 }
 
 fn ensemble<Q: Question>(scenario: &Scenario, question: Q) -> Result<Ensemble<'_, Q>, StudyError> {
@@ -268,13 +275,16 @@ pub fn merge(
             let scenario = read(&header.scenario)?;
             let map = OverturningMap::of(&scenario).map_err(StudyError::Scenario)?;
             let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
-            map.tell(rows, look)?
+            map.tell(&rows, look)?
         }
-        StudyKind::Spectrum => {
+        StudyKind::ThresholdAlong => {
             let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge::<PointRow>(parts)?;
+            let (header, rows) = part::merge(parts)?;
             let scenario = read(&header.scenario)?;
-            spectrum_of(&scenario)?.tell(&rows, look.figure)?
+            let options = serde_json::from_value(header.options)
+                .map_err(|error| StudyError::Scenario(error.to_string()))?;
+            let study = Along::of(&scenario, options).map_err(StudyError::Scenario)?;
+            study.results(&rows, look.figure)?
         }
         StudyKind::Suite => {
             let look = look(kind, None).map_err(StudyError::Scenario)?;
@@ -318,8 +328,4 @@ pub fn merge(
         }
     };
     Ok((kind, results))
-}
-
-fn spectrum_of(scenario: &Scenario) -> Result<OverturningSpectrum<'_>, StudyError> {
-    OverturningSpectrum::new(scenario).map_err(|error| StudyError::Scenario(error.to_string()))
 }

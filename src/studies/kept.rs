@@ -65,11 +65,11 @@ pub const MAP: Writer = Writer {
     samples: Some(StudyKind::UncertainMap),
     ..PLAIN
 };
-/// `archrock spectrum`.
-pub const SPECTRUM: Writer = Writer {
-    name: "spectrum",
-    files: StudyKind::Spectrum.files(),
-    summary: Some("spectrum.json"),
+/// `archrock threshold --along`.
+pub const ALONG: Writer = Writer {
+    name: "threshold --along",
+    files: StudyKind::ThresholdAlong.files(),
+    summary: Some("threshold_along.json"),
     ..PLAIN
 };
 /// `archrock suite`.
@@ -103,9 +103,7 @@ pub const VERIFY: Writer = Writer {
     ..PLAIN
 };
 
-const ALL: [Writer; 8] = [
-    RUN, THRESHOLD, MAP, SPECTRUM, SUITE, CAPACITY, SPREAD, VERIFY,
-];
+const ALL: [Writer; 8] = [RUN, THRESHOLD, ALONG, MAP, SUITE, CAPACITY, SPREAD, VERIFY];
 
 /// The folder that compares the results of several models of motion.
 const MODELS: &str = "models";
@@ -335,10 +333,9 @@ pub struct Origin {
 }
 
 /// Tables that results of one command may have, and those of another not: a title, studies, and models of motion.
-const OF_SOME: [&str; 10] = [
+const OF_SOME: [&str; 9] = [
     "title",
     "map",
-    "spectrum",
     "suite",
     "demand",
     "verify",

@@ -6,10 +6,9 @@
 //! of a case is a row, which stays a typed value from the computation to the last file.
 //!
 //! - [`run`]: one history, with everything reported about it;
-//! - [`map`]: which pulses overturn, over two quantities; [`boundary`](map::boundary): the amplitudes from which they do so
-//!   without impact;
-//! - [`spectrum`]: how strong a pulse must be, against the size of a structure;
-//! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them;
+//! - [`map`]: which pulses overturn, over two quantities;
+//! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them; and the first of them
+//!   [along](threshold::along) a range of values of one key;
 //! - [`suite`]: which records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
 //! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
@@ -21,7 +20,6 @@ pub mod catalogue;
 pub mod ending;
 pub mod ensemble;
 pub mod impact;
-mod impact_free;
 pub mod kept;
 mod kind;
 pub mod limit;
@@ -33,7 +31,6 @@ mod remarks;
 pub mod results;
 pub mod run;
 pub mod runner;
-pub mod spectrum;
 pub mod spread;
 pub mod suite;
 pub mod survival;

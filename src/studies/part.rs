@@ -14,6 +14,7 @@ use std::str::FromStr;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use thiserror::Error;
 
 use super::runner::Study;
@@ -119,6 +120,9 @@ pub struct Header {
     pub shard: Shard,
     /// The scenario, with every default filled in.
     pub scenario: String,
+    /// What is computed of the scenario: [`Study::options`].
+    #[serde(default, skip_serializing_if = "Value::is_null")]
+    pub options: Value,
     /// The other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
     /// Warnings about the scenario: [`Study::warnings`].
@@ -137,6 +141,7 @@ impl Header {
             cases: study.count(),
             shard,
             scenario: study.scenario(),
+            options: study.options(),
             inputs: study.inputs(),
             warnings: study.warnings(),
         }
@@ -188,6 +193,10 @@ impl Header {
                     .find(|(here, there)| here != there)
                     .unwrap_or((&self.scenario, &other.scenario));
                 differ("in the scenario", here, there)
+            })
+            .or_else(|| {
+                let [here, there] = [self, other].map(|header| header.options.to_string());
+                differ("the options", &here, &there)
             })
             .or_else(|| {
                 let (here, there) = (self.cases, other.cases);

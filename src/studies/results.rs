@@ -11,8 +11,6 @@ use crate::output::{Figure, Folder, OutputError};
 pub struct Results {
     /// Files by their names; a folder that has the last of them is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// A file that earlier results may have left, and that these do not have.
-    pub obsolete: Option<&'static str>,
     /// The summary in words, line by line.
     pub words: String,
     /// The summary for programs, with all numbers.
@@ -34,9 +32,6 @@ impl Results {
     /// # Errors
     /// When the system reports an error.
     pub fn write(&self, mut folder: Folder) -> Result<(), OutputError> {
-        if let Some(name) = self.obsolete {
-            folder.forget(name);
-        }
         for (name, contents) in &self.files {
             let what = format!("cannot write {name}");
             folder
@@ -66,28 +61,24 @@ pub struct Look {
     pub by_peak: bool,
     /// Factors that make the axes of a map, pulse duration and amplitude, dimensionless; `None`: the axes keep their units.
     pub factors: Option<[f64; 2]>,
-    /// Whether a table gives the least amplitudes of a map that overturn without impact.
-    pub no_impact: bool,
 }
 
 impl Look {
-    /// A map coloured by outcome, with the units of its axes, without the table.
+    /// A map coloured by outcome, with the units of its axes.
     #[must_use]
     pub const fn of(figure: Figure) -> Self {
         Self {
             figure,
             by_peak: false,
             factors: None,
-            no_impact: false,
         }
     }
 
-    /// The same of a map of probability, which has no outcomes to colour by and no boundary.
+    /// The same of a map of probability, which has no outcomes to colour by.
     #[must_use]
     pub const fn of_samples(self) -> Self {
         Self {
             by_peak: false,
-            no_impact: false,
             ..self
         }
     }

@@ -51,6 +51,7 @@ use rayon::iter::{
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use thiserror::Error;
 
 use super::part::{Header, PartError, PartFile, Rows, Shard};
@@ -66,6 +67,11 @@ pub trait Study: Sync {
 
     /// The scenario, with every default filled in. The rows depend on it and on the inputs, and on nothing else.
     fn scenario(&self) -> String;
+
+    /// What is computed of the scenario, if there is a choice. The rows depend on it.
+    fn options(&self) -> Value {
+        Value::Null
+    }
 
     /// Other things on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
     fn inputs(&self) -> Vec<String> {

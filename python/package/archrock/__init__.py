@@ -31,9 +31,9 @@ from ._studies import (
     OverturningMap,
     ProbabilityMap,
     Results,
-    Spectrum,
     Suite,
     Threshold,
+    ThresholdAlong,
     capacity,
     compute_part,
     ensemble,
@@ -41,10 +41,10 @@ from ._studies import (
     merge,
     overturning_map,
     span,
-    spectrum,
     suite,
     suite_scenario,
     threshold,
+    threshold_along,
     verify,
 )
 from ._warnings import ArchrockWarning
@@ -74,10 +74,10 @@ __all__ = [
     "Record",
     "Results",
     "Scenario",
-    "Spectrum",
     "Structure",
     "Suite",
     "Threshold",
+    "ThresholdAlong",
     "capacity",
     "compute_part",
     "ensemble",
@@ -86,11 +86,22 @@ __all__ = [
     "overturning_map",
     "simulate",
     "span",
-    "spectrum",
     "suite",
     "suite_scenario",
     "threshold",
+    "threshold_along",
     "verify",
 ]
 
 __version__ = _version("archrock")
+
+_REPLACED = {
+    "spectrum": "`threshold_along`",
+    "Spectrum": "`ThresholdAlong`",
+}
+
+
+def __getattr__(name: str) -> object:
+    if name in _REPLACED:
+        raise AttributeError(f"`archrock.{name}` was removed: use {_REPLACED[name]}")
+    raise AttributeError(f"module 'archrock' has no attribute {name!r}")

@@ -6,7 +6,7 @@ import html
 import json
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -366,7 +366,7 @@ class History:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """The contents of the program's ``summary.json`` (a copy); see :meth:`spread`."""
+        """The contents of the program's ``summary.json`` (a copy); see :meth:`repeatability`."""
 
         def make(native: _native.History) -> str:
             return native.summary_json(False)
@@ -374,8 +374,12 @@ class History:
         summary: dict[str, Any] = json.loads(self._once("summary", make))
         return summary
 
-    def spread(self) -> dict[str, Any] | None:
-        """How a history with free hinges depends on its steps, as ``spread`` of ``summary.json``; ``None`` for other histories.
+    def spread(self) -> NoReturn:
+        """Replaced by :meth:`repeatability`."""
+        raise AttributeError("`History.spread()` is now called `History.repeatability()`")
+
+    def repeatability(self) -> dict[str, Any] | None:
+        """How a history with free hinges depends on its steps, as ``repeatability`` of ``summary.json``; ``None`` for other histories.
 
         Simulates the history again in other, equally good ways, such as with double steps.
 
@@ -384,8 +388,8 @@ class History:
         """
         native = self._native or self.scenario.run()._native
         assert native is not None, "a history that was run is there"
-        spread: dict[str, Any] | None = json.loads(native.summary_json(True)).get("spread")
-        return spread
+        repeatability: dict[str, Any] | None = json.loads(native.summary_json(True)).get("repeatability")
+        return repeatability
 
     @property
     def scenario(self) -> Scenario:

@@ -121,7 +121,6 @@ class Scenario(Described):
         supports: Mapping[str, Mapping[str, float]] | None = None,
         title: str | None = None,
         map: Mapping[str, Any] | None = None,
-        spectrum: Mapping[str, Any] | None = None,
         suite: Mapping[str, Any] | None = None,
         demand: Mapping[str, Any] | None = None,
         verify: Mapping[str, Any] | None = None,
@@ -140,7 +139,6 @@ class Scenario(Described):
                 ``{"right": {"spread_m": 0.02, "settlement_m": 0.01, "rotation_rad": 0.0}}``.
             title: free text for the results.
             map: table ``[map]``: two axes.
-            spectrum: table ``[spectrum]``.
             suite: table ``[suite]``.
             demand: table ``[demand]``.
             verify: table ``[verify]``.
@@ -170,7 +168,7 @@ class Scenario(Described):
                 right = own
             tables["ground"]["right"] = right
         tables["supports"] = supports
-        tables.update(map=map, spectrum=spectrum, suite=suite, demand=demand, verify=verify)
+        tables.update(map=map, suite=suite, demand=demand, verify=verify)
         tables.update(uncertain=uncertain)
         # Statics of drums and of moved springings need no model: the tables choose, unless the caller does.
         return cls(tables, files=held, model=_model(chosen.model) if "model" in settings else None)

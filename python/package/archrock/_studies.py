@@ -34,7 +34,7 @@ Values = Any
 """Increasing numbers, anything like an array, or a :func:`span`."""
 
 Study = Literal[
-    "map", "spectrum", "suite", "uncertain", "uncertain_threshold", "uncertain_suite", "uncertain_map"
+    "map", "suite", "uncertain", "uncertain_threshold", "uncertain_suite", "uncertain_map"
 ]
 
 
@@ -193,20 +193,15 @@ class OverturningMap(_Plane):
         """Number of impacts of each cell, NaN without a history, shape ``(len(x), len(y))``."""
         return self._plane("impacts")
 
-    @property
-    def boundary(self) -> dict[str, npt.NDArray[Any]] | None:
-        """Least amplitudes that start the structure and that overturn it without impact, against x; ``None`` if the map has none."""
-        return self.columns("no_impact.csv") if "no_impact.csv" in self.files else None
 
-
-class Spectrum(Results):
-    """An overturning spectrum: how strong a pulse must be, against the size of the structure."""
+class ThresholdAlong(Results):
+    """The least factor that overturns a structure, for each value of a key."""
 
     __slots__ = ()
 
-    _picture = "spectrum.svg"
-    _table = "spectrum.csv"
-    _json = "spectrum.json"
+    _picture = "threshold_along.svg"
+    _table = "threshold_along.csv"
+    _json = "threshold_along.json"
 
 
 class Suite(Results):
@@ -520,10 +515,10 @@ class Check(Files):
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 60em; border: 0"></iframe>'
 
 
-_StudyResults = Union[OverturningMap, ProbabilityMap, Spectrum, Suite, Ensemble]
+_StudyResults = Union[OverturningMap, ProbabilityMap, ThresholdAlong, Suite, Ensemble]
 _KINDS: dict[str, Callable[[Iterable[tuple[str, bytes]]], _StudyResults]] = {
     "map": OverturningMap,
-    "spectrum": Spectrum,
+    "threshold_along": ThresholdAlong,
     "suite": Suite,
     "uncertain": Histories,
     "uncertain_threshold": FirstFactors,
@@ -574,7 +569,7 @@ def map_scenario(
     ground: Ground,
     axes: Mapping[str, Values],
     *,
-    spread: bool = False,
+    repeat: bool = False,
     **settings: Any,
 ) -> Scenario:
     """The scenario of the map that :func:`overturning_map` computes, to be computed in parts.
@@ -582,7 +577,9 @@ def map_scenario(
     Raises:
         ValueError: as for :func:`overturning_map`.
     """
-    table = {**axes, "spread": True} if spread else axes
+    if "spread" in settings:
+        raise TypeError("`spread` is now called `repeat`")
+    table = {**axes, "repeat": True} if repeat else axes
     return Scenario.of(structure, ground, map=table, **settings)
 
 
@@ -591,7 +588,7 @@ def overturning_map(
     ground: Ground | None = None,
     axes: Mapping[str, Values] | None = None,
     *,
-    spread: bool | None = None,
+    repeat: bool | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     **settings: Any,
@@ -611,7 +608,7 @@ def overturning_map(
         axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
             ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, for a record ``scale`` or ``peak_g``,
             or any number of the scenario by its table and key, such as ``column.width_m``.
-        spread: with free hinges, whether every cell is repeated in full, and its number of outcomes given in the column ``spread``.
+        repeat: with free hinges, whether every cell is repeated in full, and its number of outcomes given in the column ``outcomes``.
         threads: number of threads; ``None``: as many as there are processors.
         progress: called on this thread with the number of cells done and of all cells.
         settings: as for :func:`simulate`.
@@ -620,49 +617,14 @@ def overturning_map(
         ValueError: when there is no such map, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
-    if _whole(of, {"ground": ground, "axes": axes, "spread": spread, **settings}):
+    if _whole(of, {"ground": ground, "axes": axes, "repeat": repeat, **settings}):
         assert isinstance(of, Scenario)
         return _warned(OverturningMap(_study("map", of, threads, progress)))
     assert isinstance(of, Structure)
     if ground is None or axes is None:
         raise ValueError("a map needs a ground motion and two axes")
-    scenario = map_scenario(of, ground, axes, spread=bool(spread), **settings)
+    scenario = map_scenario(of, ground, axes, repeat=bool(repeat), **settings)
     return _warned(OverturningMap(_study("map", scenario, threads, progress)))
-
-
-def spectrum(
-    of: Structure | Scenario,
-    ground: Pulse | None = None,
-    *,
-    p_t: Values = None,
-    acceleration_over_incipient: Values = None,
-    threads: int | None = None,
-    progress: Progress | None = None,
-    **settings: Any,
-) -> Spectrum:
-    """How strong a pulse must be to overturn a structure, against its size.
-
-    Args:
-        of: the structure, or a scenario, which gives everything else.
-        ground: the pulse, whose shape and side are used.
-        p_t: increasing sizes, frequency parameter times duration; ``None``: the program's default.
-        acceleration_over_incipient: increasing peak accelerations, relative to the one that starts the structure; ``None``:
-            the program's default.
-        threads: as for :func:`overturning_map`.
-        progress: as for :func:`overturning_map`.
-        settings: as for :func:`simulate`.
-
-    Raises:
-        ValueError: when there is no such spectrum, with the library's explanation.
-        KeyboardInterrupt: on Ctrl-C, within a second.
-    """
-    table = {"p_t": p_t, "acceleration_over_incipient": acceleration_over_incipient}
-    if _whole(of, {"ground": ground, **table, **settings}):
-        assert isinstance(of, Scenario)
-        return _warned(Spectrum(_study("spectrum", of, threads, progress)))
-    assert isinstance(of, Structure)
-    scenario = Scenario.of(of, ground, spectrum=table, **settings)
-    return _warned(Spectrum(_study("spectrum", scenario, threads, progress)))
 
 
 def suite_scenario(
@@ -770,6 +732,55 @@ def threshold(
     return _warned(
         Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
     )
+
+
+def threshold_along(
+    of: Structure | Scenario,
+    ground: Ground | None = None,
+    *,
+    key: str,
+    start: float,
+    end: float,
+    count: int,
+    no_impact: bool = False,
+    from_factor: float = 0.1,
+    to_factor: float = 10.0,
+    stride: float = 0.02,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> ThresholdAlong:
+    """The least factor by which a ground motion overturns a structure, for each value of a key, as ``archrock threshold --along``.
+
+    Args:
+        of: the structure, or a scenario, which gives structure, ground and settings.
+        ground: the ground motion to be scaled.
+        key: the key with its table, such as ``"arch.mean_radius_m"``.
+        start: its first value.
+        end: its last value.
+        count: how many equally spaced values.
+        no_impact: whether also the least factor is found that overturns before any impact, for four links and columns.
+        from_factor: smallest factor.
+        to_factor: largest factor.
+        stride: relative step from one factor to the next; narrower bands may be missed.
+        threads: as for :func:`overturning_map`.
+        progress: as for :func:`overturning_map`, for values.
+        settings: as for :func:`simulate`.
+
+    Raises:
+        ValueError: when an argument is not allowed, with the library's explanation.
+        KeyboardInterrupt: on Ctrl-C, within a second.
+    """
+    if _whole(of, {"ground": ground, **settings}):
+        assert isinstance(of, Scenario)
+        scenario = of
+    else:
+        assert isinstance(of, Structure)
+        scenario = Scenario.of(of, ground, **settings)
+    along = f"{key}={start!r}..{end!r}:{count}"
+    factors = (from_factor, to_factor, stride)
+    found = _native.threshold_along(scenario._native, along, no_impact, factors, _allowed(threads), progress)
+    return _warned(ThresholdAlong(found))
 
 
 def ensemble(
@@ -933,7 +944,7 @@ def compute_part(
 
     Args:
         scenario: the scenario with the table of the study.
-        study: ``"map"``, ``"spectrum"``, ``"suite"``, or for samples ``"uncertain"``, ``"uncertain_threshold"``,
+        study: ``"map"``, ``"suite"``, or for samples ``"uncertain"``, ``"uncertain_threshold"``,
             ``"uncertain_suite"`` and ``"uncertain_map"``.
         shard: the number of the part, from 1, and the number of parts: ``(2, 4)``.
         folder: folder of the file; created if necessary.

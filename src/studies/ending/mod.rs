@@ -229,3 +229,36 @@ pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
         Err("a result is not a finite number: please report the scenario".to_owned())
     }
 }
+
+/// Why a sample has no answer.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoAnswer {
+    /// Its values do not give a structure that stands.
+    Invalid(String),
+    /// Its history could not be computed.
+    Failed(String),
+    /// Its history ended too early for a verdict.
+    Incomplete,
+}
+
+impl NoAnswer {
+    /// Its name in tables.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Invalid(_) => "invalid",
+            Self::Failed(_) => columns::FAILED,
+            Self::Incomplete => Outcome::Incomplete.name(),
+        }
+    }
+
+    /// The reason.
+    #[must_use]
+    pub fn reason(&self) -> &str {
+        match self {
+            Self::Invalid(reason) | Self::Failed(reason) => reason,
+            Self::Incomplete => Ending::INCOMPLETE,
+        }
+    }
+}

@@ -18,10 +18,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use self::matters::{Matters, total_indices, what_matters};
-use super::ending::Ending;
+pub use super::ending::NoAnswer;
 use super::remarks::no_verdict;
 use super::runner::Study;
-use crate::dynamics::history::Outcome;
 use crate::scenario::{Scenario, Uncertain};
 
 /// A question that is asked of every sample.
@@ -49,39 +48,6 @@ pub trait Question: Sync {
     /// Other settings on which the answers depend, in words.
     fn settings(&self) -> Vec<String> {
         Vec::new()
-    }
-}
-
-/// Why a sample has no answer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum NoAnswer {
-    /// Its values do not give a structure that stands.
-    Invalid(String),
-    /// Its history could not be computed.
-    Failed(String),
-    /// Its history ended too early for a verdict.
-    Incomplete,
-}
-
-impl NoAnswer {
-    /// Its name in tables.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Invalid(_) => "invalid",
-            Self::Failed(_) => super::ending::columns::FAILED,
-            Self::Incomplete => Outcome::Incomplete.name(),
-        }
-    }
-
-    /// The reason.
-    #[must_use]
-    pub fn reason(&self) -> &str {
-        match self {
-            Self::Invalid(reason) | Self::Failed(reason) => reason,
-            Self::Incomplete => Ending::INCOMPLETE,
-        }
     }
 }
 

@@ -3,12 +3,13 @@
 use nalgebra::Vector2;
 
 use super::Told;
-use super::edges::{FirstEdge, ProbabilityAt};
+use super::edges::ProbabilityAt;
 use super::histories::{BandAt, Histories, Went};
 use super::records::{Capacities, Capacity};
 use super::told::{Decides, spoken};
 use crate::output::panels::{Curve, MAIN, Panels, Subject, around, draw_curves};
 use crate::output::svg::{Anchor, Axes, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
+use crate::studies::threshold::first_edge::FirstEdge;
 
 const BAND: &str = "#cfe3f1";
 const MEDIAN: Stroke = Stroke::new(color::BLUE, 1.6, "");
@@ -160,8 +161,8 @@ pub(super) fn fragility(figure: Figure, told: &Told<'_, Capacity>, asked: &Capac
         x: Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]),
         y: Scale::exactly(0.0, 1.0, 5),
     };
-    let steps = |edges: &mut dyn Iterator<Item = &super::edges::FirstEdge>| -> Vec<Vector2<f64>> {
-        let mut strengths: Vec<f64> = edges.map(super::edges::FirstEdge::strength).collect();
+    let steps = |edges: &mut dyn Iterator<Item = &FirstEdge>| -> Vec<Vector2<f64>> {
+        let mut strengths: Vec<f64> = edges.map(FirstEdge::strength).collect();
         strengths.sort_by(f64::total_cmp);
         let all = strengths.len().max(1) as f64;
         let shares = (1..).map(|count| f64::from(count) / all);

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::edges::{FirstEdge, first_edge};
 use super::statistics::{bootstrap, fractile, interval};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::output::OutputError;
@@ -11,6 +10,7 @@ use crate::scenario::{Measure, Scenario, Suite};
 use crate::studies::ending::Ending;
 use crate::studies::results::{Look, Results};
 use crate::studies::suite::case;
+use crate::studies::threshold::first_edge::FirstEdge;
 
 /// Relative width to which an intensity is bisected: far less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -84,7 +84,7 @@ impl Question for Capacities {
                 let ending = Ending::of(&*model, &ground, &request);
                 ending.map(|ending| ending.verdict())
             };
-            first_edge(&self.levels, WIDTH, verdict)
+            FirstEdge::search(&self.levels, WIDTH, verdict)
         });
         edges.collect::<Result<_, _>>().map(Capacity)
     }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::edges::{FirstEdge, FirstStrength, ProbabilityAt};
+use super::edges::{FirstStrength, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{AtLevel, Capacities, Capacity, Fragilities};
@@ -15,6 +15,7 @@ use crate::scenario::{Uncertain, UncertainKey, shown};
 use crate::studies::ending::columns::{self, UNCERTAIN, yes};
 use crate::studies::remarks::warnings;
 use crate::studies::results::Results;
+use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{rounded, rounded_range};
 
 pub(super) const SUMMARY: &str = "uncertain.json";
@@ -340,7 +341,6 @@ pub(super) fn histories(
         ],
         words: lines_of_words.join("\n  "),
         summary: json,
-        ..Results::default()
     })
 }
 

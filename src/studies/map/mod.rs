@@ -1,6 +1,5 @@
 //! The overturning map: a history for every cell of a plane of two quantities.
 
-pub mod boundary;
 pub(super) mod page;
 pub mod picture;
 mod told;
@@ -10,16 +9,16 @@ pub use told::outcome;
 use std::cell::OnceCell;
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::ending::{Ending, answered};
-use super::impact_free::ScalablePulse;
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::free_hinges::FreeHingesError;
-use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
-use crate::dynamics::model::{Case, MechanismModel, Model, Repetition, Request, SimulationError};
+use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::spread::objection;
 use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -71,7 +70,7 @@ pub struct CellRow {
     /// computation. The side of overturning does not count, but coming to rest does. Or why a repetition failed. `None` if
     /// repetitions were not requested, or there is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spread: Option<Result<usize, String>>,
+    pub outcomes: Option<Result<usize, String>>,
 }
 
 /// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th value of y, where y has `m` values.
@@ -81,7 +80,7 @@ pub struct OverturningMap<'a> {
     axes: [&'a Axis; 2],
     values: [Vec<f64>; 2],
     /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
-    spread: bool,
+    repeat: bool,
     /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
@@ -140,6 +139,23 @@ impl<T: Clone> Shared<T> {
             Some(index) => self.values[index].get_or_init(make).clone(),
             None => make(),
         }
+    }
+}
+
+/// A pulse of variable horizontal amplitude.
+#[derive(Clone, Debug)]
+struct ScalablePulse {
+    shape: PulseShape,
+    vertical_g: f64,
+    gravity_m_s2: f64,
+}
+
+impl ScalablePulse {
+    /// The ground motion for an amplitude, positive to the right.
+    fn motion(&self, amplitude_g: f64) -> GroundMotion {
+        let amplitude_g = Vector2::new(amplitude_g, self.vertical_g);
+        let motion = self.shape.motion(amplitude_g * self.gravity_m_s2);
+        motion.expect("the amplitudes of a scenario are those of a ground motion")
     }
 }
 
@@ -202,7 +218,7 @@ impl<'a> OverturningMap<'a> {
         Some(Self {
             scenario,
             axes,
-            spread: map.spread,
+            repeat: map.repeat,
             structures: Shared::new(counts, structures),
             pulses: Shared::new(counts, depends(&durations)),
             base: Arc::new(sample),
@@ -239,8 +255,8 @@ impl<'a> OverturningMap<'a> {
 
     /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
     #[must_use]
-    pub const fn has_spread(&self) -> bool {
-        self.spread
+    pub const fn is_repeated(&self) -> bool {
+        self.repeat
     }
 
     /// Whether the ground moves vertically too.
@@ -323,18 +339,6 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Asks the mechanisms of a cell by `ask`. Returns the answer; the result of a cell without a model; or `None` for a row of blocks.
-    pub(super) fn ask_mechanisms<T>(
-        &self,
-        index: usize,
-        ask: impl FnOnce(&dyn MechanismModel, &Request) -> T,
-    ) -> Result<Option<T>, CellResult> {
-        let scenario = self.variant(index).map_err(CellResult::Failed)?;
-        let standing = self.standing(index, &scenario)?;
-        let model = standing.model().as_mechanisms();
-        Ok(model.map(|model| ask(model, &scenario.request_from_rest())))
-    }
-
     /// The structure of a cell.
     fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
         let Some(mut arch) = scenario.structure().circular().cloned() else {
@@ -366,7 +370,7 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// The pulse of a cell, of any amplitude; `None` for a record, or if the cell has no valid scenario.
-    pub(super) fn pulse(&self, index: usize) -> Option<ScalablePulse> {
+    fn pulse(&self, index: usize) -> Option<ScalablePulse> {
         let scenario = self.variant(index).ok()?;
         let Some(Ground::Pulse(pulse)) = scenario.ground() else {
             return None;
@@ -383,7 +387,11 @@ impl<'a> OverturningMap<'a> {
                 duration_s,
                 ..pulse.clone()
             };
-            ScalablePulse::new(pulse, scenario.gravity_m_s2())
+            ScalablePulse {
+                shape: pulse.shape(),
+                vertical_g: pulse.vertical_amplitude_g,
+                gravity_m_s2: scenario.gravity_m_s2(),
+            }
         }))
     }
 
@@ -421,7 +429,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The endings of cells with the same structure, and how many outcomes each has when it is repeated in other ways.
     fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Ended> {
-        if self.spread {
+        if self.repeat {
             let ended = all_outcomes(model, cases).into_iter();
             return ended
                 .map(|ended| ended.map(|(ending, all)| (ending, Some(all))))
@@ -435,15 +443,15 @@ impl<'a> OverturningMap<'a> {
 
     fn cell(&self, index: usize, ended: Result<(Ending, Option<Outcomes>), CellResult>) -> CellRow {
         let [x, y] = self.coordinates(index);
-        let (result, spread) = match ended {
-            Ok((ending, spread)) => (CellResult::Ended(ending), spread),
+        let (result, outcomes) = match ended {
+            Ok((ending, outcomes)) => (CellResult::Ended(ending), outcomes),
             Err(other) => (other, None),
         };
         CellRow {
             x,
             y,
             result,
-            spread,
+            outcomes,
         }
     }
 }
@@ -482,7 +490,7 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcom
 impl Study for OverturningMap<'_> {
     type Row = CellRow;
 
-    const NAME: &'static str = "cells";
+    const NAME: &'static str = "map";
 
     fn scenario(&self) -> String {
         self.scenario.to_toml()

@@ -6,7 +6,6 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
-use super::boundary::BoundaryRow;
 use super::picture::{self, Drawn};
 use super::{CellResult, CellRow, OverturningMap};
 use crate::output::page::{escaped, filled, script_safe};
@@ -18,18 +17,12 @@ use crate::studies::results::Look;
 
 /// The page.
 #[must_use]
-pub fn page(
-    title: &str,
-    map: &OverturningMap<'_>,
-    rows: &[CellRow],
-    boundaries: &[BoundaryRow],
-    look: Look,
-) -> String {
+pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
     let look = Look {
         figure: Figure::SCREEN,
         ..look
     };
-    let drawn = picture::drawn(title, map, rows, boundaries, look);
+    let drawn = picture::drawn(title, map, rows, look);
     let kinds = rows.iter().map(|row| picture::kind_of(&row.result, look));
     let doubt = |(index, row): (usize, &CellRow)| {
         let doubt = ended(row)?.uncertain.as_ref()?;
@@ -150,7 +143,7 @@ fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario();
     // A cell alone, without samples.
     let mut table = scenario.clone().without_uncertain().resolved();
-    for study in ["map", "suite", "spectrum", "demand", "verify"] {
+    for study in ["map", "suite", "demand", "verify"] {
         if let Some(table) = table.as_object_mut() {
             table.shift_remove(study);
         }

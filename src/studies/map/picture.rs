@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::boundary::{Boundary, BoundaryRow};
-use super::told::{found, is_doubtful, outcome};
+use super::told::{is_doubtful, outcome};
 use super::{CellResult, CellRow, OverturningMap};
 use crate::dynamics::history::Outcome;
 use crate::output::caption::caption;
@@ -90,14 +89,8 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
 
 /// Draws the map. Only maps whose y is the amplitude have boundaries.
 #[must_use]
-pub fn draw(
-    title: &str,
-    map: &OverturningMap<'_>,
-    rows: &[CellRow],
-    boundaries: &[BoundaryRow],
-    look: Look,
-) -> String {
-    drawn(title, map, rows, boundaries, look).picture
+pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
+    drawn(title, map, rows, look).picture
 }
 
 /// The picture of a map, and the positions of its cells.
@@ -202,41 +195,14 @@ fn cells(axes: &Axes, [x_edges, y_edges]: &[Vec<f64>; 2], kinds: &[Kind], kind: 
 }
 
 /// As [`draw`].
-pub(super) fn drawn(
-    title: &str,
-    map: &OverturningMap<'_>,
-    rows: &[CellRow],
-    boundaries: &[BoundaryRow],
-    look: Look,
-) -> Drawn {
-    let boundaries: Vec<_> = found(boundaries).collect();
+pub(super) fn drawn(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> Drawn {
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, look)).collect();
     let sheet = Sheet { title, map, look };
-    let factors = sheet.factors();
-    let signs = [1.0, -1.0]
-        .into_iter()
-        .filter(|sign| map.values()[1].iter().any(|value| sign * value > 0.0));
-    let signs: Vec<f64> = signs.collect();
     sheet.draw(
         &Kind::ALL,
         &kinds,
-        |y| legend(map, &kinds, &boundaries, factors[1], y),
-        |drawing, axes, edges| {
-            hatch(drawing, axes, edges, rows);
-            drawing.within(&axes.frame, |drawing| {
-                for sign in &signs {
-                    let mut curve = |name, stroke, value: fn(&Boundary) -> Option<f64>| {
-                        let points = boundaries.iter().filter_map(|(x, boundary)| {
-                            let value = sign * value(boundary)?;
-                            Some(axes.place(factors[0] * x, factors[1] * value))
-                        });
-                        drawing.curve(name, points, stroke);
-                    };
-                    curve("incipient", INCIPIENT, |b| Some(b.incipient_g));
-                    curve("no-impact", IMPACT_FREE, |b| b.impact_free_g);
-                }
-            });
-        },
+        |_| legend(map, &kinds),
+        |drawing, axes, edges| hatch(drawing, axes, edges, rows),
     )
 }
 
@@ -255,46 +221,19 @@ fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow
         );
     }
     if !path.is_empty() {
-        drawing.path("spread", &path, "none", DOUBTFUL);
+        drawing.path("doubtful", &path, "none", DOUBTFUL);
     }
 }
 
 /// Light, as most cells: lines are drawn on cells, so the legend draws them on this.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
-const INCIPIENT: Stroke = Stroke::new(color::BLUE, 2.0, "7 4");
-const IMPACT_FREE: Stroke = Stroke::new(color::BLACK, 2.2, "");
-
-/// The legend of the colours, and of the lines that appear on these axes.
-fn legend(
-    map: &OverturningMap<'_>,
-    kinds: &[Kind],
-    boundaries: &[(f64, Boundary)],
-    factor: f64,
-    y: &Scale,
-) -> Vec<Key<'static>> {
+/// The legend of the colours, and of the hatching if cells are repeated.
+fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key<'static>> {
     let mut keys = kind::keys(kinds);
-    if map.has_spread() {
+    if map.is_repeated() {
         let words = "another outcome in a repetition";
-        keys.push((words, Sign::LineOn(CELL, "spread", DOUBTFUL)));
-    }
-    let shown = |value: fn(&Boundary) -> Option<f64>| {
-        let mut values = boundaries
-            .iter()
-            .filter_map(|(_, boundary)| Some(factor * value(boundary)?));
-        values.any(|value| (y.low..=y.high).contains(&value) || (y.low..=y.high).contains(&-value))
-    };
-    if shown(|boundary| Some(boundary.incipient_g)) {
-        let incipient = if map.moves_vertically() {
-            "incipient acceleration without the vertical motion"
-        } else {
-            "incipient acceleration"
-        };
-        keys.push((incipient, Sign::LineOn(CELL, "incipient", INCIPIENT)));
-    }
-    if shown(|boundary| boundary.impact_free_g) {
-        let words = "least amplitude that overturns without impact";
-        keys.push((words, Sign::LineOn(CELL, "no-impact", IMPACT_FREE)));
+        keys.push((words, Sign::LineOn(CELL, "doubtful", DOUBTFUL)));
     }
     keys
 }

@@ -1,6 +1,5 @@
-//! Reports an overturning map: its table, its boundaries and its words.
+//! Reports an overturning map: its table and its words.
 
-use super::boundary::{Boundary, BoundaryRow, MapRow};
 use super::{CellResult, CellRow, OverturningMap, page, picture};
 use crate::argument::plain;
 use crate::dynamics::history::Outcome;
@@ -14,38 +13,32 @@ use crate::studies::results::{Look, Results};
 use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
-const BOUNDARY: &str = "no_impact.csv";
 
 impl OverturningMap<'_> {
     /// The files and words for all rows.
     ///
     /// # Errors
     /// When a value is not finite.
-    pub fn tell(&self, rows: Vec<MapRow>, look: Look) -> Result<Results, OutputError> {
+    pub fn tell(&self, cells: &[CellRow], look: Look) -> Result<Results, OutputError> {
         let scenario = self.scenario();
-        let (cells, boundaries) = MapRow::sorted(rows);
         let title = scenario.title().unwrap_or("Overturning map");
-        let remarks = remarks(self, &cells, &boundaries);
+        let remarks = remarks(self, cells);
         let summary = remarks::summary(scenario, cells.len(), &remarks);
-        let picture = look.figure.fitted(|figure| {
-            picture::draw(title, self, &cells, &boundaries, Look { figure, ..look })
-        });
-        let page = page::page(title, self, &cells, &boundaries, look);
-        let mut files = vec![
+        let picture = look
+            .figure
+            .fitted(|figure| picture::draw(title, self, cells, Look { figure, ..look }));
+        let page = page::page(title, self, cells, look);
+        let files = vec![
             ("map.svg", picture.into_bytes()),
             ("map.html", page.into_bytes()),
             (SUMMARY, pretty(&summary).into_bytes()),
-            ("map.csv", csv(self.columns(), &cells)?),
+            ("map.csv", csv(self.columns(), cells)?),
         ];
-        if look.no_impact {
-            files.insert(0, (BOUNDARY, self.boundary_table(&boundaries)?));
-        }
         Ok(Results {
             files,
-            obsolete: (!look.no_impact).then_some(BOUNDARY),
-            words: words(self, &cells, &remarks),
+            words: words(self, cells, &remarks),
             summary,
-            peaks: Vec::new(),
+            ..Results::default()
         })
     }
 
@@ -63,10 +56,10 @@ impl OverturningMap<'_> {
                 other => Err(outcome(other)),
             },
         ));
-        if self.has_spread() {
-            all.push(column(SPREAD, |row: &CellRow| {
-                let spread = row.spread.as_ref();
-                spread.map(|spread| match spread {
+        if self.is_repeated() {
+            all.push(column(OUTCOMES, |row: &CellRow| {
+                let outcomes = row.outcomes.as_ref();
+                outcomes.map(|outcomes| match outcomes {
                     Ok(count) => count.to_string(),
                     Err(_) => FAILED.to_owned(),
                 })
@@ -74,24 +67,6 @@ impl OverturningMap<'_> {
         }
         all
     }
-
-    /// The boundaries that were found, one row per value of x.
-    fn boundary_table(&self, boundaries: &[BoundaryRow]) -> Result<Vec<u8>, OutputError> {
-        type Row = (f64, Boundary);
-        let rows: Vec<Row> = found(boundaries).collect();
-        let columns = [
-            column(self.axes()[0].key.as_str(), |row: &Row| row.0),
-            column("incipient_acceleration_g", |row: &Row| row.1.incipient_g),
-            column("no_impact_amplitude_g", |row: &Row| row.1.impact_free_g),
-        ];
-        csv(columns, &rows)
-    }
-}
-
-/// The boundaries that were found, with their x.
-pub(super) fn found(boundaries: &[BoundaryRow]) -> impl Iterator<Item = (f64, Boundary)> {
-    let rows = boundaries.iter();
-    rows.filter_map(|row| Some((row.x, row.result.as_ref().ok().copied()??)))
 }
 
 /// The outcome of a cell, as in the table.
@@ -106,7 +81,7 @@ pub const fn outcome(result: &CellResult) -> &'static str {
 }
 
 /// The column with the number of outcomes of a cell and its repetitions.
-const SPREAD: &str = "spread";
+const OUTCOMES: &str = "outcomes";
 
 /// How many cells have an outcome that depends on how they are computed.
 fn doubtful(rows: &[CellRow]) -> usize {
@@ -114,11 +89,11 @@ fn doubtful(rows: &[CellRow]) -> usize {
 }
 
 pub(super) fn is_doubtful(row: &CellRow) -> bool {
-    matches!(row.spread, Some(Ok(2..)))
+    matches!(row.outcomes, Some(Ok(2..)))
 }
 
-/// The remarks on the cells: those that failed, those with a failed repetition or boundary, and those that are uncertain.
-fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRow]) -> Remarks {
+/// The remarks on the cells: those that failed, those with a failed repetition, and those that are uncertain.
+fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
     for cell in cells {
@@ -128,14 +103,8 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow], boundaries: &[BoundaryRo
             CellResult::Failed(reason) => remarks.note(case, Err(reason)),
             CellResult::CannotStand | CellResult::NotFourLinks => {}
         }
-        if let Some(Err(reason)) = &cell.spread {
+        if let Some(Err(reason)) = &cell.outcomes {
             remarks.failures.push(Remark::new(case(), reason));
-        }
-    }
-    for row in boundaries {
-        if let Err(reason) = &row.result {
-            let case = format!("boundary without impact at {x_name} {}", plain(row.x));
-            remarks.failures.push(Remark::new(case, reason));
         }
     }
     remarks
@@ -156,16 +125,10 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
     };
     let counts = counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];
-    if map.has_spread() {
+    if map.is_repeated() {
         lines.push(format!(
             "{} of them have another outcome in a repetition, if only rest instead of still rocking",
             doubtful(cells)
-        ));
-    }
-    if map.has_free_hinges() && map.axes()[1].quantity == Quantity::Amplitude {
-        let model = map.scenario().motion().words();
-        lines.push(format!(
-            "{model}: no boundary of overturning without impact, which only four links have"
         ));
     }
     lines.extend(remarks::rough_guide(map.scenario()).map(str::to_owned));

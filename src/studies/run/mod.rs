@@ -77,7 +77,7 @@ pub struct Wanted {
     /// Whether that file has dimensionless columns; for mechanisms only.
     pub dimensionless: bool,
     /// Whether computations in steps are repeated, to see what depends on the steps.
-    pub spread: bool,
+    pub repeat: bool,
     /// Whether to write a page with an animation of the structure.
     pub report: bool,
     /// The times at which the deformed structure is drawn, in seconds.
@@ -100,7 +100,7 @@ impl Default for Wanted {
             figure: Figure::SCREEN,
             rotations: true,
             dimensionless: false,
-            spread: true,
+            repeat: true,
             report: true,
             snapshots_s: Vec::new(),
             film_a_second: None,
@@ -226,7 +226,7 @@ impl<'a> Run<'a> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut shown = Shown::new(self, folder.is_some());
-        let repeats = self.wanted.spread && model.row().is_some();
+        let repeats = self.wanted.repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = Variations::start(self.variations()?, ground, &request);
         let (history, rows) = {
@@ -288,7 +288,7 @@ impl<'a> Run<'a> {
 
     /// The structure with other properties that are as likely as its own; empty if repetitions are not wanted.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
-        if !self.wanted.spread {
+        if !self.wanted.repeat {
             return Ok(Vec::new());
         }
         let variations = self.scenario.variations();

@@ -26,7 +26,7 @@ use crate::scenario::{Ground, Scenario};
 /// among the samples, as in `rotations.csv`. `energy_defect_ratio` is relative to weight times size (the mean radius of an arch, half the
 /// diagonal of a column), `energy_defect_over_largest` to the larger of the barrier, if that is known, and the largest
 /// kinetic energy. If joints slip: `slips_m` at the end and `largest_slips_m` for every joint, `friction_j` dissipated, and, with
-/// free hinges, what did not converge. `impacts` is null with elastic joints, because their contact lasts. `spread` is left out if the
+/// free hinges, what did not converge. `impacts` is null with elastic joints, because their contact lasts. `repeatability` is left out if the
 /// run was not repeated; if a repetition failed, it holds the reason as `failed`. `warnings` are sentences about unlikely numbers of the
 /// scenario and about what limits the trust in its history.
 ///
@@ -63,8 +63,8 @@ pub fn summary(
         (None, None) => {}
     }
     match spread {
-        Some(Ok(spread)) => object.put("spread", of_spread(spread)?),
-        Some(Err(reason)) => object.put("spread", json!({ "failed": reason.to_string() })),
+        Some(Ok(spread)) => object.put("repeatability", of_spread(spread)?),
+        Some(Err(reason)) => object.put("repeatability", json!({ "failed": reason.to_string() })),
         None => {}
     }
     Ok(Value::Object(object.0))

@@ -111,7 +111,6 @@ impl Heading {
             ],
             words: words(self, &results),
             summary,
-            ..Results::default()
         })
     }
 
@@ -432,8 +431,7 @@ fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
 
 /// Number of decimals that show two digits of an error.
 fn digits(error: f64) -> usize {
-    let digits = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
-    digits
+    (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
 /// The results in words, line by line.

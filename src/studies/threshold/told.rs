@@ -109,8 +109,7 @@ fn decimals(value: f64) -> usize {
     } else {
         1.0
     };
-    let decimals = (4.0 - before_point).max(0.0) as usize;
-    decimals
+    (4.0 - before_point).max(0.0) as usize
 }
 
 /// The samples, model by model, with ascending factors.

@@ -77,8 +77,7 @@ pub(super) fn body_number(body: Option<usize>) -> i64 {
 
 /// A fraction in eight bits; only zero becomes zero.
 pub(super) fn eighth(part: f64) -> u8 {
-    let bits = (255.0 * part).ceil().clamp(0.0, 255.0) as u8;
-    bits
+    (255.0 * part).ceil().clamp(0.0, 255.0) as u8
 }
 
 /// Values as integer multiples of a unit, which is chosen so that the largest fits.

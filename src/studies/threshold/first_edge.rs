@@ -1,0 +1,99 @@
+//! The strength from which a structure first overturns: searched upwards, up to the first edge only.
+
+use serde::{Deserialize, Serialize};
+
+use super::factors::{EDGE_WIDTH, Factors};
+use crate::bisection::{Width, try_bisect};
+use crate::scenario::Scenario;
+use crate::studies::ending::{Ending, NoAnswer, Verdict};
+
+/// Where a structure first overturns as its ground motion gets stronger.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FirstEdge {
+    /// The least factor that certainly overturns; `None` if none does.
+    pub factor: Option<f64>,
+    /// Whether that is also the least factor tried, so that a smaller one may overturn too.
+    #[serde(default)]
+    pub at_most: bool,
+    /// The greatest factor tried.
+    pub tried_to: f64,
+    /// The least factor below that for which overturning is uncertain, if there is one.
+    pub uncertain_from: Option<f64>,
+}
+
+impl FirstEdge {
+    /// The first edge of a scenario that starts from rest, among these factors on its ground motion.
+    ///
+    /// # Errors
+    /// Explains why there is none.
+    pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
+        let model = scenario
+            .model()
+            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let request = scenario.request_from_rest();
+        let verdict = |factor: f64| {
+            let ground = scenario.ground_motion().scaled(factor);
+            let ground = ground.map_err(|error| error.to_string())?;
+            let ending = Ending::of(&*model, &ground, &request);
+            ending.map(|ending| ending.verdict())
+        };
+        Self::search(&factors.values(), EDGE_WIDTH, verdict)
+    }
+
+    /// The first edge among strengths that are tried in ascending order. Bisection narrows the edge between two of them to this
+    /// relative width.
+    pub(in crate::studies) fn search(
+        strengths: &[f64],
+        width: f64,
+        verdict: impl Fn(f64) -> Result<Verdict, String>,
+    ) -> Result<Self, NoAnswer> {
+        let mut edge = Self {
+            factor: None,
+            at_most: false,
+            tried_to: 0.0,
+            uncertain_from: None,
+        };
+        for strength in strengths.iter().copied() {
+            let found = match verdict(strength) {
+                Ok(Verdict::Incomplete) => return Err(NoAnswer::Incomplete),
+                Ok(found) => found,
+                // A stronger motion may exceed what the model allows: the ground may fall freely.
+                Err(_) if edge.tried_to > 0.0 => break,
+                Err(reason) => return Err(NoAnswer::Failed(reason)),
+            };
+            if found == Verdict::Overturns {
+                edge.factor = Some(if edge.tried_to > 0.0 {
+                    let overturns = |at| verdict(at).map(|found| found == Verdict::Overturns);
+                    let ends =
+                        try_bisect(edge.tried_to, strength, Width::Relative(width), overturns);
+                    ends.map_err(NoAnswer::Failed)?.1
+                } else {
+                    edge.at_most = true;
+                    strength
+                });
+                edge.tried_to = strength;
+                break;
+            }
+            edge.tried_to = strength;
+            if found == Verdict::Uncertain {
+                edge.uncertain_from.get_or_insert(strength);
+            }
+        }
+        Ok(edge)
+    }
+
+    /// The factor; infinite if none overturns.
+    #[must_use]
+    pub fn strength(&self) -> f64 {
+        self.factor.unwrap_or(f64::INFINITY)
+    }
+
+    /// True if it overturns up to this factor; `None` if no tried factor decides that.
+    pub(in crate::studies) fn overturns_up_to(&self, factor: f64) -> Option<bool> {
+        match self.factor {
+            Some(first) if first <= factor => Some(true),
+            Some(_) => (!self.at_most).then_some(false),
+            None => (factor <= self.tried_to).then_some(false),
+        }
+    }
+}
