@@ -18,13 +18,13 @@ use archrock::{
 };
 use nalgebra::Vector2;
 
-use crate::common::{Random, noise, parsed, random_row};
+use crate::common::{Random, noise, parsed, random_row, straight_sided_arch};
 use crate::program::scenarios;
 
 /// Straight-sided voussoirs, radii 3.75 and 4.25 m.
 fn lemos() -> Row {
     let ring = Ring::new(0.125, PI).unwrap();
-    Row::straight_sided_arch(&ring, 17, 4.0, 1.0, 2700.0).unwrap()
+    straight_sided_arch(&ring, 17, 4.0, 1.0, 2700.0).unwrap()
 }
 
 fn semicircle(voussoirs: usize) -> Row {

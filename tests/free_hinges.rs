@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{GRAVITY, Random, random_history, random_row, ring};
+use crate::common::{GRAVITY, Random, between_faces, random_history, random_row, ring};
 use archrock::dynamics::free_hinges::{FreeHingeError, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
@@ -692,9 +692,9 @@ fn bad_arguments_are_refused() {
         extrados_m: Vector2::new(x1, y1),
     };
     let crossed = [face(0.0, 0.0, 1.0, 0.0), face(0.0, 1.0, 1.0, -0.1)];
-    assert!(Row::between_faces(&crossed, Supports::Both, 1.0, 1.0, 2000.0).is_err());
+    assert!(between_faces(&crossed, Supports::Both, 1.0, 1.0, 2000.0).is_err());
     let turned = [face(0.0, 0.0, 1.0, 0.0), face(1.0, 1.0, 0.0, 1.0)];
-    assert!(Row::between_faces(&turned, Supports::Both, 1.0, 1.0, 2000.0).is_err());
+    assert!(between_faces(&turned, Supports::Both, 1.0, 1.0, 2000.0).is_err());
 
     let row = column(2);
     // Steps follow the size.

@@ -1,9 +1,8 @@
 //! Impacts: momentum theorems, energy, and the largest restitution coefficient of all mechanisms.
 
+use crate::common::momentum::MomentumTheorems;
 use crate::common::{Random, assert_hinges, climb, degrees, ring, semicircle};
-use archrock::mechanics::four_link::impact::{
-    ImpactModel, MomentumTheorems, closing_field, impact, projection,
-};
+use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact, projection};
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::ResultantLine;

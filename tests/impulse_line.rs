@@ -3,11 +3,10 @@
 use std::f64::consts::PI;
 use std::path::Path;
 
+use crate::common::momentum::MomentumTheorems;
 use crate::program::{printed, refused};
 use crate::results::{Row, Table};
-use archrock::mechanics::four_link::impact::{
-    ImpactModel, MomentumTheorems, closing_field, impact,
-};
+use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact};
 use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites};
 use archrock::mechanics::geometry::field::Side;
 use archrock::mechanics::geometry::ring::{Edge, Ring};

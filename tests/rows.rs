@@ -1,6 +1,6 @@
 //! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
-use crate::common::number;
+use crate::common::{between_faces, number, straight_sided_arch};
 use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
@@ -125,7 +125,7 @@ proptest! {
         let usual = counted && size.iter().all(|x| (1e-3..1e6).contains(x));
         for row in [
             Row::arch(&ring, voussoirs, radius_m, depth_m, density_kg_m3),
-            Row::straight_sided_arch(&ring, voussoirs, radius_m, depth_m, density_kg_m3),
+            straight_sided_arch(&ring, voussoirs, radius_m, depth_m, density_kg_m3),
         ] {
             match &row {
                 Err(RowError::Count(count)) => prop_assert!(*count == voussoirs && !counted),
@@ -182,7 +182,7 @@ proptest! {
         supports in supports(),
         size_m in number(1.0..10.0),
     ) {
-        let row = Row::between_faces(&faces, supports, size_m, 1.0, 2000.0);
+        let row = between_faces(&faces, supports, size_m, 1.0, 2000.0);
         match &row {
             Err(RowError::Count(count)) => prop_assert!(*count == 0 && faces.len() < 2),
             Err(RowError::Dimension { .. }) => prop_assert!(!(size_m > 0.0 && size_m < f64::INFINITY)),
@@ -295,7 +295,7 @@ fn outlines_hold_the_blocks() {
     let ring = Ring::new(0.15, 170_f64.to_radians()).unwrap();
     let rows = [
         Row::arch(&ring, 5, 4.0, 0.7, 2100.0).unwrap(),
-        Row::straight_sided_arch(&ring, 9, 4.0, 0.7, 2100.0).unwrap(),
+        straight_sided_arch(&ring, 9, 4.0, 0.7, 2100.0).unwrap(),
         Row::tapered_stack(&[0.8, 0.8, 0.4], 1.0, 0.7, 0.7, 2100.0).unwrap(),
     ];
     for row in rows {

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use crate::common::{GRAVITY, Random, random_history};
+use crate::common::{GRAVITY, Random, between_faces, random_history};
 use archrock::dynamics::free_hinges::{FreeHinges, Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
@@ -208,7 +208,7 @@ fn block_on_a_slope() -> (Row, f64) {
     };
     let size_m = 0.5 * 2.0_f64.hypot(0.3);
     let faces = [face(0.0), face(0.3)];
-    let row = Row::between_faces(&faces, Supports::Left, size_m, 1.0, 2000.0).unwrap();
+    let row = between_faces(&faces, Supports::Left, size_m, 1.0, 2000.0).unwrap();
     (row, slope_rad)
 }
 

@@ -1,9 +1,11 @@
 //! Code that several test files share: arches by their published names, and short ways to run them.
 
+pub mod momentum;
+
 use archrock::dynamics::ground::Pulse;
-use archrock::mechanics::blocks::{Drum, Row};
+use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
     Piers, PlacedLoad, PointedArch, Shape,
@@ -236,6 +238,48 @@ pub fn pairs<A, B>(
     a.into_iter().zip(b)
 }
 
+/// Quadrilateral blocks between consecutive faces. The first face lies on the left support; the last one on the right support, or
+/// else it is the free top of a stack.
+pub fn between_faces(
+    faces: &[Joint],
+    supports: Supports,
+    size_m: f64,
+    depth_m: f64,
+    density_kg_m3: f64,
+) -> Result<Row, RowError> {
+    let pairs = faces.windows(2);
+    let blocks =
+        pairs.map(|pair| Block::prism(&pair[0].outline_m(&pair[1]), depth_m, density_kg_m3));
+    let count = match supports {
+        Supports::Left => faces.len().saturating_sub(1),
+        Supports::Both => faces.len(),
+    };
+    Row::new(blocks.collect(), faces[..count].to_vec(), supports, size_m)
+}
+
+/// An arch of equal straight-sided voussoirs, whose corners lie on the intrados and the extrados of the ring.
+pub fn straight_sided_arch(
+    ring: &Ring,
+    voussoirs: usize,
+    mean_radius_m: f64,
+    depth_m: f64,
+    density_kg_m3: f64,
+) -> Result<Row, RowError> {
+    let corner = |angle: f64, edge| ring.point(angle, edge) * mean_radius_m;
+    let faces = ring.sections(voussoirs).into_iter().map(|angle| Joint {
+        intrados_m: corner(angle, Edge::Intrados),
+        extrados_m: corner(angle, Edge::Extrados),
+    });
+    let faces: Vec<Joint> = faces.collect();
+    between_faces(
+        &faces,
+        Supports::Both,
+        mean_radius_m,
+        depth_m,
+        density_kg_m3,
+    )
+}
+
 /// Any arch or stack, of up to `most` blocks.
 pub fn random_row(random: &mut Random, most: usize) -> Row {
     let count = 1 + random.pick(most);
@@ -261,7 +305,7 @@ pub fn random_row(random: &mut Random, most: usize) -> Row {
     if random.chance(0.5) || count < 3 {
         Row::arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
     } else {
-        Row::straight_sided_arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
+        straight_sided_arch(&ring, count, radius_m, 0.7, 1900.0).unwrap()
     }
 }
 

@@ -7,14 +7,13 @@
 //!
 //! Nothing here moves: `joints` places the blocks, `contact` finds their velocities.
 
-use std::ops::Add;
-
 use nalgebra::Vector2;
 use thiserror::Error;
 
+pub use super::block::{Block, Joint};
+use super::geometry::rigid::mirrored;
+use super::geometry::ring::{Edge, Ring};
 use super::tie::{Tie, TieError};
-use crate::mechanics::geometry::curve::{Curve, polygon};
-use crate::mechanics::geometry::ring::{Edge, MassMoments, Ring};
 
 /// The most blocks that a row may have. The work of a step grows with their number and so does the number of
 /// impacts, while thresholds hardly change beyond a few dozen voussoirs.
@@ -94,148 +93,13 @@ pub enum RowError {
     },
 }
 
-/// A rigid block in the undeformed row.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Block {
-    /// Mass in kg.
-    pub mass_kg: f64,
-    /// Centre of gravity in metres.
-    pub centre_m: Vector2<f64>,
-    /// Polar moment of inertia about the centre of gravity, in kg m2.
-    pub inertia_kg_m2: f64,
-}
-
-impl Block {
-    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round.
-    #[must_use]
-    pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
-        let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
-        Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
-    }
-
-    /// A prism with a closed outline (m), either way round; `pole_m` is a point near it, which keeps rounding small.
-    #[must_use]
-    pub fn bounded(
-        outline_m: impl IntoIterator<Item = Curve>,
-        pole_m: Vector2<f64>,
-        depth_m: f64,
-        density_kg_m3: f64,
-    ) -> Self {
-        let moments = outline_m
-            .into_iter()
-            .map(|curve| curve.swept(pole_m))
-            .fold(MassMoments::NONE, Add::add);
-        let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
-        let centre = moments.first / moments.mass;
-        Self {
-            mass_kg: moments.mass * surface_kg_m2,
-            centre_m: pole_m + centre,
-            inertia_kg_m2: (moments.polar - moments.mass * centre.norm_squared()) * surface_kg_m2,
-        }
-    }
-
-    /// The two as one rigid body.
-    #[must_use]
-    pub fn with(&self, other: &Self) -> Self {
-        let mass_kg = self.mass_kg + other.mass_kg;
-        let apart_m = other.centre_m - self.centre_m;
-        Self {
-            mass_kg,
-            centre_m: self.centre_m + apart_m * (other.mass_kg / mass_kg),
-            inertia_kg_m2: self.inertia_kg_m2
-                + other.inertia_kg_m2
-                + self.mass_kg * other.mass_kg / mass_kg * apart_m.norm_squared(),
-        }
-    }
-
-    /// The mirror image about the y axis.
-    #[must_use]
-    pub fn mirrored(&self) -> Self {
-        Self {
-            centre_m: Vector2::new(-self.centre_m.x, self.centre_m.y),
-            ..*self
-        }
-    }
-
-    /// Mass, first and polar moment about the origin, when the centre of gravity is at `centre_m`.
-    #[must_use]
-    pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
-        MassMoments {
-            mass: self.mass_kg,
-            first: centre_m * self.mass_kg,
-            polar: self.inertia_kg_m2 + self.mass_kg * centre_m.norm_squared(),
-        }
-    }
-}
-
-/// A joint of the undeformed row, shut.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Joint {
-    /// Corner at the intrados in metres (of a stack: left).
-    pub intrados_m: Vector2<f64>,
-    /// Corner at the extrados in metres (of a stack: right).
-    pub extrados_m: Vector2<f64>,
-}
-
-impl Joint {
-    /// Distance of the corners in metres.
-    #[must_use]
-    pub fn thickness_m(&self) -> f64 {
-        (self.extrados_m - self.intrados_m).norm()
-    }
-
-    /// Midpoint of the corners in metres.
-    #[must_use]
-    pub fn middle_m(&self) -> Vector2<f64> {
-        (self.intrados_m + self.extrados_m) * 0.5
-    }
-
-    /// Unit vector from the intrados to the extrados.
-    #[must_use]
-    pub fn along(&self) -> Vector2<f64> {
-        (self.extrados_m - self.intrados_m) / self.thickness_m()
-    }
-
-    /// Corner on the given edge, in metres.
-    #[must_use]
-    pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
-        match edge {
-            Edge::Intrados => self.intrados_m,
-            Edge::Extrados => self.extrados_m,
-        }
-    }
-
-    /// Whether two joints have a point in common.
-    fn meets(&self, other: &Self) -> bool {
-        let side = |joint: &Self, point: Vector2<f64>| {
-            (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))
-        };
-        let parted =
-            |one: &Self, two: &Self| side(one, two.intrados_m) * side(one, two.extrados_m) > 0.0;
-        !(parted(self, other) || parted(other, self))
-    }
-}
-
-/// What carries a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Supports {
-    /// A base before the first block: a free-standing stack.
-    Left,
-    /// Abutments before the first block and after the last one: an arch.
-    Both,
-}
-
-impl Supports {
-    /// All of them.
-    pub const ALL: &[Self] = &[Self::Both, Self::Left];
-
-    /// Its name in scenarios and results.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Both => "both",
-            Self::Left => "left",
-        }
+named! {
+    /// The supports of a row.
+    pub enum Supports {
+        /// Abutments before the first block and after the last one: an arch.
+        Both = "both",
+        /// A base before the first block: a free-standing stack.
+        Left = "left",
     }
 }
 
@@ -283,77 +147,28 @@ impl Row {
     ) -> Result<Self, RowError> {
         positive("size in m", size_m)?;
         let count = blocks.len();
-        if !(1..=MAX_BLOCKS).contains(&count) {
-            return Err(RowError::Count(count));
-        }
-        let expected = match supports {
-            Supports::Left => count,
-            Supports::Both => count + 1,
-        };
-        if joints.len() != expected {
+        counted(count)?;
+        if joints.len() != count + usize::from(supports == Supports::Both) {
             return Err(RowError::Joints {
                 blocks: count,
                 joints: joints.len(),
             });
         }
-        for (index, joint) in joints.iter().enumerate() {
-            let thickness_m = joint.thickness_m();
-            if !(thickness_m > 1e-9 * size_m && thickness_m < f64::INFINITY) {
-                return Err(RowError::Value {
-                    name: "thickness in m",
-                    part: "joint",
-                    index,
-                    value: thickness_m,
-                    allowed: "it must be finite, and positive beside the size of the row",
-                });
-            }
-        }
-        let corners = joints
-            .iter()
-            .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
-        let extent_m = corners
-            .map(|corner| (corner - joints[0].intrados_m).norm())
-            .fold(0.0, f64::max);
-        if size_m < LEAST_SIZE_RATIO * extent_m {
-            return Err(RowError::Size { size_m, extent_m });
-        }
-        if let Some(first) = joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
-            return Err(RowError::Crossing(first));
-        }
-        for (index, block) in blocks.iter().enumerate() {
-            let value = |name, value: f64, allowed| RowError::Value {
-                name,
-                part: "block",
-                index,
-                value,
-                allowed,
-            };
-            for (name, number) in [
-                ("mass in kg", block.mass_kg),
-                ("inertia in kg m2", block.inertia_kg_m2),
-            ] {
-                if !(number > 0.0 && number < f64::INFINITY) {
-                    return Err(value(name, number, "it must be positive and finite"));
-                }
-            }
-            if let Some(number) = block.centre_m.iter().find(|x| !x.is_finite()) {
-                return Err(value("centre in m", *number, "it must be finite"));
-            }
-        }
+        check_joints(&joints, size_m)?;
+        check_blocks(&blocks)?;
         let side = |joint: usize, block: usize| {
-            joints[joint]
-                .along()
-                .perp(&(blocks[block].centre_m - joints[joint].intrados_m))
+            let arm_m = blocks[block].centre_m - joints[joint].intrados_m;
+            joints[joint].along().perp(&arm_m)
         };
         let handedness = side(0, 0).signum();
         for joint in 0..joints.len() {
-            if joint < count && !positive_side(handedness * side(joint, joint)) {
-                let block = joint;
-                return Err(RowError::Order { block, joint });
-            }
-            if joint > 0 && !positive_side(-handedness * side(joint, joint - 1)) {
-                let block = joint - 1;
-                return Err(RowError::Order { block, joint });
+            for (block, sign) in [(Some(joint), 1.0), (joint.checked_sub(1), -1.0)] {
+                let block = block.filter(|block| *block < count);
+                // No number is on no side.
+                let is_off = |block: &usize| !(sign * handedness * side(joint, *block) > 0.0);
+                if let Some(block) = block.filter(is_off) {
+                    return Err(RowError::Order { block, joint });
+                }
             }
         }
         let outlines_m = (0..count)
@@ -364,12 +179,7 @@ impl Row {
                     intrados_m: 2.0 * centre_m - before.extrados_m,
                     extrados_m: 2.0 * centre_m - before.intrados_m,
                 });
-                vec![
-                    before.intrados_m,
-                    before.extrados_m,
-                    after.extrados_m,
-                    after.intrados_m,
-                ]
+                before.outline_m(&after).to_vec()
             })
             .collect();
         Ok(Self {
@@ -446,29 +256,17 @@ impl Row {
         if self.supports == Supports::Left {
             return None;
         }
-        let mirror = |v: Vector2<f64>| Vector2::new(-v.x, v.y);
+        let [left, right] = self.supports_go_on;
+        let outlines_m = self.outlines_m.iter().rev();
+        let ties = self.ties.iter();
         Some(Self {
             blocks: self.blocks.iter().rev().map(Block::mirrored).collect(),
-            joints: self
-                .joints
-                .iter()
-                .rev()
-                .map(|joint| Joint {
-                    intrados_m: mirror(joint.intrados_m),
-                    extrados_m: mirror(joint.extrados_m),
-                })
+            joints: self.joints.iter().rev().map(Joint::mirrored).collect(),
+            outlines_m: outlines_m
+                .map(|outline| outline.iter().rev().copied().map(mirrored).collect())
                 .collect(),
-            outlines_m: self
-                .outlines_m
-                .iter()
-                .rev()
-                .map(|outline| outline.iter().rev().copied().map(mirror).collect())
-                .collect(),
-            supports_go_on: [self.supports_go_on[1], self.supports_go_on[0]],
-            ties: {
-                let ties = self.ties.iter();
-                ties.map(|tie| tie.mirrored(self.blocks.len())).collect()
-            },
+            supports_go_on: [right, left],
+            ties: ties.map(|tie| tie.mirrored(self.blocks.len())).collect(),
             ..*self
         })
     }
@@ -495,12 +293,21 @@ impl Row {
                 inertia_kg_m2: sector.central_polar() * surface_kg_m2 * mean_radius_m.powi(4),
             }
         });
-        let joints = ring_joints(ring, sections_rad, mean_radius_m);
+        let corner = |angle: f64, edge| ring.point(angle, edge) * mean_radius_m;
+        let joints = sections_rad.iter().map(|angle| Joint {
+            intrados_m: corner(*angle, Edge::Intrados),
+            extrados_m: corner(*angle, Edge::Extrados),
+        });
         let outlines_m = sections_rad.windows(2).map(|ends| {
             let outline = ring.sector_outline(ends[0], ends[1]).into_iter();
             outline.map(|corner| corner * mean_radius_m).collect()
         });
-        let row = Self::new(blocks.collect(), joints, Supports::Both, mean_radius_m)?;
+        let row = Self::new(
+            blocks.collect(),
+            joints.collect(),
+            Supports::Both,
+            mean_radius_m,
+        )?;
         Ok(row.with_outlines_m(outlines_m.collect()))
     }
 
@@ -518,60 +325,6 @@ impl Row {
         counted(voussoirs)?;
         let sections_rad = ring.sections(voussoirs);
         Self::annular(ring, &sections_rad, mean_radius_m, depth_m, density_kg_m3)
-    }
-
-    /// An arch of `voussoirs` equal straight-sided voussoirs, whose corners lie on the intrados and the extrados of
-    /// the ring.
-    ///
-    /// # Errors
-    /// As [`Row::arch`].
-    pub fn straight_sided_arch(
-        ring: &Ring,
-        voussoirs: usize,
-        mean_radius_m: f64,
-        depth_m: f64,
-        density_kg_m3: f64,
-    ) -> Result<Self, RowError> {
-        counted(voussoirs)?;
-        positive("mean radius in m", mean_radius_m)?;
-        let faces = ring_joints(ring, &ring.sections(voussoirs), mean_radius_m);
-        Self::between_faces(
-            &faces,
-            Supports::Both,
-            mean_radius_m,
-            depth_m,
-            density_kg_m3,
-        )
-    }
-
-    /// Quadrilateral blocks between consecutive faces. The first face lies on the left support; the last one on
-    /// the right support, or else it is the free top of a stack.
-    ///
-    /// # Errors
-    /// As [`Row::new`].
-    pub fn between_faces(
-        faces: &[Joint],
-        supports: Supports,
-        size_m: f64,
-        depth_m: f64,
-        density_kg_m3: f64,
-    ) -> Result<Self, RowError> {
-        surface_density(depth_m, density_kg_m3)?;
-        let blocks = faces.windows(2).map(|pair| {
-            let [left, right] = [pair[0], pair[1]];
-            let outline = [
-                left.intrados_m,
-                left.extrados_m,
-                right.extrados_m,
-                right.intrados_m,
-            ];
-            Block::prism(&outline, depth_m, density_kg_m3)
-        });
-        let count = match supports {
-            Supports::Left => faces.len().saturating_sub(1),
-            Supports::Both => faces.len(),
-        };
-        Self::new(blocks.collect(), faces[..count].to_vec(), supports, size_m)
     }
 
     /// A free-standing stack of drums from the bottom up, all on one vertical axis. Drums of different width
@@ -594,16 +347,8 @@ impl Row {
             positive("width of a drum in m", drum.base_width_m)?;
             positive("width of a drum in m", drum.top_width_m)?;
             joints.push(face(drum.base_width_m.min(below_m), y));
-            let (bottom, top) = (
-                face(drum.base_width_m, y),
-                face(drum.top_width_m, y + drum.height_m),
-            );
-            let outline = [
-                bottom.intrados_m,
-                bottom.extrados_m,
-                top.extrados_m,
-                top.intrados_m,
-            ];
+            let top = face(drum.top_width_m, y + drum.height_m);
+            let outline = face(drum.base_width_m, y).outline_m(&top);
             blocks.push(Block::prism(&outline, depth_m, density_kg_m3));
             outlines_m.push(outline.to_vec());
             (y, below_m) = (y + drum.height_m, drum.top_width_m);
@@ -713,11 +458,6 @@ impl Row {
     }
 }
 
-/// False also for NaN.
-fn positive_side(distance: f64) -> bool {
-    distance > 0.0
-}
-
 fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
     if value > 0.0 && value < f64::INFINITY {
         Ok(())
@@ -741,13 +481,67 @@ fn counted(blocks: usize) -> Result<(), RowError> {
     }
 }
 
-fn ring_joints(ring: &Ring, sections_rad: &[f64], mean_radius_m: f64) -> Vec<Joint> {
-    let corner = |angle: f64, edge| ring.point(angle, edge) * mean_radius_m;
-    sections_rad
+/// Refuses joints without a thickness, too large a row for its size, and joints that cross.
+fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
+    for (index, joint) in joints.iter().enumerate() {
+        let value = joint.thickness_m();
+        if !(value > 1e-9 * size_m && value < f64::INFINITY) {
+            return Err(RowError::Value {
+                name: "thickness in m",
+                part: "joint",
+                index,
+                value,
+                allowed: "it must be finite, and positive beside the size of the row",
+            });
+        }
+    }
+    let corners = joints
         .iter()
-        .map(|angle| Joint {
-            intrados_m: corner(*angle, Edge::Intrados),
-            extrados_m: corner(*angle, Edge::Extrados),
-        })
-        .collect()
+        .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
+    let extent_m = corners
+        .map(|corner| (corner - joints[0].intrados_m).norm())
+        .fold(0.0, f64::max);
+    if size_m < LEAST_SIZE_RATIO * extent_m {
+        return Err(RowError::Size { size_m, extent_m });
+    }
+    match joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
+        Some(first) => Err(RowError::Crossing(first)),
+        None => Ok(()),
+    }
+}
+
+/// Refuses blocks without mass or inertia, or with a centre that is no number.
+fn check_blocks(blocks: &[Block]) -> Result<(), RowError> {
+    let positive = |number: f64| number > 0.0 && number < f64::INFINITY;
+    let allowed = ["it must be positive and finite", "it must be finite"];
+    for (index, block) in blocks.iter().enumerate() {
+        let [x, y] = block.centre_m.into();
+        for (name, value, holds, allowed) in [
+            (
+                "mass in kg",
+                block.mass_kg,
+                positive(block.mass_kg),
+                allowed[0],
+            ),
+            (
+                "inertia in kg m2",
+                block.inertia_kg_m2,
+                positive(block.inertia_kg_m2),
+                allowed[0],
+            ),
+            ("centre in m", x, x.is_finite(), allowed[1]),
+            ("centre in m", y, y.is_finite(), allowed[1]),
+        ] {
+            if !holds {
+                return Err(RowError::Value {
+                    name,
+                    part: "block",
+                    index,
+                    value,
+                    allowed,
+                });
+            }
+        }
+    }
+    Ok(())
 }

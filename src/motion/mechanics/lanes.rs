@@ -48,18 +48,12 @@ pub trait Real:
     fn positive(self, yes: Self, no: Self) -> Self;
 
     /// The larger of the two.
-    #[inline(always)]
     #[must_use]
-    fn max(self, other: Self) -> Self {
-        (self - other).positive(self, other)
-    }
+    fn max(self, other: Self) -> Self;
 
     /// The smaller of the two.
-    #[inline(always)]
     #[must_use]
-    fn min(self, other: Self) -> Self {
-        (self - other).positive(other, self)
-    }
+    fn min(self, other: Self) -> Self;
 
     /// The magnitude.
     #[inline(always)]
@@ -86,41 +80,40 @@ macro_rules! by_lane {
     }};
 }
 
-impl<const L: usize> Add for Lanes<L> {
-    type Output = Self;
+/// Implements operators of two numbers lane by lane.
+macro_rules! operators {
+    ($($trait:ident $method:ident $operator:tt),+) => {$(
+        impl<const L: usize> $trait for Lanes<L> {
+            type Output = Self;
 
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        by_lane!(lane: self.0[lane] + other.0[lane])
-    }
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                by_lane!(lane: self.0[lane] $operator other.0[lane])
+            }
+        }
+    )+};
 }
+operators!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-impl<const L: usize> Sub for Lanes<L> {
-    type Output = Self;
+/// Implements the operators that assign, by those that do not.
+macro_rules! assigning {
+    ($($number:ident),+) => {$(
+        impl<const N: usize> AddAssign for $number<N> {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
 
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        by_lane!(lane: self.0[lane] - other.0[lane])
-    }
+        impl<const N: usize> SubAssign for $number<N> {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+    )+};
 }
-
-impl<const L: usize> Mul for Lanes<L> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        by_lane!(lane: self.0[lane] * other.0[lane])
-    }
-}
-
-impl<const L: usize> Div for Lanes<L> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        by_lane!(lane: self.0[lane] / other.0[lane])
-    }
-}
+assigning!(Lanes, Dual);
 
 impl<const L: usize> Mul<f64> for Lanes<L> {
     type Output = Self;
@@ -137,20 +130,6 @@ impl<const L: usize> Neg for Lanes<L> {
     #[inline(always)]
     fn neg(self) -> Self {
         by_lane!(lane: -self.0[lane])
-    }
-}
-
-impl<const L: usize> AddAssign for Lanes<L> {
-    #[inline(always)]
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const L: usize> SubAssign for Lanes<L> {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 
@@ -264,18 +243,6 @@ impl<const D: usize> Neg for Dual<D> {
 
     fn neg(self) -> Self {
         self * -1.0
-    }
-}
-
-impl<const D: usize> AddAssign for Dual<D> {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
-    }
-}
-
-impl<const D: usize> SubAssign for Dual<D> {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 

@@ -1,5 +1,6 @@
 //! Mechanics of arches and columns: pure functions, no time, no files.
 pub mod arch;
+mod block;
 pub mod blocks;
 pub mod capacity;
 pub mod chain;

@@ -6,8 +6,8 @@
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::blocks::Block;
-use super::geometry::field::{Momentum, Twist};
+use super::block::Block;
+use super::geometry::rigid::{Momentum, Twist, mirrored};
 use super::lanes::{Lanes, Real, both};
 
 /// Where a tie holds on.
@@ -231,7 +231,7 @@ impl Tie {
     pub(super) fn mirrored(&self, blocks: usize) -> Self {
         let mirror = |anchor: Anchor| Anchor {
             block: anchor.block.map(|block| blocks - 1 - block),
-            at_m: Vector2::new(-anchor.at_m.x, anchor.at_m.y),
+            at_m: mirrored(anchor.at_m),
         };
         Self {
             ends: self.ends.map(mirror),

@@ -3,13 +3,11 @@
 //! The restitution coefficient `r` is the kinetic energy after the impact over that before it, as in the
 //! paper and in Housner.
 
-use crate::argument::{ArgumentError, within};
-use nalgebra::{Matrix5, Vector2, Vector5};
-
 use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
-use crate::mechanics::geometry::field::{Field, Momentum, Side, Twist};
+use crate::argument::{ArgumentError, within};
+use crate::mechanics::geometry::field::{Field, Side, Twist};
 use crate::mechanics::geometry::profile::Profile;
 
 /// How the mechanism after an impact is found.
@@ -195,7 +193,7 @@ pub(crate) fn impact_onto(
 /// velocity field `before` onto the mechanism in the kinetic-energy metric.
 ///
 /// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
-/// The restitution coefficient is then a squared cosine. Equal to [`MomentumTheorems::solve`], and faster.
+/// The restitution coefficient is then a squared cosine. It solves Eqs. (7)-(10) of the paper.
 #[must_use]
 pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> (f64, f64) {
     let field = mechanism.field();
@@ -207,71 +205,6 @@ pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -
         shared / own,
         shared * shared / (own * before.product(before, profile)),
     )
-}
-
-/// The solution of the five equations (7)-(10) of the paper.
-///
-/// Masses are in units of `rho d R^2` and lengths in `R`: impulses are per unit rate of the closing
-/// mechanism times `rho d R^3`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MomentumTheorems {
-    /// Impulse on the ring at the first hinge of the new mechanism.
-    pub impulse_first: Vector2<f64>,
-    /// Impulse on the ring at the last hinge of the new mechanism.
-    pub impulse_last: Vector2<f64>,
-    /// Rate of the new mechanism.
-    pub rate: f64,
-}
-
-impl MomentumTheorems {
-    /// Solves Eqs. (7)-(10) for a ring that moves with `before` when the hinges of `mechanism` form.
-    ///
-    /// They are linear momentum along x and y and angular momentum about the centre for the part between
-    /// the outer hinges, and angular momentum of each end body about its inner hinge.
-    #[must_use]
-    pub fn solve(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> Self {
-        let [a, b, c, d] = mechanism.hinges_rad();
-        let [point_a, point_b, point_c, point_d] = mechanism.points();
-        let after = mechanism.field();
-        let part = |field: &Field, from: f64, to: f64| {
-            field.momentum_to(profile, to) - field.momentum_to(profile, from)
-        };
-        let theorems = |whole: Momentum, first: Momentum, last: Momentum| {
-            Vector5::new(
-                whole.linear.x,
-                whole.linear.y,
-                whole.angular,
-                first.about(point_b),
-                last.about(point_c),
-            )
-        };
-        let of_field =
-            |field: &Field| theorems(part(field, a, d), part(field, a, b), part(field, c, d));
-        let at_first = |direction| {
-            let impulse = Momentum::applied_at(point_a, direction);
-            theorems(impulse, impulse, Momentum::ZERO)
-        };
-        let at_last = |direction| {
-            let impulse = Momentum::applied_at(point_d, direction);
-            theorems(impulse, Momentum::ZERO, impulse)
-        };
-        let matrix = Matrix5::from_columns(&[
-            at_first(Vector2::x()),
-            at_first(Vector2::y()),
-            at_last(Vector2::x()),
-            at_last(Vector2::y()),
-            -of_field(&after),
-        ]);
-        let solution = matrix
-            .lu()
-            .solve(&-of_field(before))
-            .expect("an admissible mechanism is determinate: its hinges are in convex position");
-        Self {
-            impulse_first: Vector2::new(solution[0], solution[1]),
-            impulse_last: Vector2::new(solution[2], solution[3]),
-            rate: solution[4],
-        }
-    }
 }
 
 /// The admissible mechanism that keeps the most of the kinetic energy of `before`.

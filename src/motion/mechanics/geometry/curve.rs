@@ -7,10 +7,11 @@
 //!
 //! about the pole; summed over a closed outline they are those of the enclosed area.
 
+use std::f64::consts::PI;
+
 use nalgebra::Vector2;
 
-use super::field::turned;
-use super::ring::MassMoments;
+use super::rigid::{MassMoments, mirrored, turned};
 use crate::bisection::{Width, bisect, middle};
 
 /// Parts into which a curve is cut for quadrature.
@@ -132,30 +133,18 @@ impl Curve {
     /// The mirror image about the y axis, run through the other way, so that a curve from left to right stays one.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        let mirror = |v: Vector2<f64>| Vector2::new(-v.x, v.y);
         let mut image = self.reversed();
         match &mut image {
-            Self::Line { from, to } => (*from, *to) = (mirror(*from), mirror(*to)),
+            Self::Line { from, to } => (*from, *to) = (mirrored(*from), mirrored(*to)),
             Self::Arc {
-                centre,
-                from_rad,
-                to_rad,
-                ..
-            } => {
-                *centre = mirror(*centre);
-                (*from_rad, *to_rad) = (
-                    std::f64::consts::PI - *from_rad,
-                    std::f64::consts::PI - *to_rad,
-                );
-            }
-            Self::Ellipse {
                 from_rad, to_rad, ..
-            } => {
-                (*from_rad, *to_rad) = (
-                    std::f64::consts::PI - *from_rad,
-                    std::f64::consts::PI - *to_rad,
-                );
             }
+            | Self::Ellipse {
+                from_rad, to_rad, ..
+            } => (*from_rad, *to_rad) = (PI - *from_rad, PI - *to_rad),
+        }
+        if let Self::Arc { centre, .. } = &mut image {
+            *centre = mirrored(*centre);
         }
         image
     }

@@ -6,168 +6,10 @@
 //! of `rho v . w`, which is twice a kinetic energy when `v = w` and a virtual power when one of them
 //! is a load per unit mass.
 
-use std::ops::{Add, Mul, Sub};
-
-use nalgebra::Vector2;
+use std::ops::Add;
 
 use super::profile::Profile;
-use super::ring::MassMoments;
-
-/// `k x v`: `v` turned by a right angle anticlockwise.
-pub fn turned(v: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(-v.y, v.x)
-}
-
-/// Instantaneous rigid motion: velocity of the point at the centre of the ring, and angular rate
-/// (positive anticlockwise).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Twist {
-    /// Velocity at the centre of the ring.
-    pub at_center: Vector2<f64>,
-    /// Angular rate.
-    pub rate: f64,
-}
-
-impl Twist {
-    /// No motion.
-    pub const ZERO: Self = Self {
-        at_center: Vector2::new(0.0, 0.0),
-        rate: 0.0,
-    };
-
-    /// Rotation at `rate` about `pole`.
-    #[must_use]
-    pub fn rotation(pole: Vector2<f64>, rate: f64) -> Self {
-        Self {
-            at_center: -turned(pole) * rate,
-            rate,
-        }
-    }
-
-    /// Translation: the same velocity everywhere.
-    #[must_use]
-    pub const fn translation(velocity: Vector2<f64>) -> Self {
-        Self {
-            at_center: velocity,
-            rate: 0.0,
-        }
-    }
-
-    /// Velocity at `point`.
-    #[must_use]
-    pub fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
-        self.at_center + turned(point) * self.rate
-    }
-
-    /// Momentum of a body of the given moments that moves with this twist.
-    #[must_use]
-    pub fn momentum(&self, body: &MassMoments) -> Momentum {
-        Momentum {
-            linear: self.at_center * body.mass + turned(body.first) * self.rate,
-            angular: body.first.perp(&self.at_center) + body.polar * self.rate,
-        }
-    }
-
-    /// Power of `momentum` (or of a wrench) on this motion.
-    #[must_use]
-    pub fn power(&self, momentum: &Momentum) -> f64 {
-        self.at_center.dot(&momentum.linear) + self.rate * momentum.angular
-    }
-
-    fn mirrored(&self) -> Self {
-        Self {
-            at_center: Vector2::new(-self.at_center.x, self.at_center.y),
-            rate: -self.rate,
-        }
-    }
-}
-
-impl Add for Twist {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            at_center: self.at_center + other.at_center,
-            rate: self.rate + other.rate,
-        }
-    }
-}
-
-impl Sub for Twist {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + other * -1.0
-    }
-}
-
-impl Mul<f64> for Twist {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self {
-            at_center: self.at_center * factor,
-            rate: self.rate * factor,
-        }
-    }
-}
-
-/// Linear momentum and angular momentum about the centre of the ring; likewise a force or an
-/// impulse with its moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Momentum {
-    /// Linear momentum (force, impulse).
-    pub linear: Vector2<f64>,
-    /// Angular momentum (moment) about the centre of the ring.
-    pub angular: f64,
-}
-
-impl Momentum {
-    /// No momentum.
-    pub const ZERO: Self = Self {
-        linear: Vector2::new(0.0, 0.0),
-        angular: 0.0,
-    };
-
-    /// The force `linear` applied at `point`.
-    #[must_use]
-    pub fn applied_at(point: Vector2<f64>, linear: Vector2<f64>) -> Self {
-        Self {
-            linear,
-            angular: point.perp(&linear),
-        }
-    }
-
-    /// Angular momentum (moment) about `pole`.
-    #[must_use]
-    pub fn about(&self, pole: Vector2<f64>) -> f64 {
-        self.angular - pole.perp(&self.linear)
-    }
-}
-
-impl Add for Momentum {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            linear: self.linear + other.linear,
-            angular: self.angular + other.angular,
-        }
-    }
-}
-
-impl Sub for Momentum {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + other * -1.0
-    }
-}
-
-impl Mul<f64> for Momentum {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self {
-            linear: self.linear * factor,
-            angular: self.angular * factor,
-        }
-    }
-}
+pub use super::rigid::{Momentum, Twist, turned};
 
 /// Which of the two values of a field is meant at a section where it jumps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -305,6 +147,7 @@ impl Field {
 mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
+    use nalgebra::Vector2;
 
     fn example() -> (Ring, Field, Field) {
         let ring = Ring::new(0.2, 2.8).unwrap();

@@ -3,4 +3,5 @@ pub mod curve;
 pub mod field;
 pub mod pose;
 pub mod profile;
+pub mod rigid;
 pub mod ring;

@@ -5,12 +5,12 @@
 //! `rho d R^3` and polar moments `rho d R^4` times those given here.
 
 use std::f64::consts::PI;
-use std::ops::{Add, Mul, Sub};
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::field::turned;
+pub use super::rigid::MassMoments;
+use super::rigid::turned;
 
 named! {
     /// Edge of the ring on which a hinge sits.
@@ -173,77 +173,6 @@ impl Ring {
     fn first_moment_per_rad(&self) -> f64 {
         let t = self.thickness_ratio;
         t * (1.0 + t * t / 12.0)
-    }
-}
-
-/// Mass, first moment and polar moment about the centre of the ring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassMoments {
-    /// Mass.
-    pub mass: f64,
-    /// First moment: mass times centre of gravity.
-    pub first: Vector2<f64>,
-    /// Polar moment of inertia about the centre of the ring.
-    pub polar: f64,
-}
-
-impl MassMoments {
-    /// The moments of nothing.
-    pub const NONE: Self = Self {
-        mass: 0.0,
-        first: Vector2::new(0.0, 0.0),
-        polar: 0.0,
-    };
-
-    /// Centre of gravity.
-    #[must_use]
-    pub fn centroid(&self) -> Vector2<f64> {
-        self.first / self.mass
-    }
-
-    /// Polar moment of inertia about the centre of gravity (Steiner).
-    #[must_use]
-    pub fn central_polar(&self) -> f64 {
-        self.polar - self.first.norm_squared() / self.mass
-    }
-
-    /// Polar moment of inertia about `pole` (Steiner).
-    #[must_use]
-    pub fn polar_about(&self, pole: Vector2<f64>) -> f64 {
-        self.polar - 2.0 * self.first.dot(&pole) + self.mass * pole.norm_squared()
-    }
-}
-
-impl Add for MassMoments {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            mass: self.mass + other.mass,
-            first: self.first + other.first,
-            polar: self.polar + other.polar,
-        }
-    }
-}
-
-impl Mul<f64> for MassMoments {
-    type Output = Self;
-    fn mul(self, factor: f64) -> Self {
-        Self {
-            mass: self.mass * factor,
-            first: self.first * factor,
-            polar: self.polar * factor,
-        }
-    }
-}
-
-impl Sub for MassMoments {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        Self {
-            mass: self.mass - other.mass,
-            first: self.first - other.first,
-            polar: self.polar - other.polar,
-        }
     }
 }
 

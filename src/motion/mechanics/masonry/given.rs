@@ -66,7 +66,6 @@ pub struct GivenBlocks {
     #[serde(rename = "outlines", skip_serializing_if = "Option::is_none")]
     pub outlines_file: Option<String>,
     /// What carries the row.
-    #[serde(serialize_with = "supports_name")]
     pub supports: Supports,
     /// Length out of plane, in metres.
     pub depth_m: f64,
@@ -87,10 +86,6 @@ fn one_or_more<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S
         [one] => serializer.serialize_f64(*one),
         all => serializer.collect_seq(all),
     }
-}
-
-fn supports_name<S: Serializer>(supports: &Supports, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(supports.name())
 }
 
 impl GivenBlocks {
@@ -153,14 +148,7 @@ impl GivenBlocks {
     pub(super) fn outlines_m(&self) -> Vec<Vec<Vector2<f64>>> {
         let pairs = self.joints.windows(2);
         let mut outlines: Vec<_> = pairs
-            .map(|pair| {
-                vec![
-                    pair[0].intrados_m,
-                    pair[0].extrados_m,
-                    pair[1].extrados_m,
-                    pair[1].intrados_m,
-                ]
-            })
+            .map(|pair| pair[0].outline_m(&pair[1]).to_vec())
             .collect();
         for (block, outline) in &self.outlines {
             if let Some(known) = outlines.get_mut(*block) {

@@ -1,0 +1,151 @@
+//! A rigid block, and a joint between two of them.
+
+use std::ops::Add;
+
+use nalgebra::Vector2;
+
+use super::geometry::curve::{Curve, polygon};
+use super::geometry::rigid::{MassMoments, mirrored};
+use super::geometry::ring::Edge;
+
+/// A rigid block in the undeformed row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Mass in kg.
+    pub mass_kg: f64,
+    /// Centre of gravity in metres.
+    pub centre_m: Vector2<f64>,
+    /// Polar moment of inertia about the centre of gravity, in kg m2.
+    pub inertia_kg_m2: f64,
+}
+
+impl Block {
+    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round.
+    #[must_use]
+    pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
+        let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
+        Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
+    }
+
+    /// A prism with a closed outline (m), either way round; `pole_m` is a point near it, which keeps rounding small.
+    #[must_use]
+    pub fn bounded(
+        outline_m: impl IntoIterator<Item = Curve>,
+        pole_m: Vector2<f64>,
+        depth_m: f64,
+        density_kg_m3: f64,
+    ) -> Self {
+        let moments = outline_m
+            .into_iter()
+            .map(|curve| curve.swept(pole_m))
+            .fold(MassMoments::NONE, Add::add);
+        let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
+        let centre = moments.first / moments.mass;
+        Self {
+            mass_kg: moments.mass * surface_kg_m2,
+            centre_m: pole_m + centre,
+            inertia_kg_m2: (moments.polar - moments.mass * centre.norm_squared()) * surface_kg_m2,
+        }
+    }
+
+    /// This block and another one as one rigid body.
+    #[must_use]
+    pub fn with(&self, other: &Self) -> Self {
+        let mass_kg = self.mass_kg + other.mass_kg;
+        let apart_m = other.centre_m - self.centre_m;
+        Self {
+            mass_kg,
+            centre_m: self.centre_m + apart_m * (other.mass_kg / mass_kg),
+            inertia_kg_m2: self.inertia_kg_m2
+                + other.inertia_kg_m2
+                + self.mass_kg * other.mass_kg / mass_kg * apart_m.norm_squared(),
+        }
+    }
+
+    /// The mirror image about the y axis.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            centre_m: mirrored(self.centre_m),
+            ..*self
+        }
+    }
+
+    /// Mass, first and polar moment about the origin, when the centre of gravity is at `centre_m`.
+    #[must_use]
+    pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
+        MassMoments {
+            mass: self.mass_kg,
+            first: centre_m * self.mass_kg,
+            polar: self.inertia_kg_m2 + self.mass_kg * centre_m.norm_squared(),
+        }
+    }
+}
+
+/// A joint of the undeformed row, shut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Joint {
+    /// Corner at the intrados in metres (of a stack: left).
+    pub intrados_m: Vector2<f64>,
+    /// Corner at the extrados in metres (of a stack: right).
+    pub extrados_m: Vector2<f64>,
+}
+
+impl Joint {
+    /// Distance of the corners in metres.
+    #[must_use]
+    pub fn thickness_m(&self) -> f64 {
+        (self.extrados_m - self.intrados_m).norm()
+    }
+
+    /// Midpoint of the corners in metres.
+    #[must_use]
+    pub fn middle_m(&self) -> Vector2<f64> {
+        (self.intrados_m + self.extrados_m) * 0.5
+    }
+
+    /// Unit vector from the intrados to the extrados.
+    #[must_use]
+    pub fn along(&self) -> Vector2<f64> {
+        (self.extrados_m - self.intrados_m) / self.thickness_m()
+    }
+
+    /// Corner on the given edge, in metres.
+    #[must_use]
+    pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
+        match edge {
+            Edge::Intrados => self.intrados_m,
+            Edge::Extrados => self.extrados_m,
+        }
+    }
+
+    /// The mirror image about the y axis.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        Self {
+            intrados_m: mirrored(self.intrados_m),
+            extrados_m: mirrored(self.extrados_m),
+        }
+    }
+
+    /// Corners of the quadrilateral between this joint and the next one, in order around it.
+    #[must_use]
+    pub const fn outline_m(&self, next: &Self) -> [Vector2<f64>; 4] {
+        [
+            self.intrados_m,
+            self.extrados_m,
+            next.extrados_m,
+            next.intrados_m,
+        ]
+    }
+
+    /// Whether two joints have a point in common.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let side = |joint: &Self, point: Vector2<f64>| {
+            (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))
+        };
+        let parted =
+            |one: &Self, two: &Self| side(one, two.intrados_m) * side(one, two.extrados_m) > 0.0;
+        !(parted(self, other) || parted(other, self))
+    }
+}
