@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use archrock::internals::hybrid::engine::HybridSystem;
 use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::{
-    Arch, FourLinkArch, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
+    Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
 };
 use divan::Bencher;
 use divan::counter::ItemsCount;
@@ -16,7 +16,7 @@ use divan::counter::ItemsCount;
 const GRAVITY_M_S2: f64 = 9.81;
 
 /// The arch with its first links computed, which histories share.
-static ARCH: LazyLock<FourLinkArch> = LazyLock::new(|| {
+static ARCH: LazyLock<FourLinks> = LazyLock::new(|| {
     let arch = new_arch();
     let _ = arch.chain().link(30);
     arch
@@ -26,9 +26,9 @@ fn main() {
     divan::main();
 }
 
-fn new_arch() -> FourLinkArch {
+fn new_arch() -> FourLinks {
     let arch = Arch::new(5.0, 0.15, 180.0).expect("an arch");
-    FourLinkArch::new(arch, ImpactModel::MaxRestitution).expect("it stands")
+    FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).expect("it stands")
 }
 
 fn pulse(amplitude_g: f64, duration_s: f64) -> GroundMotion {

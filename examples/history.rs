@@ -6,7 +6,7 @@
     reason = "an example prints its results"
 )]
 
-use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Pulse, Request};
+use archrock::{Arch, FourLinks, GroundMotion, ImpactModel, Model, Pulse, Request};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A semicircle of 5 m mean radius, 0.75 m thick, whose hinges may open anywhere.
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     // The ground jerks to the left for 0.2 s, which pushes the arch to the right.
     let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0)?;
-    let model = FourLinkArch::new(arch, ImpactModel::MaxRestitution)?;
+    let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution)?;
     let history = model.history(&ground, &Request::default())?;
 
     for (time_s, impact) in history.impacts().take(5) {

@@ -5,7 +5,7 @@
 //! once: an **impact**. The arch then sways to the other side along another mechanism, with less
 //! energy. This crate follows the arch through all its impacts until it rests or overturns.
 //!
-//! Four links are one model of motion ([`FourLinkArch`], [`FourLinkRow`], and for a column [`RockingColumn`]). Nothing forces an arch
+//! Four links are one model of motion ([`FourLinks`], and for a column [`RockingColumn`]). Nothing forces an arch
 //! to keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
 //! open, shut, and slip, at any time. That costs more and is computed in steps; repetitions show how far the answer depends on
 //! these ([`Model::repetitions`]). Both are a [`Model`]: a history, a [threshold](studies::threshold) or a [map](studies::map) takes either.
@@ -26,13 +26,13 @@
 //! The arch of the paper, and the history of `docs/example.md`:
 //!
 //! ```
-//! use archrock::{Arch, FourLinkArch, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};
+//! use archrock::{Arch, FourLinks, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};
 //!
 //! // Mean radius in m, thickness over it, embrace angle in degrees.
 //! let arch = Arch::new(5.0, 0.15, 180.0)?;
 //! assert!((arch.incipient()?.acceleration_g - 0.14432644).abs() < 1e-8);
 //!
-//! let model = FourLinkArch::new(arch, ImpactModel::MaxRestitution)?;
+//! let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution)?;
 //! // -0.30 g for 0.20 s, from the start.
 //! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0)?;
 //! let history = model.history(&ground, &Request::default())?;
@@ -102,9 +102,8 @@ pub use mechanics::column::{Column, RockingColumn};
 pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
 };
-pub use mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-pub use mechanics::four_link::row::FourLinkRow;
+pub use mechanics::four_links::{FourLinkError, FourLinks};
 pub use mechanics::geometry::pose::Pose;
 pub use mechanics::masonry::Masonry;
 pub use mechanics::sway::Sway;

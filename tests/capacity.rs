@@ -9,7 +9,7 @@ use archrock::mechanics::stability::onset;
 use archrock::scenario::Structure;
 use archrock::studies::capacity::{self, NoCapacity};
 use archrock::{
-    Column, FourLinkRow, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
+    Column, FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
 };
 use nalgebra::Vector2;
 
@@ -95,7 +95,7 @@ fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     let Structure::Masonry(masonry) = scenario.structure() else {
         panic!("{:?}", scenario.structure());
     };
-    let model = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution).unwrap();
+    let model = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution).unwrap();
     let unit_j = 9.81 * model.mass_unit_kg() * model.length_m();
     for (sway, side) in SIDES.into_iter().zip(&capacity(&scenario, None).unwrap()) {
         let mechanism = &model.link_from(sway, 0).unwrap().mechanism;

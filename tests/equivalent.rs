@@ -4,15 +4,15 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::equivalent::equivalent;
 use archrock::studies::run::Scales;
 use archrock::{
-    Arch, Column, FourLinkArch, GroundMotion, ImpactModel, Initial, MechanismModel, Model as _,
-    Pulse, Request, RockingColumn, Sway,
+    Arch, Column, FourLinks, GroundMotion, ImpactModel, Initial, MechanismModel, Model as _, Pulse,
+    Request, RockingColumn, Sway,
 };
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-fn arch(thickness_ratio: f64, embrace_deg: f64, mean_radius_m: f64) -> FourLinkArch {
+fn arch(thickness_ratio: f64, embrace_deg: f64, mean_radius_m: f64) -> FourLinks {
     let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg).unwrap();
-    FourLinkArch::new(arch, ImpactModel::Mirrored).unwrap()
+    FourLinks::of_arch(&arch, ImpactModel::Mirrored).unwrap()
 }
 
 const ARCHES: [(f64, f64); 3] = [(0.15, 180.0), (0.15, 157.5), (0.2, 140.0)];

@@ -12,8 +12,8 @@ use archrock::mechanics::masonry::{
 };
 use archrock::mechanics::stability::{falls, onset};
 use archrock::{
-    Arch, FourLinkArch, FourLinkError, FourLinkRow, GroundMotion, ImpactLaw, ImpactModel, Initial,
-    Model as _, Outcome, Pulse, Request, Sample, Sway,
+    Arch, FourLinkError, FourLinks, GroundMotion, ImpactLaw, ImpactModel, Initial, Model as _,
+    Outcome, Pulse, Request, Sample, Sway,
 };
 use nalgebra::Vector2;
 
@@ -23,23 +23,23 @@ fn ring(embrace_deg: f64) -> Ring {
     Ring::new(0.15, embrace_deg.to_radians()).unwrap()
 }
 
-fn circular(embrace_deg: f64, voussoirs: usize) -> (FourLinkArch, Row) {
+fn circular(embrace_deg: f64, voussoirs: usize) -> (FourLinks, Row) {
     let arch = Arch::new(5.0, 0.15, embrace_deg).unwrap();
     let arch = arch.with_voussoirs(voussoirs).unwrap();
     let row = Row::arch(&arch.ring(), voussoirs, 5.0, 1.0, 2000.0).unwrap();
-    let arch = FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap();
+    let arch = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
     (arch, row)
 }
 
-fn rocking(row: &Row) -> FourLinkRow {
-    FourLinkRow::new(row, ImpactModel::MaxRestitution).unwrap()
+fn rocking(row: &Row) -> FourLinks {
+    FourLinks::of_row(row, ImpactModel::MaxRestitution).unwrap()
 }
 
 fn push(amplitude_g: f64) -> GroundMotion {
     GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, 0.2, 0.0).unwrap()
 }
 
-fn joints(model: &FourLinkRow, impacts: usize, sway: Sway) -> Vec<usize> {
+fn joints(model: &FourLinks, impacts: usize, sway: Sway) -> Vec<usize> {
     let hinges = model.hinges(impacts, sway).into_iter();
     hinges
         .map(|hinge| match hinge {
@@ -157,7 +157,7 @@ fn static_and_kinematic_theorem_agree_on_random_shapes() {
         }
         standing += 1;
         let of_static = SIDES.map(|sway| onset(row, sway).unwrap());
-        match FourLinkRow::new(row, ImpactModel::MaxRestitution) {
+        match FourLinks::of_row(row, ImpactModel::MaxRestitution) {
             Ok(model) => {
                 let free = FreeHinges::new(row.clone()).unwrap();
                 for (sway, of_static) in SIDES.into_iter().zip(&of_static) {
@@ -198,7 +198,7 @@ fn mirror_images_of_uneven_rows() {
             continue;
         };
         let mirrored = masonry.row().mirrored().unwrap();
-        let Ok(own) = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution) else {
+        let Ok(own) = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution) else {
             continue;
         };
         let there = rocking(&mirrored);
@@ -223,7 +223,7 @@ fn mirror_images_of_uneven_rows() {
             }
         }
         let amplitude_g = 2.0 * own.incipient_g();
-        let run = |model: &FourLinkRow, sign: f64| {
+        let run = |model: &FourLinks, sign: f64| {
             model
                 .history(&push(sign * amplitude_g), &Request::default())
                 .unwrap()
@@ -263,7 +263,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
     let masonry = Masonry::new(shape, Piers::default(), None, vec![load]).unwrap();
     let model = rocking(masonry.row());
     for first in SIDES {
-        let chain = model.chain(first);
+        let chain = model.chain_from(first);
         let closing = &chain.link(0).unwrap().mechanism;
         let profile = chain.profile(1);
         let field = closing_field(closing, profile);
@@ -300,7 +300,7 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
     );
     let model = rocking(&row);
     for first in SIDES {
-        let chain = model.chain(first);
+        let chain = model.chain_from(first);
         let link = chain.link(0).unwrap();
         let linkage = &link.link.mechanism;
         let q_rad = 0.3 * link.link.critical_rad;
@@ -334,7 +334,7 @@ fn a_row_with_free_hinges_is_released_as_its_four_links() {
         let Some(masonry) = random_masonry(&mut random) else {
             continue;
         };
-        let Ok(four) = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution) else {
+        let Ok(four) = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution) else {
             continue;
         };
         let free = FreeHinges::new(masonry.row().clone()).unwrap();
@@ -433,12 +433,12 @@ fn measured_restitution_scales_that_of_the_model() {
     };
     let theory = rocking(&row);
     for (factor, most) in [(0.67, 1.0), (0.96, 1.0), (1.9, 1.0)] {
-        let measured = FourLinkRow::new(&row, law(factor)).unwrap();
+        let measured = FourLinks::of_row(&row, law(factor)).unwrap();
         let arch = Arch::new(10.0, 0.15, 157.5)
             .unwrap()
             .with_voussoirs(7)
             .unwrap();
-        let arch = FourLinkArch::new(arch, law(factor)).unwrap();
+        let arch = FourLinks::of_arch(&arch, law(factor)).unwrap();
         for impacts in 1..4 {
             let own = measured.link(impacts).unwrap();
             let there = theory.link(impacts).unwrap();
@@ -451,10 +451,10 @@ fn measured_restitution_scales_that_of_the_model() {
             assert!((arch.link(impacts).unwrap().restitution - expected).abs() < 1e-12);
         }
     }
-    let refused = FourLinkRow::new(&row, law(-0.1)).unwrap_err().to_string();
+    let refused = FourLinks::of_row(&row, law(-0.1)).unwrap_err().to_string();
     assert!(refused.contains("restitution_factor"), "{refused}");
     // No energy is left.
-    let stopped = FourLinkRow::new(&row, law(0.0)).unwrap();
+    let stopped = FourLinks::of_row(&row, law(0.0)).unwrap();
     let summary = stopped
         .simulate(&push(-0.5), &Request::default(), None)
         .unwrap();

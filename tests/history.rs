@@ -9,8 +9,8 @@ use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{
-    FourLinkArch, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
-    State, Sway,
+    Arch, FourLinks, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request,
+    Sample, State, Sway,
 };
 
 /// All values of a history, for bit-by-bit comparisons.
@@ -161,7 +161,7 @@ fn size_and_gravity_only_stretch_time() {
     // R -> 4 R and t -> 2 t, or g -> g/4 and t -> 2 t with the same amplitude in g. These are powers of two, so only
     // the solver's cube roots of step sizes can differ, and times agree to its tolerance.
     let small = semicircle();
-    let large = small.with_mean_radius_m(4.0 * 5.0).unwrap();
+    let large = four_links(4.0 * 5.0, 0.15, 180.0, HingeSites::Anywhere);
     for kind in [Pulse::Rectangular, Pulse::OneSine, Pulse::Ricker] {
         let (short, long) = (pulse(kind, -0.4, 0.25), pulse(kind, -0.4, 0.5));
         let a = run(&small, &short, &request(20.0));
@@ -197,9 +197,10 @@ fn size_and_gravity_only_stretch_time() {
 #[test]
 fn density_and_depth_change_no_bit() {
     let arch = semicircle();
-    let heavy = arch.arch().clone().with_density_kg_m3(2700.0).unwrap();
+    let heavy = Arch::new(5.0, 0.15, 180.0).unwrap();
+    let heavy = heavy.with_density_kg_m3(2700.0).unwrap();
     let heavy = heavy.with_depth_m(3.3).unwrap();
-    let heavy = FourLinkArch::new(heavy, ImpactModel::MaxRestitution).unwrap();
+    let heavy = FourLinks::of_arch(&heavy, ImpactModel::MaxRestitution).unwrap();
     let ground = pulse(Pulse::HalfSine, -0.5, 0.3);
     let (a, b) = (
         run(&arch, &ground, &request(20.0)),

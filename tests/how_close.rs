@@ -7,8 +7,8 @@ use crate::program::{archrock, scenarios, stderr};
 use crate::results::{Row, Table, json, named, strokes};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::arch::FourLinkArch;
 use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_links::FourLinks;
 use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
 use serde_json::Value;
 
@@ -268,7 +268,7 @@ fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
         .unwrap()
         .with_voussoirs(12)
         .unwrap();
-    let links = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution).unwrap();
+    let links = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
     let link = links.link(0).unwrap();
     let free = FreeHinges::of_arch(&arch).unwrap();
     for (part, sway) in [(0.3, Sway::Right), (0.9, Sway::Left)] {

@@ -11,7 +11,7 @@ use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;
-use archrock::{FourLinkRow, ImpactModel, Scenario, Sway};
+use archrock::{FourLinks, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
 use serde_json::Value;
 
@@ -261,10 +261,10 @@ fn after_one_impact(row: &Row, first: Sway) -> Row {
 fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
     let folder = tempfile::tempdir().unwrap();
     let (row, depth_m) = on_a_pier(folder.path());
-    let model = FourLinkRow::new(&row, ImpactModel::MaxRestitution).unwrap();
+    let model = FourLinks::of_row(&row, ImpactModel::MaxRestitution).unwrap();
     let result = json(folder.path(), &["s.toml"]);
     for (first, key) in SIDES.into_iter().zip(["impacts", "impacts_after_left"]) {
-        let chain = model.chain(first);
+        let chain = model.chain_from(first);
         let after = chain.link(1).unwrap();
         let closing = closing_field(&chain.link(0).unwrap().mechanism, chain.profile(1));
         let moved = after.mechanism.field().scaled(after.link.rate_ratio);
@@ -298,9 +298,9 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
 fn the_certificate_is_the_full_closure_of_free_hinges() {
     let folder = tempfile::tempdir().unwrap();
     let (row, _) = on_a_pier(folder.path());
-    let model = FourLinkRow::new(&row, ImpactModel::MaxRestitution).unwrap();
+    let model = FourLinks::of_row(&row, ImpactModel::MaxRestitution).unwrap();
     for first in SIDES {
-        let chain = model.chain(first);
+        let chain = model.chain_from(first);
         let closing = closing_field(&chain.link(0).unwrap().mechanism, chain.profile(1));
         let blocks = after_one_impact(&row, first);
         let free = velocities(&closing, &blocks);

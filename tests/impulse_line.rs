@@ -11,7 +11,7 @@ use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites};
 use archrock::mechanics::geometry::field::Side;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::sway::Sway;
-use archrock::{Arch, FourLinkArch};
+use archrock::{Arch, FourLinks};
 use nalgebra::Vector2;
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
@@ -21,16 +21,16 @@ fn arch(
     embrace_deg: f64,
     sites: HingeSites,
     model: ImpactModel,
-) -> FourLinkArch {
+) -> FourLinks {
     let arch = Arch::new(3.0, thickness_ratio, embrace_deg).unwrap();
     let arch = match sites {
         HingeSites::Anywhere => arch,
         HingeSites::Voussoirs(voussoirs) => arch.with_voussoirs(voussoirs).unwrap(),
     };
-    FourLinkArch::new(arch, model).unwrap()
+    FourLinks::of_arch(&arch, model).unwrap()
 }
 
-fn arches() -> Vec<FourLinkArch> {
+fn arches() -> Vec<FourLinks> {
     let max = ImpactModel::MaxRestitution;
     vec![
         arch(0.15, 180.0, ANYWHERE, max),
@@ -284,7 +284,7 @@ fn mirrored_hinges_put_the_ring_in_tension() {
 #[test]
 fn the_unit_of_impulses_scales_with_density_and_the_cube_of_the_radius() {
     let arch = Arch::new(3.0, 0.15, 180.0).unwrap().with_depth_m(7.0);
-    let arch = FourLinkArch::new(arch.unwrap(), ImpactModel::MaxRestitution).unwrap();
+    let arch = FourLinks::of_arch(&arch.unwrap(), ImpactModel::MaxRestitution).unwrap();
     // Mass rho R^2 per metre of depth times velocity R q'.
     assert!((arch.impulse_unit_n_s_per_m() - 2000.0 * 27.0).abs() < 1e-9);
 }

@@ -8,9 +8,10 @@ use std::process::{Child, Command};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use crate::common::{ARCH, GRAVITY, request, seven_voussoirs};
+use crate::common::{ARCH, GRAVITY, four_links, request};
 use crate::program::{command, done, files, refused};
 use crate::threshold_along::without_impact;
+use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::studies::ending::Ending;
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
@@ -34,7 +35,7 @@ fn a_cell_is_the_history_of_its_scenario() {
     assert_eq!(cells.count(), 6);
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
-        let arch = seven_voussoirs().with_mean_radius_m(mean_radius_m).unwrap();
+        let arch = four_links(mean_radius_m, 0.15, 157.5, HingeSites::Voussoirs(7));
         let ground =
             GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0).unwrap();
         let expected = Ending::of(&arch, &ground, &request(10.0)).unwrap();

@@ -13,7 +13,7 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::{
-    Arch, ArgumentError, Column, Event, FourLinkArch, FourLinkError, GroundMotion, Hinge, History,
+    Arch, ArgumentError, Column, Event, FourLinkError, FourLinks, GroundMotion, Hinge, History,
     ImpactModel, Initial, MechanismModel, Model, OpenHinge, Pose, Pulse, Recorder, Request,
     RockingColumn, Sample, SimulationError, State, Sway,
 };
@@ -65,7 +65,7 @@ fn hinges_of_arches_are_points_of_both_bodies() {
         four_links(1.0, 0.15, 157.5, HingeSites::Voussoirs(7)),
         four_links(2.0, 0.2, 140.0, HingeSites::Anywhere),
     ] {
-        let (ring, radius_m) = (arch.arch().ring(), arch.arch().mean_radius_m());
+        let (ring, radius_m) = (arch.chain().profile(0), arch.length_m());
         let (mut sways, mut largest_rad) = (Vec::new(), 0.0_f64);
         for ground in grounds() {
             for sample in run(&arch, &ground, &sampled(10.0, 0.01)).samples.iter() {
@@ -388,13 +388,12 @@ proptest! {
         };
         prop_assert_eq!(arch.voussoirs(), voussoirs);
         prop_assert_eq!((arch.mean_radius_m(), arch.depth_m(), arch.density_kg_m3()), (again.0, others.0, others.1));
-        match FourLinkArch::new(arch, model) {
+        match FourLinks::of_arch(&arch, model) {
             Ok(model) => {
                 prop_assert!(model.incipient_g().is_finite() && model.incipient_g() > 0.0);
                 prop_assert!(model.joules_per_unit().is_finite() && model.joules_per_unit() > 0.0);
-                if let Err(error) = model.with_mean_radius_m(sizes.0) {
-                    check_named(&error, &[("mean_radius_m", sizes.0)])?;
-                }
+                let unit_n_s_per_m = model.with_size_of(&arch).impulse_unit_n_s_per_m();
+                prop_assert_eq!(unit_n_s_per_m, model.impulse_unit_n_s_per_m());
             }
             Err(FourLinkError::Argument(error)) => check_named(&error, &[("restitution", restitution(model))])?,
             Err(FourLinkError::Limit(error)) => prop_assert!(error.to_string().contains("the arch")),
@@ -515,4 +514,4 @@ fn more_samples_than_a_history_may_have_are_refused() {
 }
 
 /// Its chain is computed once.
-static ARCH: std::sync::LazyLock<FourLinkArch> = std::sync::LazyLock::new(semicircle);
+static ARCH: std::sync::LazyLock<FourLinks> = std::sync::LazyLock::new(semicircle);

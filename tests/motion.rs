@@ -8,10 +8,10 @@ use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::{FourLinkArch, GroundMotion, Outcome, Pulse, Request, Sway};
+use archrock::{FourLinks, GroundMotion, Outcome, Pulse, Request, Sway};
 
 /// `q''` at the start, by the equation of motion written out, with a ground acceleration.
-fn acceleration_at_zero(arch: &FourLinkArch, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
+fn acceleration_at_zero(arch: &FourLinks, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {
     let c = link.mechanism.coefficients(0.0);
     -(GRAVITY * c.s_y + ground_m_s2 * c.s_x) / (arch.length_m() * c.inertia)
 }

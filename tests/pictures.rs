@@ -6,7 +6,8 @@ use std::path::Path;
 use crate::program::{done, printed, scenarios};
 use crate::results::{Table, named, number, points, strokes, texts};
 use archrock::mechanics::four_link::chain::Chain;
-use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::geometry::profile::Profile;
+use archrock::mechanics::geometry::ring::Edge;
 use archrock::output::Figure;
 use archrock::output::scene::Scene;
 use archrock::scenario::Structure;
@@ -15,23 +16,23 @@ use archrock::studies::map::{OverturningMap, outcome, picture};
 use archrock::studies::pictures;
 use archrock::studies::results::Look;
 use archrock::studies::runner::Study as _;
-use archrock::{Arch, FourLinkArch, ImpactModel, Scenario, Sway};
+use archrock::{Arch, FourLinks, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
 use roxmltree::{Document, Node};
 
 /// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
 const PIXEL: f64 = 0.02;
 
-fn four_links(arch: Arch) -> FourLinkArch {
-    FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap()
+fn four_links(arch: Arch) -> FourLinks {
+    FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap()
 }
 
-fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinkArch {
+fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinks {
     four_links(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
 }
 
 /// The impact that leads to a link of the chain after a first sway to the right.
-fn impact(arch: &FourLinkArch, index: usize) -> LinkImpact<'_> {
+fn impact(arch: &FourLinks, index: usize) -> LinkImpact<'_> {
     LinkImpact {
         model: arch,
         first: Sway::Right,
@@ -91,11 +92,11 @@ fn check_hinges(document: &Document<'_>, chain: &Chain, link: usize, sway: Sway)
 }
 
 /// Distance of the curve's points from the axis over the thickness: the eccentricity drawn.
-fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &Ring) -> Vec<f64> {
+fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &dyn Profile) -> Vec<f64> {
     let radius = |point: &Vector2<f64>| sheet.back(*point).norm();
     curve
         .iter()
-        .map(|point| (radius(point) - 1.0) / ring.thickness_ratio())
+        .map(|point| (radius(point) - 1.0) / ring.thickness(0.0))
         .collect()
 }
 
@@ -111,7 +112,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
         assert_eq!(lines.len(), 1);
         let curve = points(&lines[0]);
         let tolerance = 2.0 * PIXEL / (sheet.scale * thickness_ratio);
-        for e in eccentricities(&curve, &sheet, &arch.arch().ring()) {
+        for e in eccentricities(&curve, &sheet, chain.profile(0)) {
             assert!(e.abs() < 0.5 + tolerance, "{e}");
         }
         // Between points of the polyline, about half a pixel apart, it passes through the hinges.
@@ -275,7 +276,7 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     assert!(named(&document, "body 7").is_empty());
     let lines = named(&document, "impulse line");
     assert_eq!(lines.len(), 1);
-    let drawn = eccentricities(&points(&lines[0]), &sheet, &arch.arch().ring());
+    let drawn = eccentricities(&points(&lines[0]), &sheet, chain.profile(0));
     let worst = drawn
         .into_iter()
         .fold(0.0, |worst: f64, e| worst.max(e.abs()));

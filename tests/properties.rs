@@ -6,7 +6,7 @@ use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{
-    FourLinkArch, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
+    FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,
 };
 use proptest::prelude::*;
@@ -58,7 +58,7 @@ proptest! {
     ) {
         let arch = common::arch(radius, t, embrace, sites).with_depth_m(0.7).unwrap();
         let arch = arch.with_density_kg_m3(1900.0).unwrap();
-        let Ok(arch) = FourLinkArch::new(arch, model) else { return Ok(()) };
+        let Ok(arch) = FourLinks::of_arch(&arch, model) else { return Ok(()) };
         let incipient = arch.incipient_g() * gravity;
         let ground = ground.map_or_else(GroundMotion::still, |(pulse, factor, duration_s, start_s)| {
             GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s).unwrap()

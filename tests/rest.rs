@@ -4,7 +4,7 @@ use crate::program::{scenario_files, scenarios};
 use std::ops::ControlFlow;
 
 use archrock::{
-    Arch, FourLinkArch, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
+    Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
     Scenario, Sway,
 };
 
@@ -53,7 +53,7 @@ fn an_arch_that_hardly_stands_does_not_lock() {
         .unwrap();
     let incipient_g = arch.incipient().unwrap().acceleration_g;
     assert!(incipient_g < 2e-4);
-    let model = FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap();
+    let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
     let amplitude_m_s2 = 0.005_814_512_113_921_563 * 9.81;
     let ground = GroundMotion::pulse(
         Pulse::AntisymmetricRicker,

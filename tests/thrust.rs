@@ -12,15 +12,14 @@ use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
-use archrock::mechanics::geometry::profile::Profile as _;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::{
-    Arch, Column, FourLinkArch, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
+    Arch, Column, FourLinks, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,
 };
 use nalgebra::{SMatrix, SVector, Vector2};
 
-fn arches() -> [FourLinkArch; 4] {
+fn arches() -> [FourLinks; 4] {
     [
         semicircle(),
         four_links(5.0, 0.15, 157.5, HingeSites::Anywhere),
@@ -90,7 +89,7 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
 #[test]
 fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
     for arch in arches() {
-        let ring = arch.arch().ring();
+        let ring = arch.chain().profile(0);
         let mechanism = arch.chain().link(0).unwrap().mechanism;
         let linkage = &arch.link(0).unwrap().mechanism;
         let [a, b, c, d] = mechanism.hinges_rad();
@@ -268,7 +267,7 @@ fn a_section_in_tension_has_a_finite_excess_that_grows_with_it() {
 }
 
 fn pulse_history(
-    arch: &FourLinkArch,
+    arch: &FourLinks,
     amplitude_g: f64,
     (start_s, duration_s): (f64, f64),
     end_s: f64,
@@ -284,7 +283,7 @@ fn pulse_history(
 }
 
 /// Eccentricity of the line at a sample of the first half cycle, swaying right.
-fn eccentricity(arch: &FourLinkArch, sample: &Sample, angle_deg: f64) -> f64 {
+fn eccentricity(arch: &FourLinks, sample: &Sample, angle_deg: f64) -> f64 {
     assert_eq!(sample.state, State::Rocking(Sway::Right));
     let linkage = &arch.link(0).unwrap().mechanism;
     let motion = motion(
@@ -350,7 +349,7 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
         if arch.chain().sites() != HingeSites::Anywhere {
             continue;
         }
-        let ring = arch.arch().ring();
+        let ring = arch.chain().profile(0);
         let weight = ring.moments_to(ring.end()).mass;
         let linkage = &arch.link(0).unwrap().mechanism;
         let lines = motions(linkage)
@@ -360,7 +359,7 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
         let at_rest = ThrustLine::at_rest(
             arch.chain().incipient(),
             arch.chain().incipient(),
-            &ring,
+            ring,
             push,
         );
         for line in lines.chain([at_rest]) {
@@ -463,9 +462,8 @@ fn lines(model: &impl Model, ground: &GroundMotion) -> Vec<Sample> {
 #[test]
 fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
     let arch = seven_voussoirs();
-    let ring = arch.arch().ring();
-    let sections = arch.arch().thrust_sections_rad();
-    assert_eq!(sections, ring.sections(7));
+    let ring = arch.chain().profile(0);
+    let sections = ring.sections(7);
     let mut swayed = [0, 0];
     for amplitude in [-0.5, 0.5] {
         let ground =

@@ -4,7 +4,8 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
 
-use archrock::dynamics::model::{FourLinkModel, MechanismModel};
+use archrock::FourLinks;
+use archrock::dynamics::model::MechanismModel;
 use archrock::mechanics::friction::FrictionError;
 use archrock::mechanics::sway::Sway;
 use archrock::output::pretty;
@@ -73,7 +74,7 @@ impl From<NoLimit> for Failure {
 }
 
 /// The four-link model of a scenario; the error for a column begins with `what`, a subject and its verb.
-pub fn four_links(scenario: &Scenario, what: &str) -> Result<Box<dyn FourLinkModel>, Failure> {
+pub fn four_links(scenario: &Scenario, what: &str) -> Result<FourLinks, Failure> {
     let model = scenario.structure().four_links(scenario.motion().impact());
     model
         .map_err(|error| Failure::Input(error.to_string()))?

@@ -65,7 +65,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     let options = "--models, --certificate, --line and --plot are";
     let model = commands::four_links(&scenario, options)?;
-    let model = &*model;
+    let model = &model;
     let asked = LinkImpact {
         model,
         first,

@@ -66,7 +66,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::four_link::arch::FourLinkError;
+use crate::mechanics::four_links::FourLinkError;
 pub use assignment::Assignment;
 pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};

@@ -12,8 +12,8 @@ use archrock::mechanics::masonry::{
 };
 use archrock::mechanics::stability::falls;
 use archrock::{
-    Arch, FourLinkArch, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample,
-    Scenario, Sway,
+    Arch, FourLinks, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Scenario,
+    Sway,
 };
 use proptest::prelude::*;
 
@@ -53,18 +53,18 @@ pub fn four_links(
     thickness_ratio: f64,
     embrace_deg: f64,
     sites: HingeSites,
-) -> FourLinkArch {
+) -> FourLinks {
     let arch = arch(mean_radius_m, thickness_ratio, embrace_deg, sites);
-    FourLinkArch::new(arch, ImpactModel::MaxRestitution).unwrap()
+    FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap()
 }
 
 /// The arch of most published numbers: a semicircle of t/R = 0.15, R = 5 m.
-pub fn semicircle() -> FourLinkArch {
+pub fn semicircle() -> FourLinks {
     four_links(5.0, 0.15, 180.0, HingeSites::Anywhere)
 }
 
 /// 157.5 degrees, t/R = 0.15, seven voussoirs, R = 10 m.
-pub fn seven_voussoirs() -> FourLinkArch {
+pub fn seven_voussoirs() -> FourLinks {
     four_links(10.0, 0.15, 157.5, HingeSites::Voussoirs(7))
 }
 

@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 pub use crate::common::{Random, semicircle};
-use archrock::{FourLinkArch, GroundMotion, History, Initial, Model as _, Request, Sample};
+use archrock::{FourLinks, GroundMotion, History, Initial, Model as _, Request, Sample};
 
 pub const G: f64 = 9.81;
 
 /// History with samples every 5 ms. It comes to rest below 1e-8 of the energy barrier for the gravity `G`,
 /// whatever the actual gravity.
 pub fn run(
-    model: &FourLinkArch,
+    model: &FourLinks,
     ground: &GroundMotion,
     gravity_m_s2: f64,
     initial: Option<Initial>,

@@ -18,7 +18,6 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
-use crate::mechanics::four_link::chain::Chain;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
 
@@ -294,16 +293,6 @@ pub trait MechanismModel: Model {
         ground: &GroundMotion,
         request: &Request,
     ) -> Result<Option<Sway>, SimulationError>;
-}
-
-/// A model that rocks as four links, with hinges at sections of a ring or at joints of a row of blocks, and with what
-/// only such a model has.
-pub trait FourLinkModel: MechanismModel {
-    /// Its chain of mechanisms after a first sway to this side.
-    fn chain_from(&self, first: Sway) -> &Chain;
-
-    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
-    fn impulse_unit_n_s_per_m(&self) -> f64;
 }
 
 /// What is to be simulated, and how accurately.

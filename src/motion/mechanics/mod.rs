@@ -11,6 +11,7 @@ pub(crate) mod coulomb;
 pub mod elastic_joint;
 pub mod equivalent;
 pub mod four_link;
+pub mod four_links;
 pub mod friction;
 pub mod geometry;
 pub(crate) mod joints;

@@ -23,14 +23,13 @@ use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::elastic_joints::ElasticJointsError;
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
-use crate::dynamics::model::{FourLinkModel, MechanismModel};
+use crate::dynamics::model::MechanismModel;
 use crate::mechanics::arch::{self, Arch};
 use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError, Supports};
 use crate::mechanics::column::{Column, RockingColumn};
-use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
-use crate::mechanics::four_link::row::FourLinkRow;
+use crate::mechanics::four_links::{FourLinkError, FourLinks};
 use crate::mechanics::masonry::{Carried, CircularArch, Masonry, PlacedLoad, Shape};
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
@@ -140,7 +139,7 @@ impl Structure {
         impact: impl Into<ImpactLaw>,
     ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
-            Self::Arch(arch) => Box::new(FourLinkArch::new(arch.clone(), impact)?),
+            Self::Arch(arch) => Box::new(FourLinks::of_arch(arch, impact)?),
             Self::Column(column) if !column.ties().is_empty() => return Err(FourLinkError::Ties),
             Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
             Self::Masonry(masonry) => Box::new(four_link_row(masonry, impact)?),
@@ -154,11 +153,11 @@ impl Structure {
     pub fn four_links(
         &self,
         impact: impl Into<ImpactLaw>,
-    ) -> Result<Option<Box<dyn FourLinkModel>>, FourLinkError> {
+    ) -> Result<Option<FourLinks>, FourLinkError> {
         Ok(match self {
-            Self::Arch(arch) => Some(Box::new(FourLinkArch::new(arch.clone(), impact)?)),
+            Self::Arch(arch) => Some(FourLinks::of_arch(arch, impact)?),
             Self::Column(_) => None,
-            Self::Masonry(masonry) => Some(Box::new(four_link_row(masonry, impact)?)),
+            Self::Masonry(masonry) => Some(four_link_row(masonry, impact)?),
         })
     }
 
@@ -230,12 +229,12 @@ impl Structure {
         match self {
             Self::Arch(arch) => {
                 // The limit position does not depend on the impact model.
-                let arch = FourLinkArch::new(arch.clone(), ImpactModel::MaxRestitution);
+                let arch = FourLinks::of_arch(arch, ImpactModel::MaxRestitution);
                 arch.ok().map(|arch| arch.limit_rad())
             }
             Self::Column(_) => Some(FRAC_PI_2),
             Self::Masonry(masonry) => {
-                let row = FourLinkRow::new(masonry.row(), ImpactModel::MaxRestitution).ok()?;
+                let row = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution).ok()?;
                 let sides = Sway::ALL.iter().map(|sway| row.limit_towards_rad(*sway));
                 Some(sides.fold(f64::INFINITY, f64::min))
             }
@@ -277,9 +276,9 @@ impl Structure {
 fn four_link_row(
     masonry: &Masonry,
     impact: impl Into<ImpactLaw>,
-) -> Result<FourLinkRow, FourLinkError> {
+) -> Result<FourLinks, FourLinkError> {
     let depth_m = masonry.shape().material().depth_m;
-    Ok(FourLinkRow::new(masonry.row(), impact)?.with_depth_m(depth_m)?)
+    Ok(FourLinks::of_row(masonry.row(), impact)?.with_depth_m(depth_m)?)
 }
 
 /// The contents of a table that describes a structure.

@@ -11,7 +11,7 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_link::arch::FourLinkError;
+use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::parts::Parts;
 use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::sides::Sides;

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 pub use self::told::chain;
 use super::results::Answer;
-use crate::dynamics::model::{FourLinkModel, MechanismModel};
+use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
 };
@@ -17,6 +17,7 @@ use crate::mechanics::four_link::impact::{
 };
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::FourLink;
+use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
@@ -26,7 +27,7 @@ use crate::scenario::Scenario;
 #[derive(Clone, Copy, Debug)]
 pub struct LinkImpact<'a> {
     /// The model of the structure.
-    pub model: &'a dyn FourLinkModel,
+    pub model: &'a FourLinks,
     /// The first sway.
     pub first: Sway,
     /// Number of the impact, from 1, and of the link to which it leads.

@@ -5,11 +5,12 @@
 use serde_json::{Value, json};
 
 use super::LinkImpact;
-use crate::dynamics::model::{FourLinkModel, MechanismModel};
+use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
@@ -38,7 +39,7 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value
 }
 
 /// The same for four links, with the impulses and the extremes of the impulse line.
-pub(super) fn impacts(model: &dyn FourLinkModel, first: Sway, count: usize) -> Value {
+pub(super) fn impacts(model: &FourLinks, first: Sway, count: usize) -> Value {
     let mut impacts = chain(model, first, count);
     for (index, told) in (1..).zip(&mut impacts) {
         let impact = LinkImpact {

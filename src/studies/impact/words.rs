@@ -3,12 +3,13 @@
 use std::fmt::Write as _;
 
 use super::LinkImpact;
-use crate::dynamics::model::{FourLinkModel, MechanismModel};
+use crate::dynamics::model::MechanismModel;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::four_link::resultant::{Extremes, Extremum};
+use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -134,7 +135,7 @@ fn initial(edge: Edge) -> &'static str {
     }
 }
 
-pub(super) fn impulses_text(model: &dyn FourLinkModel, first: Sway, count: usize) -> String {
+pub(super) fn impulses_text(model: &FourLinks, first: Sway, count: usize) -> String {
     let unit = model.impulse_unit_n_s_per_m();
     let lines = || {
         (1..=count).map_while(|index| {

@@ -8,7 +8,7 @@ use thiserror::Error;
 pub use self::told::{mechanism_json, row_json};
 use super::results::Answer;
 use crate::dynamics::free_hinges::FreeHingesError;
-use crate::mechanics::four_link::arch::FourLinkError;
+use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::friction::FrictionError;
 use crate::mechanics::settling::SettlingError;
 use crate::mechanics::stability::StabilityError;

@@ -13,7 +13,7 @@ use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::{Block, Equivalent};
-use crate::mechanics::four_link::arch::FourLinkError;
+use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stability::{RowOnset, onset};

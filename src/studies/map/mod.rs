@@ -20,9 +20,10 @@ use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::spread::objection;
-use crate::mechanics::four_link::arch::{FourLinkArch, FourLinkError};
+use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::LimitError;
+use crate::mechanics::four_links::{FourLinkError, FourLinks};
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::{
     Axis, Ground, ModelError, Motion, PulseGround, Quantity, Scaling, Scenario, Structure,
@@ -93,14 +94,14 @@ pub struct OverturningMap<'a> {
 #[derive(Clone, Debug)]
 enum Standing {
     /// An arch of four links, of any size.
-    Arch(FourLinkArch),
+    Arch(Arch, FourLinks),
     Model(Arc<dyn Model>),
 }
 
 impl Standing {
     fn model(&self) -> &dyn Model {
         match self {
-            Self::Arch(arch) => arch,
+            Self::Arch(_, links) => links,
             Self::Model(model) => &**model,
         }
     }
@@ -322,7 +323,8 @@ impl<'a> OverturningMap<'a> {
             let structure = structure.map_err(FourLinkError::from)?;
             Ok(match (self.moves(index, scenario), structure) {
                 (Motion::FourLinks(law), Structure::Arch(arch)) => {
-                    Standing::Arch(FourLinkArch::new(arch, law)?)
+                    let links = FourLinks::of_arch(&arch, law)?;
+                    Standing::Arch(arch, links)
                 }
                 (motion, structure) => {
                     Standing::Model(motion.model_for_many_cases(&structure)?.into())
@@ -331,9 +333,11 @@ impl<'a> OverturningMap<'a> {
         };
         let standing = self.structures.get(self.place(index), make)?;
         Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
-            (Standing::Arch(arch), Some(mean_radius_m)) => {
+            (Standing::Arch(arch, links), Some(mean_radius_m)) => {
                 let arch = arch.with_mean_radius_m(mean_radius_m);
-                Standing::Arch(arch.map_err(FourLinkError::from)?)
+                let arch = arch.map_err(FourLinkError::from)?;
+                let links = links.with_size_of(&arch);
+                Standing::Arch(arch, links)
             }
             (standing, _) => standing,
         })

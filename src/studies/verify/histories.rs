@@ -11,7 +11,7 @@ use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{EventKind, Outcome, State};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
-use crate::mechanics::four_link::arch::FourLinkError;
+use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Scenario, Series, StateRule};
 use crate::studies::ensemble::statistics::{bootstrap, interval};

@@ -15,18 +15,14 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{
     Cost, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
 };
-use crate::dynamics::model::{
-    FourLinkModel, MechanismModel, Model, Recorder, Request, SimulationError,
-};
+use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Demand, Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
-use crate::mechanics::four_link::arch::FourLinkArch;
-use crate::mechanics::four_link::chain::Chain;
-use crate::mechanics::four_link::row::FourLinkRow;
+use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
@@ -118,7 +114,7 @@ macro_rules! models {
     )+};
 }
 
-models!(FourLinkArch, FourLinkRow, RockingColumn);
+models!(FourLinks, RockingColumn);
 
 /// The history of a chain of mechanisms.
 fn history_of<C: MechanismChain + MechanismModel>(
@@ -207,26 +203,6 @@ fn history_of<C: MechanismChain + MechanismModel>(
         cost: finish.cost,
         row: None,
     })
-}
-
-impl FourLinkModel for FourLinkArch {
-    fn chain_from(&self, _first: Sway) -> &Chain {
-        self.chain()
-    }
-
-    fn impulse_unit_n_s_per_m(&self) -> f64 {
-        self.impulse_unit_n_s_per_m()
-    }
-}
-
-impl FourLinkModel for FourLinkRow {
-    fn chain_from(&self, first: Sway) -> &Chain {
-        self.chain(first)
-    }
-
-    fn impulse_unit_n_s_per_m(&self) -> f64 {
-        self.impulse_unit_n_s_per_m()
-    }
 }
 
 /// The structure on its ground, if the request is valid.

@@ -10,7 +10,7 @@ use crate::dynamics::model::Initial;
 use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::row::FourLinkRow;
+use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
@@ -59,7 +59,7 @@ pub(in crate::dynamics) struct RigidRow {
 #[derive(Clone, Debug)]
 enum FirstMechanism {
     /// Four links.
-    FourLinks(FourLinkRow),
+    FourLinks(FourLinks),
     /// A stack turns about an edge of its base.
     Base,
 }
@@ -69,7 +69,7 @@ impl FirstMechanism {
         match row.supports() {
             Supports::Left => Some(Self::Base),
             // The impact model is required, but not used: the first mechanism comes before any impact.
-            Supports::Both => FourLinkRow::new(row, ImpactModel::MaxRestitution)
+            Supports::Both => FourLinks::of_row(row, ImpactModel::MaxRestitution)
                 .ok()
                 .map(Self::FourLinks),
         }

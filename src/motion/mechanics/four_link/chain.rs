@@ -6,17 +6,13 @@
 
 use std::sync::{Arc, OnceLock};
 
-use nalgebra::Vector2;
-
 use super::impact::{Impact, ImpactLaw, impact, impact_onto};
 use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
-use super::thrust::ThrustLine;
-use crate::mechanics::chain::{Demand, Hinge, Link};
+use crate::mechanics::chain::Link;
 use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::sway::Sway;
 
 /// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
 /// pair. The effect on `r`, which is flat at a maximum, is far below what the search resolves.
@@ -153,70 +149,6 @@ impl Chain {
             }
         }
         Some(ArchLink::new(profile, impact, self.law))
-    }
-}
-
-/// The chains after a first sway to the right and to the left: one and the same for a structure that is its own
-/// mirror image.
-#[derive(Clone, Debug)]
-pub(crate) struct Chains {
-    right: Arc<Chain>,
-    left: Arc<Chain>,
-}
-
-impl Chains {
-    pub fn symmetric(chain: Chain) -> Self {
-        let right = Arc::new(chain);
-        Self {
-            left: right.clone(),
-            right,
-        }
-    }
-
-    pub fn new(right: Chain, left: Chain) -> Self {
-        Self {
-            right: Arc::new(right),
-            left: Arc::new(left),
-        }
-    }
-
-    pub fn from(&self, first: Sway) -> &Chain {
-        match first {
-            Sway::Right => &self.right,
-            Sway::Left => &self.left,
-        }
-    }
-
-    pub fn link(&self, first: Sway, impacts: usize) -> Option<&Link<Linkage>> {
-        self.from(first).link(impacts).map(|link| &link.link)
-    }
-
-    pub fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
-        let (right, left) = (self.right.incipient(), self.left.incipient());
-        ThrustLine::at_rest(right, left, self.right.profile(0), body_force_g)
-    }
-
-    pub fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
-        self.thrust_at_rest(body_force_g).demand(self.right.sites())
-    }
-
-    /// Hinges from left to right after this many impacts, when that mechanism sways to this side.
-    pub fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let chain = self.from(sway.before(impacts));
-        chain.link(impacts).map_or(Vec::new(), |link| {
-            let profile = chain.profile(impacts);
-            link.mechanism
-                .named_hinges_from_left(profile, sway)
-                .to_vec()
-        })
-    }
-
-    pub fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
-        let link = self.from(sway.before(impacts)).link(impacts);
-        let line = link.and_then(|link| link.impulse_line.as_ref());
-        line.map_or(Vec::new(), |line| {
-            line.hinge_impulses_from_left(sway).to_vec()
-        })
     }
 }
 

@@ -8,9 +8,8 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::field::turned;
-use super::ring::{Edge, MassMoments, Ring};
-use crate::mechanics::blocks::{Joint, Row, Supports};
+use super::rigid::{MassMoments, turned};
+use super::ring::{Edge, Ring};
 
 /// Sections with two edges each, and the mass before each of them.
 ///
@@ -118,104 +117,5 @@ impl Profile for Ring {
 
     fn shared(&self) -> Arc<dyn Profile> {
         Arc::new(*self)
-    }
-}
-
-/// A row of blocks between two supports, whose sections are its joints. Its units are its size and its whole mass.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JointedProfile {
-    joints: Vec<Joint>,
-    /// Moments before every joint.
-    moments: Vec<MassMoments>,
-    /// Outlines of every block; shared, because every linkage keeps its profile.
-    outlines: Arc<[Vec<Vector2<f64>>]>,
-}
-
-impl JointedProfile {
-    /// The profile of a row; `None` for a stack, which has no right support.
-    #[must_use]
-    pub fn new(row: &Row) -> Option<Self> {
-        if row.supports() == Supports::Left {
-            return None;
-        }
-        let (per_m, per_kg) = (row.size_m().recip(), row.mass_kg().recip());
-        let mut before = MassMoments::NONE;
-        let mut moments = vec![before];
-        for block in row.blocks() {
-            let own = block.moments_at(block.centre_m);
-            before = before
-                + MassMoments {
-                    mass: own.mass * per_kg,
-                    first: own.first * (per_kg * per_m),
-                    polar: own.polar * (per_kg * per_m * per_m),
-                };
-            moments.push(before);
-        }
-        let joints = row.joints().iter();
-        Some(Self {
-            joints: joints
-                .map(|joint| Joint {
-                    intrados_m: joint.intrados_m * per_m,
-                    extrados_m: joint.extrados_m * per_m,
-                })
-                .collect(),
-            moments,
-            outlines: (row.outlines_m().iter())
-                .map(|outline| outline.iter().map(|corner| corner * per_m).collect())
-                .collect(),
-        })
-    }
-
-    /// Number of its joints.
-    #[must_use]
-    pub fn joints(&self) -> usize {
-        self.joints.len()
-    }
-
-    /// The joint at a section.
-    fn index(&self, section: f64) -> usize {
-        (section.round().max(0.0) as usize).min(self.joints.len() - 1)
-    }
-
-    fn at(&self, section: f64) -> &Joint {
-        &self.joints[self.index(section)]
-    }
-}
-
-impl Profile for JointedProfile {
-    fn end(&self) -> f64 {
-        (self.joints.len() - 1) as f64
-    }
-
-    fn point(&self, section: f64, edge: Edge) -> Vector2<f64> {
-        self.at(section).corner_m(edge)
-    }
-
-    fn outward(&self, section: f64) -> Vector2<f64> {
-        self.at(section).along()
-    }
-
-    fn thickness(&self, section: f64) -> f64 {
-        self.at(section).thickness_m()
-    }
-
-    fn moments_to(&self, section: f64) -> MassMoments {
-        self.moments[self.index(section)]
-    }
-
-    fn sections(&self, _: usize) -> Vec<f64> {
-        (0..self.joints.len()).map(|joint| joint as f64).collect()
-    }
-
-    fn joint(&self, section: f64) -> Option<usize> {
-        Some(self.index(section))
-    }
-
-    fn outlines(&self, from: f64, to: f64) -> Option<&[Vec<Vector2<f64>>]> {
-        self.outlines.get(self.index(from)..self.index(to))
-    }
-
-    fn shared(&self) -> Arc<dyn Profile> {
-        Arc::new(self.clone())
     }
 }

@@ -1,0 +1,257 @@
+//! A structure that rocks as four links: an arch with hinges at sections of its ring, or a row of blocks between two supports with
+//! hinges at its joints.
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::arch::{Arch, DEPTH_M, MAGNITUDE};
+use super::blocks::Row;
+use super::chain::{Demand, Hinge, Link, MechanismChain, Motion};
+use super::contact::ContactError;
+use super::four_link::chain::Chain;
+use super::four_link::impact::ImpactLaw;
+use super::four_link::jointed::JointedProfile;
+use super::four_link::limit::{LimitError, incipient_of};
+use super::four_link::linkage::Linkage;
+use super::four_link::mechanism::HingeSites;
+use super::four_link::thrust::ThrustLine;
+use super::geometry::profile::Profile as _;
+use super::stability::falls;
+use super::sway::Sway;
+use crate::argument::{ArgumentError, within};
+
+/// A structure with its chains of four-link mechanisms under an impact law. Chains depend on neither size nor material, and clones
+/// share them.
+#[derive(Clone, Debug)]
+pub struct FourLinks {
+    size: Size,
+    /// Sections at which lines of thrust are reported.
+    sections: Vec<f64>,
+    /// After a first sway to the right and to the left: one chain for a structure that is its own mirror image.
+    chains: [Arc<Chain>; 2],
+}
+
+/// The units of a structure.
+#[derive(Clone, Copy, Debug)]
+struct Size {
+    length_m: f64,
+    mass_kg: f64,
+    impulse_n_s_per_m: f64,
+}
+
+impl Size {
+    fn of(arch: &Arch) -> Self {
+        let (length_m, density_kg_m3) = (arch.mean_radius_m(), arch.density_kg_m3());
+        Self {
+            length_m,
+            mass_kg: density_kg_m3 * arch.depth_m() * length_m * length_m,
+            impulse_n_s_per_m: density_kg_m3 * length_m.powi(3),
+        }
+    }
+}
+
+/// Why a structure does not rock as four links.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum FourLinkError {
+    /// It does not start as one.
+    #[error(transparent)]
+    Limit(#[from] LimitError),
+    /// It is a free-standing stack.
+    #[error("a stack on one support has no four links: give [free_hinges] or [elastic_joints]")]
+    Stack,
+    /// It has ties.
+    #[error(
+        "four links take no ties: what a tie pulls changes as the links move, and the mechanisms after impacts are found from \
+         weights alone; give [free_hinges] or [elastic_joints]"
+    )]
+    Ties,
+    /// A row of blocks does not start as four links to this side.
+    #[error(
+        "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges] or \
+         [elastic_joints], which take any mechanism", side = .sway.name()
+    )]
+    Row {
+        /// To which side.
+        sway: Sway,
+        /// Why.
+        error: LimitError,
+    },
+    /// It could not be determined whether the row stands.
+    #[error(transparent)]
+    Contact(#[from] ContactError),
+    /// The restitution coefficient is out of range.
+    #[error(transparent)]
+    Argument(#[from] ArgumentError),
+}
+
+impl FourLinks {
+    /// An arch.
+    ///
+    /// # Errors
+    /// When the arch cannot stand or does not start as a four-link mechanism, or when a number of the law is not allowed.
+    pub fn of_arch(arch: &Arch, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
+        let law = law.into();
+        law.check()?;
+        let incipient = arch.incipient()?.clone();
+        let ring = arch.ring().shared();
+        let chain = Chain::new([ring.clone(), ring], arch.sites(), incipient, law);
+        let chain = Arc::new(chain);
+        Ok(Self {
+            size: Size::of(arch),
+            sections: arch.thrust_sections_rad(),
+            chains: [chain.clone(), chain],
+        })
+    }
+
+    /// A row of blocks, 1 m deep.
+    ///
+    /// # Errors
+    /// When it is a stack, has ties, falls under its own weight, starts as another mechanism to either side, or a number of the law is
+    /// not allowed.
+    pub fn of_row(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
+        let law = law.into();
+        law.check()?;
+        if !row.ties().is_empty() {
+            return Err(FourLinkError::Ties);
+        }
+        let profiles = [Some(row), row.mirrored().as_ref()].map(|row| JointedProfile::new(row?));
+        let [Some(own), Some(mirrored)] = profiles else {
+            return Err(FourLinkError::Stack);
+        };
+        if falls(row)?.is_some() {
+            return Err(LimitError::CannotStand.into());
+        }
+        let sections = own.sections(0);
+        let sites = HingeSites::Voussoirs(row.blocks().len());
+        let [own, mirrored] = [own, mirrored].map(|profile| profile.shared());
+        let chain = |sway| {
+            let profiles = match sway {
+                Sway::Right => [own.clone(), mirrored.clone()],
+                Sway::Left => [mirrored.clone(), own.clone()],
+            };
+            let incipient = if sections.len() < 4 {
+                Err(LimitError::NoPush)
+            } else {
+                incipient_of(&*profiles[0], sites)
+            };
+            let incipient = incipient.map_err(|error| FourLinkError::Row { sway, error })?;
+            Ok::<_, FourLinkError>(Arc::new(Chain::new(profiles, sites, incipient, law)))
+        };
+        let chains = [chain(Sway::Right)?, chain(Sway::Left)?];
+        let size = Size {
+            length_m: row.size_m(),
+            mass_kg: row.mass_kg(),
+            impulse_n_s_per_m: row.mass_kg() * row.size_m() / DEPTH_M,
+        };
+        Ok(Self {
+            size,
+            sections,
+            chains,
+        })
+    }
+
+    /// An arch of the same shape, which shares the chain.
+    #[must_use]
+    pub fn with_size_of(&self, arch: &Arch) -> Self {
+        Self {
+            size: Size::of(arch),
+            ..self.clone()
+        }
+    }
+
+    /// A row of blocks with another depth out of plane, in metres. It affects only the impulses, which are given per metre of depth: the
+    /// blocks have their masses.
+    ///
+    /// # Errors
+    /// When it is outside 0.001 to 1e6.
+    pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
+        within("depth_m", depth_m, MAGNITUDE)?;
+        self.size.impulse_n_s_per_m = self.size.mass_kg * self.size.length_m / depth_m;
+        Ok(self)
+    }
+
+    /// The chain of mechanisms after a first sway to the right; of a structure that is its own mirror image, after any.
+    #[must_use]
+    pub fn chain(&self) -> &Chain {
+        self.chain_from(Sway::Right)
+    }
+
+    /// The chain of mechanisms after a first sway to this side.
+    #[must_use]
+    pub fn chain_from(&self, first: Sway) -> &Chain {
+        match first {
+            Sway::Right => &self.chains[0],
+            Sway::Left => &self.chains[1],
+        }
+    }
+
+    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    #[must_use]
+    pub const fn impulse_unit_n_s_per_m(&self) -> f64 {
+        self.size.impulse_n_s_per_m
+    }
+
+    fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
+        let [right, left] = [&self.chains[0], &self.chains[1]].map(|chain| chain.incipient());
+        ThrustLine::at_rest(right, left, self.chain().profile(0), body_force_g)
+    }
+}
+
+impl MechanismChain for FourLinks {
+    type Mechanism = Linkage;
+
+    fn length_m(&self) -> f64 {
+        self.size.length_m
+    }
+
+    fn mass_unit_kg(&self) -> f64 {
+        self.size.mass_kg
+    }
+
+    fn incipient_towards_g(&self, sway: Sway) -> f64 {
+        self.chain_from(sway).incipient().acceleration_g
+    }
+
+    fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
+        mechanism.thrust_line(motion).demand(self.chain().sites())
+    }
+
+    fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        let line = self.thrust_at_rest(body_force_g);
+        line.demand(self.chain().sites())
+    }
+
+    fn eccentricity_ratios(&self, mechanism: &Linkage, motion: &Motion) -> Vec<Option<f64>> {
+        let line = mechanism.thrust_line(motion);
+        line.eccentricity_ratios(&self.sections)
+    }
+
+    fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
+        let line = self.thrust_at_rest(body_force_g);
+        line.eccentricity_ratios(&self.sections)
+    }
+
+    fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Linkage>> {
+        let link = self.chain_from(first).link(impacts);
+        link.map(|link| &link.link)
+    }
+
+    fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
+        let chain = self.chain_from(sway.before(impacts));
+        chain.link(impacts).map_or(Vec::new(), |link| {
+            let profile = chain.profile(impacts);
+            let hinges = link.mechanism.named_hinges_from_left(profile, sway);
+            hinges.to_vec()
+        })
+    }
+
+    fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
+        let link = self.chain_from(sway.before(impacts)).link(impacts);
+        let line = link.and_then(|link| link.impulse_line.as_ref());
+        line.map_or(Vec::new(), |line| {
+            line.hinge_impulses_from_left(sway).to_vec()
+        })
+    }
+}
