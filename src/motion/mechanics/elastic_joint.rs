@@ -14,10 +14,10 @@ mod statics;
 mod structure;
 mod tie;
 
-pub use contact::{Contact, Fibre, Memory, Pressing, Rubbing};
+pub use contact::{Contact, ElasticJoint, Fibre, Memory, Pressing, Rubbing};
 pub use kinematics::{Action, Gap, Link, Place};
 pub use statics::{Rest, RestError};
 pub use structure::{
-    Body, ElasticJoint, ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness,
+    Body, ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness,
 };
 pub use tie::BoundTie;

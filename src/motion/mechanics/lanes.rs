@@ -161,6 +161,40 @@ impl<const L: usize> Real for Lanes<L> {
     }
 }
 
+/// Implements access to single lanes of a struct that is remembered: fields, and after a semicolon fields that are pairs.
+macro_rules! remembered {
+    ($type:ident { $($field:ident),+ $(; $($pair:ident),+)? }) => {
+        impl<R: Real> $type<R> {
+            /// Nothing has happened.
+            #[must_use]
+            pub fn none() -> Self {
+                let zero = R::of(0.0);
+                Self { $($field: zero,)+ $($($pair: [zero; 2],)+)? }
+            }
+        }
+
+        impl<const L: usize> $type<Lanes<L>> {
+            /// Sets one lane.
+            pub fn set(&mut self, lane: usize, alone: &$type<Lanes<1>>) {
+                $(self.$field.0[lane] = alone.$field.0[0];)+
+                $($(for (part, from) in self.$pair.iter_mut().zip(&alone.$pair) {
+                    part.0[lane] = from.0[0];
+                })+)?
+            }
+
+            /// One lane.
+            #[must_use]
+            pub fn lane(&self, lane: usize) -> $type<Lanes<1>> {
+                $type {
+                    $($field: Lanes([self.$field.0[lane]]),)+
+                    $($($pair: self.$pair.map(|part| Lanes([part.0[lane]])),)+)?
+                }
+            }
+        }
+    };
+}
+pub(crate) use remembered;
+
 /// A number with its derivatives with respect to `D` variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const D: usize> {

@@ -8,7 +8,7 @@ use thiserror::Error;
 
 use super::block::Block;
 use super::geometry::rigid::{Momentum, Twist, mirrored};
-use super::lanes::{Lanes, Real, both};
+use super::lanes::{Lanes, Real, both, remembered};
 
 /// Where a tie holds on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -393,6 +393,15 @@ pub struct TieMemory<R> {
     pub taken_j: R,
 }
 
+remembered!(TieMemory {
+    stretch_m,
+    force_n,
+    peak_n,
+    yielded_m,
+    intact,
+    taken_j
+});
+
 impl<R: Real> TieMemory<R> {
     /// Of a tie that had yielded so much before and is now stretched so far beyond its unstressed length, slowly. It has taken nothing
     /// yet.
@@ -400,11 +409,9 @@ impl<R: Real> TieMemory<R> {
     pub fn stretched(tie: &Tie, yielded_m: f64, stretch_m: R) -> Self {
         let mut memory = Self {
             stretch_m,
-            force_n: R::of(0.0),
-            peak_n: R::of(0.0),
             yielded_m: R::of(yielded_m),
             intact: R::of(1.0),
-            taken_j: R::of(0.0),
+            ..Self::none()
         };
         memory.stretch(tie, stretch_m);
         memory.taken_j = R::of(0.0);
@@ -469,40 +476,5 @@ impl TieMemory<Lanes<1>> {
     #[must_use]
     pub fn is_broken(&self) -> bool {
         self.intact.0[0] == 0.0
-    }
-}
-
-impl<const L: usize> TieMemory<Lanes<L>> {
-    fn parts_mut(&mut self) -> [&mut Lanes<L>; 6] {
-        [
-            &mut self.stretch_m,
-            &mut self.force_n,
-            &mut self.peak_n,
-            &mut self.yielded_m,
-            &mut self.intact,
-            &mut self.taken_j,
-        ]
-    }
-
-    /// Takes over what a tie alone remembers.
-    pub fn set(&mut self, lane: usize, alone: &TieMemory<Lanes<1>>) {
-        let mut alone = *alone;
-        for (part, from) in self.parts_mut().into_iter().zip(alone.parts_mut()) {
-            part.0[lane] = from.0[0];
-        }
-    }
-
-    /// What it remembers in a lane.
-    #[must_use]
-    pub fn lane(&self, lane: usize) -> TieMemory<Lanes<1>> {
-        let of = |part: Lanes<L>| Lanes([part.0[lane]]);
-        TieMemory {
-            stretch_m: of(self.stretch_m),
-            force_n: of(self.force_n),
-            peak_n: of(self.peak_n),
-            yielded_m: of(self.yielded_m),
-            intact: of(self.intact),
-            taken_j: of(self.taken_j),
-        }
     }
 }

@@ -6,9 +6,8 @@
 
 use std::f64::consts::PI;
 
-use super::kinematics::Gap;
-use super::structure::ElasticJoint;
-use crate::mechanics::lanes::{Lanes, Real, both};
+use super::kinematics::{Gap, Link};
+use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
 /// How the stress is summed over a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -132,102 +131,8 @@ pub struct Fibre<R> {
     force_m: R,
 }
 
-impl<R: Real> Memory<R> {
-    /// Nothing has happened.
-    #[must_use]
-    pub fn none() -> Self {
-        let zero = R::of(0.0);
-        Self {
-            penetrations_m: [zero; 2],
-            slip_m: zero,
-            shear_n: zero,
-            slipped_m: zero,
-            viscous_n: [zero; 2],
-            viscous_shear_n: zero,
-        }
-    }
-}
-
-impl<const L: usize> Memory<Lanes<L>> {
-    /// Sets one lane.
-    pub fn set(&mut self, lane: usize, alone: &Memory<Lanes<1>>) {
-        let from = alone.parts();
-        for (part, from) in self.parts_mut().into_iter().zip(from) {
-            part.0[lane] = from.0[0];
-        }
-    }
-
-    /// One lane.
-    #[must_use]
-    pub fn lane(&self, lane: usize) -> Memory<Lanes<1>> {
-        let mut alone = Memory::<Lanes<1>>::none();
-        for (part, from) in alone.parts_mut().into_iter().zip(self.parts()) {
-            part.0[0] = from.0[lane];
-        }
-        alone
-    }
-}
-
-impl<R: Real> Memory<R> {
-    fn parts(&self) -> [R; 8] {
-        let [low, high] = self.penetrations_m;
-        let [viscous_low, viscous_high] = self.viscous_n;
-        [
-            low,
-            high,
-            self.slip_m,
-            self.shear_n,
-            self.slipped_m,
-            viscous_low,
-            viscous_high,
-            self.viscous_shear_n,
-        ]
-    }
-
-    fn parts_mut(&mut self) -> [&mut R; 8] {
-        let [low, high] = &mut self.penetrations_m;
-        let [viscous_low, viscous_high] = &mut self.viscous_n;
-        [
-            low,
-            high,
-            &mut self.slip_m,
-            &mut self.shear_n,
-            &mut self.slipped_m,
-            viscous_low,
-            viscous_high,
-            &mut self.viscous_shear_n,
-        ]
-    }
-}
-
-impl<const L: usize> Fibre<Lanes<L>> {
-    /// Sets one lane.
-    pub fn set(&mut self, lane: usize, alone: &Fibre<Lanes<1>>) {
-        self.crushed_m.0[lane] = alone.crushed_m.0[0];
-        self.force_m.0[lane] = alone.force_m.0[0];
-    }
-
-    /// One lane.
-    #[must_use]
-    pub fn lane(&self, lane: usize) -> Fibre<Lanes<1>> {
-        Fibre {
-            crushed_m: Lanes([self.crushed_m.0[lane]]),
-            force_m: Lanes([self.force_m.0[lane]]),
-        }
-    }
-}
-
-impl<R: Real> Fibre<R> {
-    /// Nothing has happened.
-    #[must_use]
-    pub fn none() -> Self {
-        let zero = R::of(0.0);
-        Self {
-            crushed_m: zero,
-            force_m: zero,
-        }
-    }
-}
+remembered!(Memory { slip_m, shear_n, slipped_m, viscous_shear_n; penetrations_m, viscous_n });
+remembered!(Fibre { crushed_m, force_m });
 
 /// How a joint presses.
 #[derive(Clone, Copy, Debug)]
@@ -253,6 +158,21 @@ pub struct Rubbing<R> {
     /// Energy that the balance of the discrete motion misses by slip, in J: the trapezoidal rule. Negative where the force reverses within
     /// a step, which creates energy.
     pub balance_j: R,
+}
+
+/// A joint between two bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElasticJoint {
+    /// What it joins.
+    pub link: Link,
+    /// Stiffness of the closed joint against penetration, in N/m.
+    pub normal_n_m: f64,
+    /// Its stiffness against slip, in N/m.
+    pub shear_n_m: f64,
+    /// Penetration at which it crushes, in m; infinite where it does not.
+    pub strength_m: f64,
+    /// Area in m2.
+    pub area_m2: f64,
 }
 
 /// What all joints of a structure have in common.

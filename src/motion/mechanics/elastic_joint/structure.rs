@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::contact::{Contact, Fibre, Law, Memory, Pressing, Rubbing, Section};
+use super::contact::{Contact, ElasticJoint, Fibre, Law, Memory, Pressing, Rubbing, Section};
 use super::kinematics::{Action, Link, Place};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, within};
@@ -169,21 +169,6 @@ pub struct Body {
     pub mass_kg: f64,
     /// Polar moment of inertia about the centre, in kg m2.
     pub inertia_kg_m2: f64,
-}
-
-/// A joint between two bodies.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElasticJoint {
-    /// What it joins.
-    pub link: Link,
-    /// Stiffness of the closed joint against penetration, in N/m.
-    pub normal_n_m: f64,
-    /// Its stiffness against slip, in N/m.
-    pub shear_n_m: f64,
-    /// Penetration at which it crushes, in m; infinite where it does not.
-    pub strength_m: f64,
-    /// Area in m2.
-    pub area_m2: f64,
 }
 
 /// Rigid bodies with elastic joints between them. The body after the last one is the left support (or the only one), and
