@@ -224,7 +224,7 @@ fn no_four_link_mechanism_keeps_more() {
                 .impulse_line
                 .as_ref()
                 .unwrap()
-                .resultants()
+                .resultants
                 .extremes(ANYWHERE);
             // If a line leaves the ring, energy can be gained; by less than 1e-3 of the thickness it may
             // leave the ring between two of these joints.
@@ -267,7 +267,7 @@ fn where_four_joints_open_both_agree() {
                 .impulse_line
                 .as_ref()
                 .unwrap()
-                .resultants()
+                .resultants
                 .extremes(sites);
             if opened.len() == 4 {
                 agree += 1;
@@ -275,7 +275,7 @@ fn where_four_joints_open_both_agree() {
                     gap.abs() < 1e-9,
                     "{voussoirs} {embrace_deg} {thickness_ratio}: {gap}"
                 );
-                for ((joint, _, _), hinge) in opened.iter().zip(case.next.mechanism.hinges_rad()) {
+                for ((joint, _, _), hinge) in opened.iter().zip(case.next.mechanism.hinges_rad) {
                     assert!((projection.joints[*joint].angle_rad - hinge).abs() < 1e-12);
                 }
                 assert!(extremes.is_admissible(), "{extremes:?}");
@@ -301,7 +301,7 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
         found.restitution
     );
     let opened: Vec<_> = found.opened().collect();
-    for ((_, _, rate), expected) in opened.iter().zip(case.next.mechanism.openings()) {
+    for ((_, _, rate), expected) in opened.iter().zip(case.next.mechanism.openings) {
         // Impulses vanish together with openings at the other joints; this leaves the square root of the tolerance.
         assert!((rate - expected.abs()).abs() < 1e-5);
     }

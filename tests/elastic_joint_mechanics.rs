@@ -50,7 +50,7 @@ fn virgin(structure: &ElasticStructure) -> (Memory<Lanes<1>>, Vec<Fibre<Lanes<1>
 fn energy_j(structure: &ElasticStructure, q: [f64; 6]) -> f64 {
     let (mut memory, mut fibres) = virgin(structure);
     let [one, other] = places(q);
-    let joint = &structure.joints()[0];
+    let joint = &structure.joints[0];
     structure.act(joint, [&one, &other], None, &mut memory, &mut fibres);
     structure.energy_j(joint, &memory, &fibres).0[0]
 }
@@ -99,7 +99,7 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
         (Contact::Points(5), None),
     ] {
         let structure = structure(contact, strength_m, 0.0);
-        let joint = &structure.joints()[0];
+        let joint = &structure.joints[0];
         for q in positions() {
             let (mut memory, mut fibres) = virgin(&structure);
             let [one, other] = places(q);
@@ -136,7 +136,7 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
     let damping = 0.5;
     let edges = |contact, strength_m, before: [f64; 6], after: [f64; 6]| {
         let structure = structure(contact, strength_m, 1.0);
-        let joint = &structure.joints()[0];
+        let joint = &structure.joints[0];
         let (mut memory, mut fibres) = virgin(&structure);
         let [one, other] = places(before);
         structure.act(joint, [&one, &other], None, &mut memory, &mut fibres);
@@ -199,7 +199,7 @@ fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
         let strength_m = 1e-3;
         let structure = structure(contact, Some(strength_m), 0.0);
-        let joint = &structure.joints()[0];
+        let joint = &structure.joints[0];
         let (mut memory, mut fibres) = virgin(&structure);
         let normal = [-ALONG[1], ALONG[0]];
         let (mut taken_j, mut largest_n) = (0.0, 0.0_f64);

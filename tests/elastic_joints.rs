@@ -93,7 +93,7 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     let mut memory = rest.memories[0];
     let mut fibres = rest.fibres.clone();
     let (action, ..) = structure.act(
-        &structure.joints()[0],
+        &structure.joints[0],
         [&places[0], &places[1]],
         None::<Lanes<1>>,
         &mut memory,
@@ -160,7 +160,7 @@ fn stiffness_follows_from_materials_in_series() {
         ..joints(1e9, Contact::Continuous)
     };
     let structure = ElasticStructure::of_row(&stack(4, 3.0), &properties).unwrap();
-    for (joint, length_m) in structure.joints().iter().zip([0.375, 0.75, 0.75, 0.75]) {
+    for (joint, length_m) in structure.joints.iter().zip([0.375, 0.75, 0.75, 0.75]) {
         let due = 1.0 / (0.01 / 1e9 + length_m / 20e9);
         assert!((joint.normal_n_m / due - 1.0).abs() < 1e-12);
         assert!((joint.shear_n_m / joint.normal_n_m - 0.4).abs() < 1e-12);

@@ -272,12 +272,12 @@ fn the_certificate_bounds_the_impact_of_a_row() {
         let gap = cone.restitution - own.link.restitution;
         assert!((-1e-9..0.02).contains(&gap), "{gap}");
         let line = own.impulse_line.as_ref().unwrap();
-        let admissible = line.resultants().extremes(chain.sites()).is_admissible();
+        let admissible = line.resultants.extremes(chain.sites).is_admissible();
         assert_eq!(admissible, gap < 1e-7, "{gap}");
         // Impulses at the hinges carry no moment: the line passes through all four corners.
         for (section, edge) in own.mechanism.hinges_from_left(profile, Sway::Right) {
             let moment = line
-                .resultants()
+                .resultants
                 .at(section)
                 .about(profile.point(section, edge));
             assert!(moment.abs() < 1e-12);

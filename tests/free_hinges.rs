@@ -74,7 +74,7 @@ fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
             .map(|(block, twist)| twist.power(&twist.momentum(&block.moments_at(block.centre_m))))
             .sum()
     };
-    let velocities = program.velocities().to_vec();
+    let velocities = program.velocities.to_vec();
     let kept = energy(&velocities) / energy(free);
     (velocities, kept)
 }

@@ -19,7 +19,7 @@ fn first_mechanism(ring: &Ring, sites: HingeSites) -> FourLink {
 
 /// Hinges in degrees from the left springing, in the frame of the ground, in which links 1, 3, ... sway left.
 fn seen_from_ground(mechanism: &FourLink, ring: &dyn Profile, sways_left: bool) -> [f64; 4] {
-    let [a, b, c, d] = mechanism.hinges_rad();
+    let [a, b, c, d] = mechanism.hinges_rad;
     if sways_left {
         [d, c, b, a].map(|angle| ring.end() - angle)
     } else {
@@ -101,7 +101,7 @@ fn a_prescribed_restitution_is_kept_with_mirrored_hinges() {
     // The coefficient is an energy ratio, not a velocity ratio; both mechanisms have the same inertia.
     assert!((found.rate_ratio * found.rate_ratio - 0.8).abs() < 1e-15);
     // Mirrored hinges in the ground's frame are the same hinges in the mirrored frame.
-    assert_eq!(found.mechanism.hinges_rad(), mechanism.hinges_rad());
+    assert_eq!(found.mechanism.hinges_rad, mechanism.hinges_rad);
     assert!(given(0.0).is_none());
 }
 
@@ -112,7 +112,7 @@ fn same_sections_turn_about_the_opposite_edges() {
     let model = ImpactModel::SameSections;
     let found = impact(&mechanism, &ring, HingeSites::Anywhere, model).unwrap();
     let seen = seen_from_ground(&found.mechanism, &ring, true);
-    assert_hinges(seen, degrees(mechanism.hinges_rad()), 1e-12);
+    assert_hinges(seen, degrees(mechanism.hinges_rad), 1e-12);
 }
 
 #[test]
@@ -214,7 +214,7 @@ proptest! {
                 let after = next.field();
                 let own = after.product(&after, &ring);
                 let scale = (before.product(&before, &ring) / own).sqrt();
-                let points = next.points();
+                let points = next.points;
                 let area = |i: usize, j: usize, k: usize| {
                     (points[j] - points[i]).perp(&(points[k] - points[i])).abs()
                 };
@@ -230,7 +230,7 @@ proptest! {
                 prop_assert!((0.0..=1.0 + 1e-14).contains(&restitution));
                 // Global balance with the impulses at both ends, which the projection does not use.
                 let change = after.scaled(theorems.rate).minus(&before);
-                let [a, .., d] = next.hinges_rad();
+                let [a, .., d] = next.hinges_rad;
                 let gained = change.momentum_to(&ring, d).linear - change.momentum_to(&ring, a).linear;
                 let given = theorems.impulse_first + theorems.impulse_last;
                 let size = theorems.impulse_first.norm() + gained.norm();
@@ -292,7 +292,7 @@ fn beaten_by_nothing(
                 value <= best + 1e-10 || value < 1e-3,
                 "{value} > {best} at {:?} after {:?} ({ring:?})",
                 degrees(angles),
-                degrees(closing.hinges_rad())
+                degrees(closing.hinges_rad)
             );
             done += 1;
             if done == climbs {
@@ -432,7 +432,7 @@ fn best_of_joints(
                     let Some(mechanism) = FourLink::new(ring, joints.map(&section)) else {
                         continue;
                     };
-                    let openings = mechanism.openings();
+                    let openings = mechanism.openings;
                     let index: [usize; 4] = std::array::from_fn(|i| 2 * joints[i] + i % 2);
                     let power: f64 = (0..4).map(|i| openings[i] * shared[index[i]]).sum();
                     let own: f64 = (0..4)
@@ -460,7 +460,7 @@ fn the_same_question_has_the_same_answer_to_the_last_bit() {
                 let found = impact(&mechanism, &ring, sites, MAX).unwrap();
                 mechanism = found.mechanism;
                 bits.push(found.restitution.to_bits());
-                bits.extend(mechanism.hinges_rad().map(f64::to_bits));
+                bits.extend(mechanism.hinges_rad.map(f64::to_bits));
             }
             bits
         };

@@ -320,7 +320,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
                 })
                 .sum()
         };
-        let kept = energy(program.velocities()) / energy(&free);
+        let kept = energy(&program.velocities) / energy(&free);
         let options = ["--certificate", "--first", first.name()];
         let result = json(folder.path(), &[&["s.toml"], &options[..]].concat());
         let certificate = &result["certificate"];
@@ -329,7 +329,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         assert_eq!(certificate["joints"], joints);
         // The same motion, joint by joint.
         let opened = certificate["opened_joints"].as_array().unwrap();
-        let velocities = program.velocities();
+        let velocities = program.velocities;
         let rate = |block: Option<usize>| {
             let block = block.and_then(|block| velocities.get(block));
             block.map_or(0.0, |twist| twist.rate)

@@ -51,12 +51,12 @@ fn the_line_passes_through_all_four_hinges() {
         for index in 1..8 {
             let Some(link) = chain.link(index) else { break };
             let line = link.impulse_line.as_ref().unwrap();
-            for (angle, edge) in link.mechanism.hinges_rad().into_iter().zip(EDGES) {
+            for (angle, edge) in link.mechanism.hinges_rad.into_iter().zip(EDGES) {
                 let expected = match edge {
                     Edge::Intrados => -0.5,
                     Edge::Extrados => 0.5,
                 };
-                let found = line.resultants().section(angle).eccentricity_ratio;
+                let found = line.resultants.section(angle).eccentricity_ratio;
                 assert!((found - expected).abs() < 1e-10, "{index} {angle}: {found}");
             }
         }
@@ -94,7 +94,7 @@ fn impulses_change_the_momentum_of_each_body() {
             let moved = link.mechanism.field().scaled(link.link.rate_ratio);
             let [a, b, c, d] = link.impulse_line.as_ref().unwrap().hinge_impulses();
             let on_bodies = [[a, -b], [b, c], [-c, d]];
-            let (angles, points) = (link.mechanism.hinges_rad(), link.mechanism.points());
+            let (angles, points) = (link.mechanism.hinges_rad, link.mechanism.points);
             for (body, impulses) in on_bodies.into_iter().enumerate() {
                 let part = |of: &archrock::mechanics::geometry::field::Field| {
                     of.momentum_to(ring, angles[body + 1]) - of.momentum_to(ring, angles[body])
@@ -144,7 +144,7 @@ fn refined_extremes_are_not_below_fine_samples() {
         let chain = arch.chain();
         for index in 1..5 {
             let Some(link) = chain.link(index) else { break };
-            let line = link.impulse_line.as_ref().unwrap().resultants();
+            let line = &link.impulse_line.as_ref().unwrap().resultants;
             let extremes = line.extremes(ANYWHERE);
             let samples = || {
                 chain
@@ -189,13 +189,13 @@ fn voussoirs_are_asked_at_their_joints_only() {
     let sites = HingeSites::Voussoirs(7);
     let arch = arch(0.15, 157.5, sites, ImpactModel::MaxRestitution);
     let chain = arch.chain();
-    let line = chain
+    let line = &chain
         .link(1)
         .unwrap()
         .impulse_line
         .as_ref()
         .unwrap()
-        .resultants();
+        .resultants;
     let (joints, all) = (line.extremes(sites), line.extremes(ANYWHERE));
     let by_hand = (0..=7_u32)
         .map(|i| {
@@ -245,10 +245,10 @@ fn the_part_that_stands_is_stopped_by_its_own_impulses() {
     let arch = arch(0.15, 180.0, ANYWHERE, ImpactModel::MaxRestitution);
     let chain = arch.chain();
     let link = chain.link(2).unwrap();
-    let [first, ..] = link.mechanism.hinges_rad();
+    let [first, ..] = link.mechanism.hinges_rad;
     let closing = closing_field(&chain.link(1).unwrap().mechanism, chain.profile(0));
     assert!(first > 0.09 && closing.at(0.5 * first, Side::After).rate.abs() > 0.01);
-    let line = link.impulse_line.as_ref().unwrap().resultants();
+    let line = &link.impulse_line.as_ref().unwrap().resultants;
     let gained = line.at(first) - line.at(0.0);
     let lost = closing.momentum_to(chain.profile(0), first);
     assert!((gained - lost).linear.norm() < 1e-14);
@@ -276,7 +276,7 @@ fn mirrored_hinges_put_the_ring_in_tension() {
         .impulse_line
         .as_ref()
         .unwrap()
-        .resultants()
+        .resultants
         .extremes(ANYWHERE);
     assert!(extremes.normal.value < 0.0 && !extremes.is_admissible());
 }

@@ -197,7 +197,7 @@ fn published_accelerations_and_hinges() {
             "{}",
             found.acceleration_g
         );
-        assert_hinges(found.mechanism.hinges_rad(), hinges, 0.5e-5);
+        assert_hinges(found.mechanism.hinges_rad, hinges, 0.5e-5);
     }
     // The paper's own figure.
     let semicircle = incipient(&ring(0.15, 180.0), HingeSites::Anywhere).unwrap();
@@ -209,7 +209,7 @@ fn published_accelerations_and_hinges() {
         "{}",
         thick.acceleration_g
     );
-    assert!(thick.mechanism.hinges_rad()[0] == 0.0);
+    assert!(thick.mechanism.hinges_rad[0] == 0.0);
     let thin = incipient(&ring(0.10, 120.0), HingeSites::Anywhere).unwrap();
     assert!(
         (thin.acceleration_g - 0.580_005).abs() <= 0.5e-6,
@@ -217,7 +217,7 @@ fn published_accelerations_and_hinges() {
         thin.acceleration_g
     );
     assert_hinges(
-        thin.mechanism.hinges_rad(),
+        thin.mechanism.hinges_rad,
         [0.0, 34.24, 85.83, 120.0],
         0.5e-2,
     );
@@ -439,7 +439,7 @@ proptest! {
         match incipient(&ring, sites) {
             Ok(found) => {
                 prop_assert!(found.acceleration_g > 0.0);
-                let hinges = found.mechanism.hinges_rad();
+                let hinges = found.mechanism.hinges_rad;
                 // The line passes through the hinges, so no line can carry more; it stays inside
                 // everywhere, so this one carries as much.
                 let push = static_limit_g(&ring, &sections(hinges)).unwrap();

@@ -46,8 +46,8 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
     let (history, samples) = run_sampled(&arch, &still, &request);
     let ring = arch.chain().profile(0);
     let mechanism = arch.chain().link(0).unwrap().mechanism;
-    let [a, b, c, d] = mechanism.hinges_rad();
-    let [at_a, at_b, at_c, at_d] = mechanism.points();
+    let [a, b, c, d] = mechanism.hinges_rad;
+    let [at_a, at_b, at_c, at_d] = mechanism.points;
     let turn = |v: nalgebra::Vector2<f64>, angle: f64| nalgebra::Rotation2::new(angle) * v;
     let spin = |v: nalgebra::Vector2<f64>, rate: f64| nalgebra::Vector2::new(-v.y, v.x) * rate;
     let end_s = history.impacts().next().map_or(0.9, |(time_s, _)| time_s);

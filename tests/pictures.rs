@@ -116,14 +116,14 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
             assert!(e.abs() < 0.5 + tolerance, "{e}");
         }
         // Between points of the polyline, about half a pixel apart, it passes through the hinges.
-        for point in chain.link(0).unwrap().mechanism.points() {
+        for point in chain.link(0).unwrap().mechanism.points {
             let nearest = curve
                 .iter()
                 .map(|shown| (sheet.back(*shown) - point).norm() * sheet.scale)
                 .fold(f64::INFINITY, f64::min);
             assert!(nearest < 1.0, "{nearest}");
         }
-        let acceleration = format!("{:.5} g", chain.incipient().acceleration_g);
+        let acceleration = format!("{:.5} g", chain.incipient.acceleration_g);
         assert!(texts(&document)[0].contains(&acceleration));
     }
 }
@@ -189,7 +189,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
         }
     }
     // Rigid: the bars A-B, B-C and C-D keep their lengths.
-    let points = chain.link(0).unwrap().mechanism.points();
+    let points = chain.link(0).unwrap().mechanism.points;
     let bar = |points: &[Vector2<f64>], i: usize| (points[i + 1] - points[i]).norm();
     let scale = bar(&hinges, 0) / bar(&points, 0);
     for i in [1, 2] {

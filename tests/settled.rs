@@ -130,12 +130,12 @@ fn a_settled_arch_stays_where_it_is() {
                 let expected: Vec<usize> = follower
                     .hinges()
                     .unwrap()
-                    .hinges()
+                    .hinges
                     .iter()
                     .map(|hinge| hinge.joint)
                     .collect();
                 assert_eq!(open, expected);
-                for (pose, there) in sample.poses.iter().zip(follower.placement().poses()) {
+                for (pose, there) in sample.poses.iter().zip(&follower.placement().poses) {
                     let centre = row.blocks()[0].centre_m;
                     assert!((pose.of(centre) - there.of(centre)).norm() < 1e-12);
                 }
@@ -184,7 +184,7 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
         .move_supports(|part| movements.times(part), 0.0, 1.0)
         .unwrap();
     // As good as glue.
-    let onset = friction::onset_at(&row, follower.stance(), 20.0, Sway::Right).unwrap();
+    let onset = friction::onset_at(&row, &follower.stance, 20.0, Sway::Right).unwrap();
     let due_g = onset.unwrap().acceleration_g;
     let model = settled(&row, &movements);
     let told_g = model.incipient_acceleration_g(Sway::Right).unwrap();
@@ -230,7 +230,7 @@ fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
     follower
         .move_supports(|part| movements.times(part), 0.0, 1.0)
         .unwrap();
-    let stretch_m = follower.stance().ties[0].stretch_m.0[0];
+    let stretch_m = follower.stance.ties[0].stretch_m.0[0];
     let on_supports = |bears: f64| {
         let tie = row.ties()[0];
         let tie = Tie {

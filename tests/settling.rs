@@ -442,7 +442,7 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
                 let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
                 assert_eq!(reached.unwrap(), Reached::End);
                 let crown = row.joints()[voussoirs / 2].extrados_m;
-                let pose = follower.placement().poses()[voussoirs / 2 - 1];
+                let pose = follower.placement().poses[voussoirs / 2 - 1];
                 let drop = (crown - pose.of(crown)).y;
                 // The judge rests where no block goes by more than 1e-7.
                 assert!((drop - blocks.crown_drop()).abs() < 1e-6, "{what}: {drop}");
@@ -584,8 +584,8 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
                 break;
             }
             let crown = row.joints()[8].extrados_m;
-            let drop = (crown - follower.placement().poses()[7].of(crown)).y;
-            let force = follower.stance().forces_n().sum::<f64>() / weight_n;
+            let drop = (crown - follower.placement().poses[7].of(crown)).y;
+            let force = follower.stance.forces_n().sum::<f64>() / weight_n;
             let due = blocks.pull(&blocks.bars[0]);
             // The judge rests where no block goes by more than 1e-7, and where it is that times the stiffness.
             let (off, loose) = ((force - due).abs(), 1e-6 * (1.0 + stiffness));
@@ -594,7 +594,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
                 (drop - blocks.crown_drop()).abs() < 2e-6,
                 "{what} {to}: {drop}"
             );
-            let hinges = follower.hinges().unwrap().hinges().len();
+            let hinges = follower.hinges().unwrap().hinges.len();
             most = most.max(hinges);
             let [first_g, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
             assert!(
@@ -610,7 +610,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
                 );
             }
         }
-        yielded = yielded.max(follower.stance().ties[0].yielded_m.0[0]);
+        yielded = yielded.max(follower.stance.ties[0].yielded_m.0[0]);
     }
     assert!(most == 4 && yielded > 0.01, "{most} {yielded}");
 }
@@ -641,12 +641,9 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
             blocks.support = way.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
             let crown = row.joints()[8].extrados_m;
-            let drop = (crown - follower.placement().poses()[7].of(crown)).y;
+            let drop = (crown - follower.placement().poses[7].of(crown)).y;
             assert!((drop - blocks.crown_drop()).abs() < 2e-6, "{what}: {drop}");
-            let forces = follower
-                .stance()
-                .forces_n()
-                .map(|force_n| force_n / weight_n);
+            let forces = follower.stance.forces_n().map(|force_n| force_n / weight_n);
             let pairs: Vec<(f64, f64)> = forces
                 .zip(blocks.bars.iter().map(|bar| blocks.pull(bar)))
                 .collect();
@@ -656,7 +653,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
                 assert!((force - due).abs() < loose, "{what}: {pairs:?}");
             }
             pulling += u32::from(pairs.iter().all(|(force, _)| *force > 0.01));
-            most = most.max(follower.hinges().unwrap().hinges().len());
+            most = most.max(follower.hinges().unwrap().hinges.len());
         }
     }
     assert!(most == 5 && pulling > 5, "{most} {pulling}");
@@ -677,9 +674,9 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let mut follower = Follower::new(&row).unwrap();
     let way = |part: f64| movements.times(part);
     follower.move_supports(way, 0.0, 1.0).unwrap();
-    let hinges = follower.hinges().unwrap().hinges();
+    let hinges = &follower.hinges().unwrap().hinges;
     assert_eq!(hinges.len(), 4);
-    let force_n = follower.stance().forces_n().next().unwrap();
+    let force_n = follower.stance.forces_n().next().unwrap();
 
     let told = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
@@ -728,8 +725,8 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let mut counts = Vec::new();
     for (row, stage) in table.rows.iter().zip(stages) {
         let state = stage.state.as_ref().unwrap();
-        counts.push(state.hinges().len());
-        let mut open = state.hinges().iter().zip(&state.turns_rad);
+        counts.push(state.hinges.len());
+        let mut open = state.hinges.iter().zip(&state.turns_rad);
         for number in 1..=4 {
             let cell = |what: &str| &row[&format!("hinge_{number}_{what}")];
             let (hinge, turn_rad) = open.next().unzip();
@@ -800,7 +797,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
         let weight_n = row.mass_kg() * 9.81;
         let mut follower = Follower::new(&row).unwrap();
         follower.move_supports(right(way), 0.0, at).unwrap();
-        let rigid = follower.stance().ties[0];
+        let rigid = follower.stance.ties[0];
         let joints = |normal_pa_m: f64| {
             let properties = ElasticProperties {
                 friction_coefficient: None,
@@ -832,7 +829,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     let row = row.with_ties(vec![tie], 9.81).unwrap();
     let mut follower = Follower::new(&row).unwrap();
     let mut at = 0.0;
-    while follower.stance().broken_tie().is_none() {
+    while follower.stance.broken_tie().is_none() {
         follower.move_supports(right(OUT), at, at + 1e-3).unwrap();
         at += 1e-3;
     }
@@ -1033,7 +1030,7 @@ fn paths_are_those_of_another_program() {
             "{at}"
         );
         for ((hinge, turn), (joint, edge, expected)) in
-            state.hinges().iter().zip(&state.turns_rad).zip(hinges)
+            state.hinges.iter().zip(&state.turns_rad).zip(hinges)
         {
             assert_eq!((hinge.joint, hinge.edge), (joint, edge), "{at}");
             assert!((turn - expected).abs() < 6e-6, "{at}: {turn}");

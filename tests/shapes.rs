@@ -412,7 +412,7 @@ fn resolved_scenarios_read_back_as_themselves() {
         assert_eq!(scenario, again);
         assert_eq!(scenario.to_toml(), again.to_toml());
         let piers = match scenario.structure() {
-            Structure::Masonry(masonry) => *masonry.piers(),
+            Structure::Masonry(masonry) => masonry.piers,
             other => panic!("{other:?}"),
         };
         assert_eq!(

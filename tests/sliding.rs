@@ -1062,7 +1062,7 @@ fn every_step_solves_the_complementarity_problem() {
         let lift = if (count / 70) % 3 == 2 { 1.2 } else { 0.0 };
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);
         let free: Vec<Vector3<f64>> = velocities.iter().map(|v| v + kick).collect();
-        let before = program.impulses().to_vec();
+        let before = program.impulses.to_vec();
         program.place(&faces, &contacts, &positions);
         program.load(|block| free[block]);
         let solution = program.solve(|joint| lags[joint], 1e-9 * (GRAVITY * step + fastest));
@@ -1085,7 +1085,7 @@ fn every_step_solves_the_complementarity_problem() {
             positions[block] =
                 Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z);
         }
-        for (joint, mode) in program.modes().iter().enumerate() {
+        for (joint, mode) in program.modes.iter().enumerate() {
             slipping += usize::from(matches!(mode.along, Along::Slip(_)));
             open += usize::from(mode.pressed != [true; 2]);
             if mode.along != Along::Stick {

@@ -58,7 +58,7 @@ fn motions(linkage: &Linkage) -> Vec<Motion> {
 #[test]
 fn at_the_onset_it_is_the_line_of_limit_analysis() {
     for arch in arches() {
-        let incipient = arch.chain().incipient();
+        let incipient = &arch.chain().incipient;
         let linkage = &arch.link(0).unwrap().mechanism;
         let push = incipient.acceleration_g;
         let onset = motion(linkage, 0.0, 0.0, push);
@@ -92,14 +92,14 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
         let ring = arch.chain().profile(0);
         let mechanism = arch.chain().link(0).unwrap().mechanism;
         let linkage = &arch.link(0).unwrap().mechanism;
-        let [a, b, c, d] = mechanism.hinges_rad();
-        let [point_a, point_b, _, point_d] = mechanism.points();
+        let [a, b, c, d] = mechanism.hinges_rad;
+        let [point_a, point_b, _, point_d] = mechanism.points;
         let bodies = [ring.sector(a, b), ring.sector(b, c), ring.sector(c, d)];
         let place = |q: f64| {
             let turns = linkage.rotations(q);
             let turned = |i: usize, v: Vector2<f64>| nalgebra::Rotation2::new(turns[i]) * v;
             let moved_b = point_a + turned(0, point_b - point_a);
-            let moved_c = moved_b + turned(1, mechanism.points()[2] - point_b);
+            let moved_c = moved_b + turned(1, mechanism.points[2] - point_b);
             let centroids = [
                 point_a + turned(0, bodies[0].centroid() - point_a),
                 moved_b + turned(1, bodies[1].centroid() - point_b),
@@ -149,7 +149,7 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
             let turns = [0.0, now.0[0], now.0[1], now.0[2], 0.0];
             for hinge in 0..4 {
                 let force = nalgebra::Rotation2::new(turns[hinge])
-                    * line.at(mechanism.hinges_rad()[hinge]).linear;
+                    * line.at(mechanism.hinges_rad[hinge]).linear;
                 let expected = Vector2::new(solution[2 * hinge], solution[2 * hinge + 1]);
                 assert!(
                     (force - expected).norm() < tolerance,
@@ -170,10 +170,10 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
             let (mechanism, linkage) = (link.mechanism, &link.link.mechanism);
             for motion in motions(linkage) {
                 let line = linkage.thrust_line(&motion);
-                let parts = line.parts();
+                let parts = line.parts;
                 assert!((parts[4].end_rad - embrace).abs() < 1e-15);
-                for (hinge, angle) in mechanism.hinges_rad().into_iter().enumerate() {
-                    let pole = mechanism.points()[hinge];
+                for (hinge, angle) in mechanism.hinges_rad.into_iter().enumerate() {
+                    let pole = mechanism.points[hinge];
                     // Resultants of both parts that meet there: the moment about the hinge is zero, and the forces
                     // are equal except for the rotation. For B, on its left side, this is the equation of motion.
                     let forces = [parts[hinge], parts[hinge + 1]].map(|part| {
@@ -194,7 +194,7 @@ fn the_parts_that_stand_carry_their_weight_to_the_springings() {
     let arch = semicircle();
     let ring = arch.chain().profile(0);
     let linkage = &arch.link(0).unwrap().mechanism;
-    let a = arch.chain().link(0).unwrap().mechanism.hinges_rad()[0];
+    let a = arch.chain().link(0).unwrap().mechanism.hinges_rad[0];
     let line = linkage.thrust_line(&motion(linkage, 0.02, 0.1, 0.0));
     // Nothing accelerates before A: between springing and hinge the force grows by the weight.
     let weight = line.at(a).linear - line.at(0.0).linear;
@@ -212,8 +212,8 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
             assert_eq!(arch.demand_at_rest(body_force).excess_ratio, 0.0, "{part}");
             // Equilibrium of the whole ring: the force at one end plus the load is the force at the other end.
             let line = ThrustLine::at_rest(
-                arch.chain().incipient(),
-                arch.chain().incipient(),
+                &arch.chain().incipient,
+                &arch.chain().incipient,
                 ring,
                 body_force,
             );
@@ -346,7 +346,7 @@ fn densest(embrace_rad: f64, of: impl Fn(f64) -> f64) -> f64 {
 #[test]
 fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
     for arch in arches() {
-        if arch.chain().sites() != HingeSites::Anywhere {
+        if arch.chain().sites != HingeSites::Anywhere {
             continue;
         }
         let ring = arch.chain().profile(0);
@@ -356,12 +356,8 @@ fn the_demand_of_a_continuous_ring_is_the_largest_over_all_sections() {
             .into_iter()
             .map(|motion| linkage.thrust_line(&motion));
         let push = Vector2::new(1.3 * arch.incipient_g(), -1.0);
-        let at_rest = ThrustLine::at_rest(
-            arch.chain().incipient(),
-            arch.chain().incipient(),
-            ring,
-            push,
-        );
+        let at_rest =
+            ThrustLine::at_rest(&arch.chain().incipient, &arch.chain().incipient, ring, push);
         for line in lines.chain([at_rest]) {
             let demand = line.demand(HingeSites::Anywhere);
             let of = |angle: f64| {

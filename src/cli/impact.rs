@@ -102,7 +102,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.models || arguments.certificate {
         chosen()?;
     }
-    let sites = asked.chain().sites();
+    let sites = asked.chain().sites;
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, arguments.joints) {
         return Err(Failure::Input(format!(
             "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"

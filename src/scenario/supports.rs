@@ -69,7 +69,7 @@ pub(super) fn check(
              `archrock spread` tells how far they may go",
             1e2 * part
         )),
-        Ok(Reached::End) => match follower.stance().broken_tie() {
+        Ok(Reached::End) => match follower.stance.broken_tie() {
             Some(tie) => {
                 let wrong = "breaks before the springings have gone the way of [supports], with joints that are rigid: give a larger \
                              `breaks_at_strain`, or less movement";

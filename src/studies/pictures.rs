@@ -186,7 +186,7 @@ impl<'a> Place<'a> {
                 Sway::Right => section,
                 Sway::Left => profile.end() - section,
             };
-            let before = link.mechanism.hinges_rad().into_iter();
+            let before = link.mechanism.hinges_rad.into_iter();
             let before = before.filter(|hinge| *hinge < section).count();
             let pose = before.checked_sub(1).and_then(|body| poses.get(body));
             self.px(pose.map_or(mirrored, |pose| pose.of(mirrored)), sway)
@@ -203,7 +203,7 @@ impl<'a> Place<'a> {
 
     /// Draws the joints, if there are voussoirs.
     fn joints(&self, drawing: &mut Drawing) {
-        if let HingeSites::Voussoirs(count) = self.chain.sites() {
+        if let HingeSites::Voussoirs(count) = self.chain.sites {
             let profile = self.profile(Sway::Right);
             for section in profile.sections(count) {
                 let [inner, outer] = [Edge::Intrados, Edge::Extrados]
@@ -228,7 +228,7 @@ impl<'a> Place<'a> {
         let q_rad = DRAWN_PART * link.link.limit_rad;
         let (mut poses, mut hinges) = (Vec::new(), Vec::new());
         linkage.place(q_rad, &mut poses, &mut hinges);
-        let [a, b, c, d] = link.mechanism.hinges_rad();
+        let [a, b, c, d] = link.mechanism.hinges_rad;
         let none = Pose::UNDEFORMED;
         let line = Stroke::new(color::BLACK, 1.2, "");
         // In the mirrored frame of a sway to the left, the first body is the one on the right.
@@ -343,7 +343,7 @@ fn draw_limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>)
         .link(0)
         .expect("a chain begins with the mechanism that starts");
     let mut drawing = Drawing::new(figure);
-    let incipient = chain.incipient();
+    let incipient = &chain.incipient;
     let title = format!(
         "Incipient rocking at A_L = {:.5} g; {}",
         incipient.acceleration_g,
@@ -540,14 +540,14 @@ fn draw_impact(
     let field = after.mechanism.field();
     // Everything is in the frame of the new mechanism, which is mirrored if it sways left.
     let cut = closing.minus(&field);
-    let mut bounds = [cut.cuts_rad(), &[0.0, profile.end()]].concat();
+    let mut bounds = [cut.cuts_rad.as_slice(), &[0.0, profile.end()]].concat();
     bounds.sort_by(f64::total_cmp);
     bounds.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
     let moves =
         |mechanism: [f64; 4], section: f64| mechanism[0] < section && section < mechanism[3];
     let hinges_before = before
         .mechanism
-        .hinges_rad()
+        .hinges_rad
         .map(|section| profile.end() - section);
     let [a, b, c, d] = hinges_before;
     let mut number = 0;
@@ -559,7 +559,7 @@ fn draw_impact(
     for pair in sectors {
         let (from, to) = (pair[0], pair[1]);
         let middle = 0.5 * (from + to);
-        let moving = moves([d, c, b, a], middle) || moves(after.mechanism.hinges_rad(), middle);
+        let moving = moves([d, c, b, a], middle) || moves(after.mechanism.hinges_rad, middle);
         let fill = match (moving, number % 2) {
             (false, _) => "#ffffff",
             (true, 0) => "#eeeeee",

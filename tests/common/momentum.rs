@@ -25,8 +25,8 @@ impl MomentumTheorems {
     /// They are linear momentum along x and y and angular momentum about the centre for the part between
     /// the outer hinges, and angular momentum of each end body about its inner hinge.
     pub fn solve(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> Self {
-        let [a, b, c, d] = mechanism.hinges_rad();
-        let [point_a, point_b, point_c, point_d] = mechanism.points();
+        let [a, b, c, d] = mechanism.hinges_rad;
+        let [point_a, point_b, point_c, point_d] = mechanism.points;
         let after = mechanism.field();
         let part = |field: &Field, from: f64, to: f64| {
             field.momentum_to(profile, to) - field.momentum_to(profile, from)

@@ -165,8 +165,8 @@ impl Row {
             for (block, sign) in [(Some(joint), 1.0), (joint.checked_sub(1), -1.0)] {
                 let block = block.filter(|block| *block < count);
                 // No number is on no side.
-                let is_off = |block: &usize| !(sign * handedness * side(joint, *block) > 0.0);
-                if let Some(block) = block.filter(is_off) {
+                let is_on = |block: usize| sign * handedness * side(joint, block) > 0.0;
+                if let Some(block) = block.filter(|block| !is_on(*block)) {
                     return Err(RowError::Order { block, joint });
                 }
             }

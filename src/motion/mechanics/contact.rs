@@ -79,12 +79,14 @@ pub struct Load<'a> {
 /// The program of a row, with all the memory that it needs and the active set of the last solution.
 #[derive(Clone, Debug)]
 pub struct Program {
-    active: Vec<Corners>,
+    /// Active corners of every joint: where the joint is pressed, in the last solution.
+    pub active: Vec<Corners>,
     factor: Factor,
     answer: Answer,
     /// Response to a unit impulse at one corner.
     response: Answer,
-    velocities: Vec<Twist>,
+    /// Velocities of the blocks in the last solution.
+    pub velocities: Vec<Twist>,
     force_floor: f64,
     /// Corners that pull or close.
     wrong: Vec<Wrong>,
@@ -131,12 +133,6 @@ impl Program {
         }
     }
 
-    /// Active corners of every joint: where the joint is pressed, in the last solution.
-    #[must_use]
-    pub fn active(&self) -> &[Corners] {
-        &self.active
-    }
-
     /// Starts the next solution from these active corners.
     pub fn start_from(&mut self, active: &[Corners]) {
         self.active.copy_from_slice(active);
@@ -145,12 +141,6 @@ impl Program {
     /// Starts the next solution with this corner active too.
     pub fn press(&mut self, joint: usize, edge: usize) {
         self.active[joint][edge] = true;
-    }
-
-    /// Velocities of the blocks in the last solution.
-    #[must_use]
-    pub fn velocities(&self) -> &[Twist] {
-        &self.velocities
     }
 
     /// Mass moments of the blocks before each joint, about the origin.
@@ -246,7 +236,7 @@ impl Program {
     pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
         self.place(placement);
         self.set_up(load);
-        for (active, gaps) in self.active.iter_mut().zip(placement.gaps_m()) {
+        for (active, gaps) in self.active.iter_mut().zip(&placement.gaps_m) {
             *active = gaps.map(|gap| gap == 0.0);
         }
         if !exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE)

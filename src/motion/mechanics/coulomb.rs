@@ -126,8 +126,10 @@ pub struct Program {
     next: Vec<Matrix3<f64>>,
     /// Rates without impulses.
     drive: Vec<Vector3<f64>>,
-    modes: Vec<Mode>,
-    impulses: Vec<Vector3<f64>>,
+    /// What the joints do in the last solution.
+    pub modes: Vec<Mode>,
+    /// Impulses in N s at the ends and along every joint, in the last solution.
+    pub impulses: Vec<Vector3<f64>>,
     before: Vec<Vector3<f64>>,
     rates: Vec<Vector3<f64>>,
     /// Scaled velocities of the blocks.
@@ -182,18 +184,6 @@ impl Program {
             mode.pressed = *pressed;
             *mode = mode.settled();
         }
-    }
-
-    /// What the joints do in the last solution.
-    #[must_use]
-    pub fn modes(&self) -> &[Mode] {
-        &self.modes
-    }
-
-    /// Impulses in N s at the ends and along every joint, in the last solution.
-    #[must_use]
-    pub fn impulses(&self) -> &[Vector3<f64>] {
-        &self.impulses
     }
 
     /// Velocity (x, y) in m/s and rate of rotation in rad/s of a block, in the last solution.

@@ -194,7 +194,7 @@ impl FourLinks {
     }
 
     fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
-        let [right, left] = [&self.chains[0], &self.chains[1]].map(|chain| chain.incipient());
+        let [right, left] = [&self.chains[0], &self.chains[1]].map(|chain| &chain.incipient);
         ThrustLine::at_rest(right, left, self.chain().profile(0), body_force_g)
     }
 }
@@ -211,16 +211,16 @@ impl MechanismChain for FourLinks {
     }
 
     fn incipient_towards_g(&self, sway: Sway) -> f64 {
-        self.chain_from(sway).incipient().acceleration_g
+        self.chain_from(sway).incipient.acceleration_g
     }
 
     fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
-        mechanism.thrust_line(motion).demand(self.chain().sites())
+        mechanism.thrust_line(motion).demand(self.chain().sites)
     }
 
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
         let line = self.thrust_at_rest(body_force_g);
-        line.demand(self.chain().sites())
+        line.demand(self.chain().sites)
     }
 
     fn eccentricity_ratios(&self, mechanism: &Linkage, motion: &Motion) -> Vec<Option<f64>> {

@@ -191,7 +191,7 @@ impl Program {
     fn new(row: &Row, stance: &Stance, coefficient: f64, goal: Goal) -> Self {
         let placement = &stance.placement;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
-        let centres_m = placement.centres_m();
+        let centres_m = &placement.centres_m;
         let equations = 3 * blocks + placement.open_corners();
         let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
@@ -220,14 +220,14 @@ impl Program {
                 }
             }
         }
-        for (index, gaps) in placement.gaps_m().iter().enumerate() {
+        for (index, gaps) in placement.gaps_m.iter().enumerate() {
             for edge in (0..2).filter(|edge| gaps[*edge] > 0.0) {
                 put(right.len(), 1 + 3 * index + edge, 1.0);
                 right.push(0.0);
             }
         }
-        for (index, frame) in placement.frames().iter().enumerate() {
-            let open = placement.gaps_m()[index].map(|gap| gap > 0.0);
+        for (index, frame) in placement.frames.iter().enumerate() {
+            let open = placement.gaps_m[index].map(|gap| gap > 0.0);
             let forces = [
                 (frame.corner_m(Edge::Intrados), frame.normal),
                 (frame.corner_m(Edge::Extrados), frame.normal),

@@ -62,12 +62,17 @@ pub struct Placement {
     handedness: f64,
     supports: Supports,
     /// Where the left and the right support are.
-    support_poses: [Pose; 2],
-    gaps_m: Vec<[f64; 2]>,
-    poses: Vec<Pose>,
-    centres_m: Vec<Vector2<f64>>,
-    frames: Vec<Frame>,
-    closure: Option<Closure>,
+    pub support_poses: [Pose; 2],
+    /// Gaps of every joint at intrados and extrados, in metres.
+    pub gaps_m: Vec<[f64; 2]>,
+    /// Placements of the blocks.
+    pub poses: Vec<Pose>,
+    /// Centres of gravity of the blocks, in metres.
+    pub centres_m: Vec<Vector2<f64>>,
+    /// Where the joints press.
+    pub frames: Vec<Frame>,
+    /// What rounding leaves at the last open joint of an arch; `None` for stacks, and while all joints are shut.
+    pub closure: Option<Closure>,
 }
 
 /// The mismatch between the two parts of an arch.
@@ -116,46 +121,10 @@ impl Placement {
         placement
     }
 
-    /// Where the left and the right support are.
-    #[must_use]
-    pub const fn support_poses(&self) -> &[Pose; 2] {
-        &self.support_poses
-    }
-
     /// Moves the left and the right support, with the gaps as they are: the next [`Placement::open`] or [`Placement::turn`] places the
     /// blocks between them.
     pub const fn move_supports(&mut self, poses: [Pose; 2]) {
         self.support_poses = poses;
-    }
-
-    /// Gaps of every joint at intrados and extrados, in metres.
-    #[must_use]
-    pub fn gaps_m(&self) -> &[[f64; 2]] {
-        &self.gaps_m
-    }
-
-    /// Placements of the blocks.
-    #[must_use]
-    pub fn poses(&self) -> &[Pose] {
-        &self.poses
-    }
-
-    /// Centres of gravity of the blocks, in metres.
-    #[must_use]
-    pub fn centres_m(&self) -> &[Vector2<f64>] {
-        &self.centres_m
-    }
-
-    /// Where the joints press.
-    #[must_use]
-    pub fn frames(&self) -> &[Frame] {
-        &self.frames
-    }
-
-    /// What rounding leaves at the last open joint of an arch; `None` for stacks, and while all joints are shut.
-    #[must_use]
-    pub const fn closure(&self) -> Option<Closure> {
-        self.closure
     }
 
     /// Length of the closure error in metres.

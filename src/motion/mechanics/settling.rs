@@ -239,12 +239,16 @@ impl SettlingError {
 /// A row that follows slow changes.
 #[derive(Clone, Debug)]
 pub struct Follower<'a> {
-    row: &'a Row,
+    /// The row undeformed.
+    pub row: &'a Row,
     descent: Descent<'a>,
     hinges: Option<Pins>,
-    condition: Condition,
-    stance: Stance,
-    snaps: Vec<Snap>,
+    /// What it is subject to.
+    pub condition: Condition,
+    /// Where its blocks are, and what its ties remember.
+    pub stance: Stance,
+    /// What gave way so far.
+    pub snaps: Vec<Snap>,
     /// By how much its hinges may fail to hold it: forces over the weight and openings in radians below this are rounding.
     slack: f64,
 }
@@ -275,12 +279,6 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// The row undeformed.
-    #[must_use]
-    pub const fn row(&self) -> &'a Row {
-        self.row
-    }
-
     /// The hinges on which it stands; none while it is undeformed.
     #[must_use]
     pub const fn hinges(&self) -> Option<&Pins> {
@@ -292,31 +290,13 @@ impl<'a> Follower<'a> {
     pub fn is_held_by_ties(&self) -> bool {
         self.hinges
             .as_ref()
-            .is_some_and(|pins| pins.hinges().len() > 3)
+            .is_some_and(|pins| pins.hinges.len() > 3)
     }
 
     /// Where its blocks are.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
         &self.stance.placement
-    }
-
-    /// Where its blocks are, and what its ties remember.
-    #[must_use]
-    pub const fn stance(&self) -> &Stance {
-        &self.stance
-    }
-
-    /// What it is subject to.
-    #[must_use]
-    pub const fn condition(&self) -> &Condition {
-        &self.condition
-    }
-
-    /// What gave way so far.
-    #[must_use]
-    pub fn snaps(&self) -> &[Snap] {
-        &self.snaps
     }
 
     /// Its forces and rotations; none while it is undeformed, where they are not determined.
@@ -378,7 +358,7 @@ impl<'a> Follower<'a> {
             return Ok(Reached::Falls(last));
         }
         self.stance = there(to);
-        self.condition.supports = *self.stance.placement.support_poses();
+        self.condition.supports = self.stance.placement.support_poses;
         Ok(Reached::End)
     }
 
@@ -507,7 +487,7 @@ impl<'a> Follower<'a> {
 
     /// How fast blocks turn on the way to a state so far on.
     fn rates(&self, there: &State, way: f64) -> impl Iterator<Item = f64> {
-        let here = self.stance.placement.poses().iter();
+        let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);
         turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / way)
     }
@@ -583,8 +563,8 @@ impl<'a> Follower<'a> {
             let causes = state.map_or_else(Vec::new, |state| state.beyond(-self.slack));
             let snap = |after: Option<&Pins>| Snap {
                 at,
-                before: before.as_ref().map(|hinges| hinges.hinges().to_vec()),
-                after: after.map(|hinges| hinges.hinges().to_vec()),
+                before: before.as_ref().map(|hinges| hinges.hinges.to_vec()),
+                after: after.map(|hinges| hinges.hinges.to_vec()),
                 causes: causes.clone(),
             };
             if let Some((hinges, state)) = self.exchanged(&condition) {

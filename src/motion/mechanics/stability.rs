@@ -135,7 +135,7 @@ pub fn limit_with_yielding_ties(
         .collect();
     let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
-    let work_at_rest = work(row, undeformed.placement.centres_m(), &at_rest.velocities);
+    let work_at_rest = work(row, &undeformed.placement.centres_m, &at_rest.velocities);
     let mut highest = Highest::new(&most);
     highest.add(&Plane::new(row, work_at_rest, &at_rest.lengthening, sway));
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
@@ -189,7 +189,7 @@ pub fn limit_with_yielding_ties(
         onset: RowOnset {
             acceleration_g: push_g,
             openings: trial.openings(),
-            velocities: trial.program.velocities().to_vec(),
+            velocities: trial.program.velocities.to_vec(),
             lengthening: trial.lengthening(),
         },
         forces_n: {
@@ -407,10 +407,10 @@ impl<'a> Trial<'a> {
         let placement = &stance.placement;
         let mut program = Program::new(row);
         program.place(placement);
-        let gaps_m = placement.gaps_m().iter();
+        let gaps_m = placement.gaps_m.iter();
         Self {
             row,
-            centres_m: placement.centres_m(),
+            centres_m: &placement.centres_m,
             program,
             free: vec![Twist::ZERO; row.blocks().len()],
             jumps: vec![Twist::ZERO; row.joints().len()],
@@ -447,7 +447,7 @@ impl<'a> Trial<'a> {
             found = Some(RowOnset {
                 acceleration_g,
                 openings: self.openings(),
-                velocities: self.program.velocities().to_vec(),
+                velocities: self.program.velocities.to_vec(),
                 lengthening,
             });
             load = Vector2::new(sway.sign() * acceleration_g, -1.0);
@@ -474,7 +474,7 @@ impl<'a> Trial<'a> {
             touching: &self.touching,
         };
         self.program.solve(&load_case)?;
-        let blocks = self.centres_m.iter().zip(self.program.velocities());
+        let blocks = self.centres_m.iter().zip(&self.program.velocities);
         let speed = |(centre_m, twist): (&Vector2<f64>, &Twist)| {
             let centre = twist.at(*centre_m).norm();
             centre.max(twist.rate.abs() * self.row.size_m())
@@ -485,12 +485,12 @@ impl<'a> Trial<'a> {
 
     /// Integral of the velocities of the last trial over the masses.
     fn work(&self) -> Vector2<f64> {
-        work(self.row, self.centres_m, self.program.velocities())
+        work(self.row, self.centres_m, &self.program.velocities)
     }
 
     /// Rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
-        let velocities = self.program.velocities();
+        let velocities = &self.program.velocities;
         self.lines
             .iter()
             .map(|line| line.lengthening(velocities))
@@ -504,7 +504,7 @@ impl<'a> Trial<'a> {
         opens
             .map(|(joint, rates)| Opening {
                 joint,
-                hinge: match self.program.active()[joint] {
+                hinge: match self.program.active[joint] {
                     [true, _] => Some(Edge::Intrados),
                     [_, true] => Some(Edge::Extrados),
                     _ => None,

@@ -27,8 +27,8 @@ impl Stance {
 
     /// How the ties of the row lie there.
     pub fn lines(&self, row: &Row) -> impl Iterator<Item = TieLine> {
-        let poses = self.placement.poses();
-        lines(row, self.placement.support_poses(), |block| poses[block])
+        let poses = &self.placement.poses;
+        lines(row, &self.placement.support_poses, |block| poses[block])
     }
 
     /// What its ties pull with, in N.

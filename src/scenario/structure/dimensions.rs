@@ -202,21 +202,17 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     };
     let mut dimensions = Vec::from(span_and_rise(ends, ends[0].y + rise_m, line));
     let piers = [
-        (masonry.piers().left, left.intrados_m, DimensionSide::Left),
-        (
-            masonry.piers().right,
-            right.intrados_m,
-            DimensionSide::Right,
-        ),
+        (masonry.piers.left, left.intrados_m, DimensionSide::Left),
+        (masonry.piers.right, right.intrados_m, DimensionSide::Right),
     ];
-    let same = masonry.piers().left == masonry.piers().right;
+    let same = masonry.piers.left == masonry.piers.right;
     for (pier, inner, side) in piers {
         let Some(pier) = pier.filter(|_| !(same && side == DimensionSide::Right)) else {
             continue;
         };
         dimensions.extend(of_pier(&pier, inner, side));
     }
-    let fill = masonry.carried().fill_m.iter();
+    let fill = masonry.carried.fill_m.iter();
     let level_m = fill
         .flat_map(|(_, outline)| outline)
         .map(|corner| corner.y)
@@ -261,7 +257,7 @@ fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
         parts.extend(measured(&circular.arch));
     }
     parts.push(format!("{} blocks", masonry.row().blocks().len()));
-    if let Some(fill) = masonry.fill() {
+    if let Some(fill) = masonry.fill {
         let level = match fill.level {
             FillLevel::AboveSpringing(height_m) => {
                 format!("{} m above the springing", metres(height_m))
@@ -271,7 +267,7 @@ fn of_masonry_in_words(masonry: &Masonry) -> Vec<String> {
         let density = metres(fill.density_kg_m3);
         parts.push(format!("fill to {level}, {density} kg/m3"));
     }
-    for load in masonry.loads() {
+    for load in &masonry.loads {
         let over = match load.width_m {
             0.0 => String::new(),
             width_m => format!(" over {} m", metres(width_m)),

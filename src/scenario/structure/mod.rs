@@ -176,7 +176,7 @@ impl Structure {
     pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
         match self {
             Self::Arch(_) | Self::Column(_) => None,
-            Self::Masonry(masonry) => Some((masonry.carried(), masonry.loads())),
+            Self::Masonry(masonry) => Some((&masonry.carried, &masonry.loads)),
         }
     }
 

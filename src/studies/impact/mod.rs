@@ -99,7 +99,7 @@ impl<'a> LinkImpact<'a> {
         if !models.contains(&own) {
             models.push(own);
         }
-        let (profile, sites) = (self.profile(), self.chain().sites());
+        let (profile, sites) = (self.profile(), self.chain().sites);
         models
             .into_iter()
             .map(|model| (model, impact_by(before, profile, sites, model)))
@@ -112,7 +112,7 @@ impl<'a> LinkImpact<'a> {
         before: &FourLink,
         joints: Option<usize>,
     ) -> Result<Projection, ProjectionError> {
-        let (profile, sites) = (self.profile(), self.chain().sites());
+        let (profile, sites) = (self.profile(), self.chain().sites);
         let mechanism = self.after().map(|link| &link.mechanism);
         let joints = joints.unwrap_or(DEFAULT_JOINTS);
         let joints_rad = joints_rad(profile, sites, joints, mechanism);

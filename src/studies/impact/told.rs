@@ -86,7 +86,7 @@ fn section_cell(profile: &dyn Profile, section: f64) -> Cell<'static> {
 
 /// Extremes of the line; infinite values, which mean tension, become null.
 fn extremes(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Value {
-    let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
+    let extremes = line.extremes_from_left(impact.chain().sites, impact.sway());
     let unit = impact.model.impulse_unit_n_s_per_m();
     let mut told = json!({ "admissible": extremes.is_admissible() });
     for (what, value, extremum, unit) in [
@@ -158,7 +158,7 @@ pub(super) fn certificate(impact: &LinkImpact<'_>, projection: &Projection) -> V
     }
     let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
     let admissible = impact.line().map(|line| {
-        line.extremes_from_left(impact.chain().sites(), sway)
+        line.extremes_from_left(impact.chain().sites, sway)
             .is_admissible()
     });
     json!({
@@ -184,7 +184,7 @@ pub(super) fn line_table(
 ) -> Result<Vec<u8>, OutputError> {
     let unit = impact.model.impulse_unit_n_s_per_m();
     let (profile, sway) = (impact.profile(), impact.sway());
-    let mut sections = profile.sections(match impact.chain().sites() {
+    let mut sections = profile.sections(match impact.chain().sites {
         HingeSites::Anywhere => LINE_PARTS,
         HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
     });

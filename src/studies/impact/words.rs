@@ -182,7 +182,7 @@ pub(super) fn impulses_text(model: &FourLinks, first: Sway, count: usize) -> Str
     );
     let at = |extremum: Extremum| section_text(profile, extremum.angle_rad);
     for (impact, line) in lines() {
-        let extremes = line.extremes_from_left(impact.chain().sites(), impact.sway());
+        let extremes = line.extremes_from_left(impact.chain().sites, impact.sway());
         // Both are infinite if there is tension.
         let ratio = |extremum: Extremum| match extremum.value {
             value if value.is_finite() => format!("{value:>9.5}"),
@@ -235,7 +235,7 @@ pub(super) fn models_text(
             text += "  no mechanism can follow\n";
             continue;
         };
-        let sites = asked.chain().sites();
+        let sites = asked.chain().sites;
         let line = impact.impulse_line.as_ref();
         let line = line.map_or_else(
             || "none".to_owned(),
@@ -274,7 +274,7 @@ pub(super) fn certificate_text(
         projection.restitution,
     );
     if let Some(line) = asked.line() {
-        let extremes = line.extremes_from_left(asked.chain().sites(), sway);
+        let extremes = line.extremes_from_left(asked.chain().sites, sway);
         let eccentricity = extremes.eccentricity_ratio;
         let _ = if extremes.is_admissible() {
             writeln!(
@@ -353,7 +353,7 @@ fn zones(asked: &LinkImpact<'_>, projection: &Projection) -> Vec<Zone> {
         let section = projection.joints[joint].angle_rad;
         let section = asked.sway().from_left(asked.profile(), section);
         let continues = |zone: &&mut Zone| {
-            asked.chain().sites() == HingeSites::Anywhere
+            asked.chain().sites == HingeSites::Anywhere
                 && zone.edge == edge
                 && zone.joint + 1 == joint
         };

@@ -8,7 +8,7 @@ use super::told::{forces, openings_text, places_of_ties, starts_json};
 use super::{Answer, NoLimit};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::friction;
-use crate::mechanics::settling::{Follower, Hinge, Movements, Pins, SettlingError};
+use crate::mechanics::settling::{Follower, Hinge, Movements, SettlingError};
 use crate::mechanics::stability::{RowOnset, onset_at};
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
@@ -25,7 +25,7 @@ pub(super) fn limit(
     let mut follower = Follower::new(row)?;
     // That it follows them was seen when the scenario was read.
     follower.move_supports(|part| movements.times(part), 0.0, 1.0)?;
-    let stance = follower.stance();
+    let stance = &follower.stance;
     let starts = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
     let starts_g = [starts(Sway::Right)?, starts(Sway::Left)?];
     let onsets = SIDES.map(|sway| mechanism(row, &follower, sway));
@@ -33,7 +33,7 @@ pub(super) fn limit(
         Some(start_g) => follower.capacity_g(SIDES[side], start_g),
         None => Ok(None),
     });
-    let hinges = follower.hinges().map_or(&[][..], Pins::hinges);
+    let hinges = follower.hinges().map_or(&[][..], |pins| &pins.hinges);
 
     let mut json = starts_json(row, starts_g, &onsets, scenario.gravity_m_s2());
     let [right, left] = [0, 1].map(|side| falls[side].as_ref().ok());
@@ -118,7 +118,7 @@ fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset>
     if follower.is_held_by_ties() {
         return None;
     }
-    onset_at(row, follower.stance(), sway).ok().flatten()
+    onset_at(row, &follower.stance, sway).ok().flatten()
 }
 
 /// What its ties do, in words.

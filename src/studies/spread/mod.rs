@@ -196,7 +196,7 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
     let mut start = Follower::new(row)?;
     // That it stands there was seen when the scenario was read.
     start.move_supports(|part| settled.times(part), 0.0, 1.0)?;
-    let before = start.snaps().len();
+    let before = start.snaps.len();
     let mut scout = start.clone();
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
         Ok(Reached::Falls(at_m)) => (at_m, Some(at_m), None),
@@ -232,17 +232,17 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
     Ok(Path {
         way,
         stages: stages.collect(),
-        snaps: scout.snaps()[before..].to_vec(),
+        snaps: scout.snaps[before..].to_vec(),
         falls_at_m,
         lost,
     })
 }
 
 fn stage(follower: &Follower<'_>, movement_m: f64) -> Stage {
-    let row = follower.row();
+    let row = follower.row;
     let (place, crown_m) = row.crown();
     let block = place as usize;
-    let poses = follower.placement().poses();
+    let poses = &follower.placement().poses;
     let mut not_found = Vec::new();
     let mut found = |push, sway, result: Result<Option<f64>, SettlingError>| {
         result.unwrap_or_else(|reason| {
@@ -281,7 +281,7 @@ impl Stage {
     /// The hinges, none where nothing has moved.
     #[must_use]
     pub fn hinges(&self) -> &[Hinge] {
-        self.state.as_ref().map_or(&[], State::hinges)
+        self.state.as_ref().map_or(&[], |state| &state.hinges)
     }
 
     /// A push to the right and to the left.

@@ -182,7 +182,7 @@ impl<'a> Cell<'a> {
                 });
             let stroke = Stroke::new(color::BLUE, 1.6, "");
             drawing.curve("thrust line", thrust, stroke);
-            for hinge in state.hinges() {
+            for hinge in &state.hinges {
                 let corner_m = self.row.joints()[hinge.joint].corner_m(hinge.edge);
                 let at = px(self.pose_at(hinge.joint).of(corner_m));
                 drawing.circle("hinge", at, 3.2, HINGE);

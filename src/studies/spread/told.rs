@@ -60,7 +60,7 @@ fn table(spread: &SpreadPaths, weight_n: f64) -> Result<Vec<u8>, OutputError> {
         .collect();
     let states = rows.iter().filter_map(|(_, stage)| stage.state.as_ref());
     // Ties may hold it on more.
-    let most = states.map(|state| state.hinges().len()).fold(3, usize::max);
+    let most = states.map(|state| state.hinges.len()).fold(3, usize::max);
     let hinges = (1..=most).flat_map(|hinge| {
         ["joint", "edge", "rotation_rad"].map(|what| format!("hinge_{hinge}_{what}"))
     });
@@ -74,7 +74,7 @@ fn table(spread: &SpreadPaths, weight_n: f64) -> Result<Vec<u8>, OutputError> {
         several(hinges, |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
             for index in 0..most {
                 let state = row.1.state.as_ref();
-                let hinge = state.and_then(|state| state.hinges().get(index));
+                let hinge = state.and_then(|state| state.hinges.get(index));
                 let turn_rad = state.and_then(|state| state.turns_rad.get(index));
                 cells.push(hinge.map(|hinge| hinge.joint).into());
                 cells.push(hinge.map(|hinge| hinge.edge.name()).into());
@@ -142,7 +142,7 @@ fn snap(snap: &Snap) -> Value {
 fn stage_json(stage: &Stage, weight_n: f64) -> Value {
     let state = stage.state.as_ref();
     let open: Vec<Value> = state.map_or_else(Vec::new, |state| {
-        let hinges = state.hinges().iter().zip(&state.turns_rad);
+        let hinges = state.hinges.iter().zip(&state.turns_rad);
         let open = hinges.map(|(hinge, turn_rad)| {
             json!({ "joint": hinge.joint, "edge": hinge.edge.name(), "rotation_rad": turn_rad })
         });

@@ -187,7 +187,7 @@ impl ElasticJoints {
     /// The longest step where none is given, in seconds.
     pub fn default_step_s(structure: &ElasticStructure) -> f64 {
         let frequency = structure.frequency_bound_rad_s();
-        let damped = 0.5 * structure.damping_time_s() * frequency / DAMPED;
+        let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
         let [undamped, enough] = STEP_RATIO;
         let ratio = undamped + (enough - undamped) * damped.min(1.0);
         ratio * structure.stable_step_s()
@@ -254,7 +254,7 @@ impl ElasticJoints {
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
-        let structure = structure.on_supports(*self.structure.supports());
+        let structure = structure.on_supports(self.structure.supports);
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 

@@ -56,8 +56,8 @@ impl<R: Real> Moving<R> {
 /// The bodies of a joint, of which the last two are the supports.
 #[inline(always)]
 fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
-    let right = structure.bodies().len() + 1;
-    both!(end: joint.link.bodies()[end].min(right))
+    let right = structure.bodies.len() + 1;
+    both!(end: joint.link.bodies[end].min(right))
 }
 
 /// Motions side by side, each in its lane. What happens in one lane depends on no other.
@@ -208,20 +208,20 @@ impl<'a, const L: usize> Motion<'a, L> {
             force_n: [zero; 2],
             moment_n_m: zero,
         };
-        let joints = structure.joints().len();
+        let joints = structure.joints.len();
         let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
             gravity_m_s2,
             arch: Arch::new(),
-            bodies: vec![body; structure.bodies().len() + 2],
-            datum: vec![[0.0; 3]; structure.bodies().len()],
-            inverses: structure.bodies().iter().map(inverse).collect(),
+            bodies: vec![body; structure.bodies.len() + 2],
+            datum: vec![[0.0; 3]; structure.bodies.len()],
+            inverses: structure.bodies.iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
             bearing: [Bearing::none(); TOGETHER],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
             ties: structure
-                .ties()
+                .ties
                 .iter()
                 .map(|bound| TieMemory::undeformed(&bound.tie))
                 .collect(),
@@ -303,7 +303,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// Moves the right support, and finds the forces; its work is the mean of the forces on it before and after, times its way.
     #[inline(always)]
     fn part(&mut self, step: &Step<L>) {
-        let right = self.structure.bodies().len() + 1;
+        let right = self.structure.bodies.len() + 1;
         let by_m = step.apart_m;
         let support = &mut self.bodies[right];
         let (before, moved) = (support.force_n, support.place.moved_m);
@@ -321,7 +321,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         let [sideways, upwards] = step.shift_m_s;
         let fall = [sideways, upwards + step.kick_s * self.gravity_m_s2];
         let mut work = Lanes([0.0; L]);
-        let constants = structure.bodies();
+        let constants = &structure.bodies;
         let mut index = 0;
         while index < constants.len() {
             let (constants, body) = (&constants[index], &mut self.bodies[index]);
@@ -343,7 +343,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     #[inline(always)]
     fn drift(&mut self, drift_s: Lanes<L>) {
         let mut index = 0;
-        while index < self.structure.bodies().len() {
+        while index < self.structure.bodies.len() {
             let body = &mut self.bodies[index];
             index += 1;
             let moved = body.place.moved_m;
@@ -366,11 +366,11 @@ impl<'a, const L: usize> Motion<'a, L> {
             body.moment_n_m = zero;
         }
         let structure = self.structure;
-        let damps = structure.damping_time_s() > 0.0;
+        let damps = structure.damping_time_s > 0.0;
         let damping = if damps { Some(damping) } else { None };
-        let (law, each) = (structure.law(), structure.fibres());
+        let (law, each) = (&structure.law, structure.fibres());
         let (mut friction_j, mut balance_j, mut damped_j, mut crushed_j) = (zero, zero, zero, zero);
-        for (part, joints) in structure.joints().chunks(TOGETHER).enumerate() {
+        for (part, joints) in structure.joints.chunks(TOGETHER).enumerate() {
             let first = part * TOGETHER;
             let memories = &mut self.memories[first..first + joints.len()];
             let bearing = &mut self.bearing[..joints.len()];
@@ -415,10 +415,10 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// Adds the forces of the ties; they remember.
     #[inline(always)]
     fn pull(&mut self) {
-        let ground = self.structure.bodies().len();
+        let ground = self.structure.bodies.len();
         let mut index = 0;
         while index < self.ties.len() {
-            let (bound, memory) = (&self.structure.ties()[index], &mut self.ties[index]);
+            let (bound, memory) = (&self.structure.ties[index], &mut self.ties[index]);
             index += 1;
             let [first, second] = both!(end: bound.bodies[end].min(ground + 1));
             let places = [&self.bodies[first].place, &self.bodies[second].place];
@@ -454,7 +454,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             turned_rad: zero,
             deepest: [zero; 2],
         };
-        for (index, (constants, body)) in structure.bodies().iter().zip(&self.bodies).enumerate() {
+        for (index, (constants, body)) in structure.bodies.iter().zip(&self.bodies).enumerate() {
             let datum = self.datum[index].map(|part| Lanes([part; L]));
             let (mass, inertia) = (constants.mass_kg, constants.inertia_kg_m2);
             let velocity = self.velocity(index, half);
@@ -472,7 +472,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             seen.sway_kg_m += x * mass;
             let mut nearest = Lanes([f64::INFINITY; L]);
             for slide in slides {
-                let along = structure.joints()[slide.joint].link.along();
+                let along = structure.joints[slide.joint].link.along;
                 let slid = self.memories[slide.joint].slipped_m * slide.sense;
                 let gone = self.gone(slide.support);
                 let beside = [
@@ -484,12 +484,12 @@ impl<'a, const L: usize> Motion<'a, L> {
             seen.farthest_m2 = seen.farthest_m2.max(nearest);
             seen.turned_rad = seen.turned_rad.max((body.angle_rad - datum[2]).abs());
         }
-        for (bound, memory) in structure.ties().iter().zip(&self.ties) {
+        for (bound, memory) in structure.ties.iter().zip(&self.ties) {
             seen.elastic_j += memory.energy_j(&bound.tie);
             seen.spent.ties_j += memory.taken_j;
         }
         let each = structure.fibres();
-        for (index, (joint, memory)) in structure.joints().iter().zip(&self.memories).enumerate() {
+        for (index, (joint, memory)) in structure.joints.iter().zip(&self.memories).enumerate() {
             let fibres = &self.fibres[index * each..(index + 1) * each];
             seen.elastic_j += structure.energy_j(joint, memory, fibres);
             let deepest = memory.penetrations_m[0].max(memory.penetrations_m[1]);
@@ -507,8 +507,8 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// How far a support has gone since the beginning, the left one being 0, in m.
     #[inline(always)]
     fn gone(&self, support: usize) -> [Lanes<L>; 2] {
-        let body = &self.bodies[self.structure.bodies().len() + support];
-        let rest = &self.structure.supports()[support];
+        let body = &self.bodies[self.structure.bodies.len() + support];
+        let rest = &self.structure.supports[support];
         both!(i: body.place.moved_m[i] - Lanes([rest[i]; L]))
     }
 
@@ -553,7 +553,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Momentum in a lane, half a step before.
     pub(super) fn momentum(&self, lane: usize) -> [f64; 2] {
-        let bodies = self.structure.bodies().iter().zip(&self.bodies);
+        let bodies = self.structure.bodies.iter().zip(&self.bodies);
         bodies.fold([0.0; 2], |sum, (constants, body)| {
             [0, 1].map(|axis| sum[axis] + constants.mass_kg * body.velocity_m_s[axis].0[lane])
         })
@@ -599,8 +599,8 @@ impl<'a> Motion<'a, 1> {
             body.angle_rad = Lanes([moved[2]]);
         }
         let supports = motion.bodies.iter_mut().skip(rest.moved.len());
-        for (support, moved) in supports.zip(structure.supports()) {
-            support.place = Place::at(moved);
+        for (support, moved) in supports.zip(structure.supports) {
+            support.place = Place::at(&moved);
         }
         motion.memories.copy_from_slice(&rest.memories);
         motion.fibres.copy_from_slice(&rest.fibres);

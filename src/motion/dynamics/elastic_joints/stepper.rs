@@ -268,7 +268,7 @@ impl<'a, const L: usize> Group<'a, L> {
             .sum();
         let structure = self.start.structure;
         begun.course.of_row.sliding =
-            (structure.slips()).then(|| Sliding::none(structure.joints().len()));
+            (structure.slips()).then(|| Sliding::none(structure.joints.len()));
         begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
         let seen = self.motion.observe(&Step::none(), &self.slides);
@@ -283,7 +283,7 @@ impl<'a, const L: usize> Group<'a, L> {
 
     /// Steps until a motion has been observed.
     pub(super) fn stride(&mut self) {
-        let damping_time_s = self.start.structure.damping_time_s();
+        let damping_time_s = self.start.structure.damping_time_s;
         loop {
             let mut step = Step::none();
             let (mut happens, mut due) = (Happens::default(), false);
@@ -357,7 +357,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let taken = taken_with(of(spent.slip_balance_j));
         course.of_row.energy_taken_j = taken_with(lane.elastic.friction_j);
         lane.happened.clear();
-        let bound = self.start.structure.ties().iter();
+        let bound = self.start.structure.ties.iter();
         for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
             let Some(known) = course.of_row.ties.get_mut(tie) else {
                 let at_rest = TieSummary::at_rest(&bound.tie, &memory, time);
@@ -379,7 +379,7 @@ impl<'a, const L: usize> Group<'a, L> {
                 time_s: time,
             };
         }
-        let joints = self.start.structure.joints();
+        let joints = &self.start.structure.joints;
         if course.rocks != Some(true) || !course.moved {
             let edges = (0..joints.len()).map(|joint| self.motion.memory(joint, index));
             let penetrations_m = edges.map(|edges| edges.penetrations_m.map(|end| end.0[0]));
@@ -405,7 +405,7 @@ impl<'a, const L: usize> Group<'a, L> {
                 .find(|slide| slide.joint == joint && slide.goes_on)
             {
                 Some(slide) => slid += slipped_m * slide.along_x,
-                None => lane.overturned |= slipped_m.abs() >= with_joint.link.length_m(),
+                None => lane.overturned |= slipped_m.abs() >= with_joint.link.length_m,
             }
         }
         // Between feet that part the middle goes half the way.
@@ -566,15 +566,15 @@ impl<'a> ElasticStepper<'a> {
     /// Where the bodies of a joint are.
     fn places(&self, joint: usize) -> [Place<Lanes<1>>; 2] {
         let structure = self.group.start.structure;
-        let ground = structure.bodies().len();
-        let pair = structure.joints()[joint].link.bodies();
+        let ground = structure.bodies.len();
+        let pair = structure.joints[joint].link.bodies;
         pair.map(|body| self.group.motion.place(body.min(ground + 1), 0))
     }
 
     /// Forces and stresses of a joint, by its elastic stress.
     fn pressure(&self, index: usize) -> JointPressure {
         let structure = self.group.start.structure;
-        let joint = &structure.joints()[index];
+        let joint = &structure.joints[index];
         let [first, second] = self.places(index);
         let memory = self.group.motion.memory(index, 0);
         let mut fibres: Vec<_> = self.group.motion.fibres(index, 0).collect();
@@ -651,7 +651,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         }
         sample.feet_apart_m = self.lane().apart_m;
         let seen = motion.observe(&half, &self.group.slides);
-        let joints = self.group.start.structure.joints().len();
+        let joints = self.group.start.structure.joints.len();
         for joint in 0..joints {
             let pressure = self.pressure(joint);
             if pressure.normal_n >= self.course().least_load_n() {
@@ -661,7 +661,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
         }
-        let bound = self.group.start.structure.ties().iter();
+        let bound = self.group.start.structure.ties.iter();
         let ties = bound.zip(self.group.motion.ties(0));
         sample
             .ties
@@ -688,13 +688,13 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
-        let link = &self.group.start.structure.joints()[joint].link;
+        let link = &self.group.start.structure.joints[joint].link;
         let blocks = self.group.row.blocks();
         // The face of the block, or of the first of two.
-        let end = usize::from(link.bodies()[0] >= blocks.len());
-        let centre_m = blocks[link.bodies()[end]].centre_m;
-        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies()[end], 0));
-        let (rotation_rad, _) = self.group.motion.turn(link.bodies()[end], 0);
+        let end = usize::from(link.bodies[0] >= blocks.len());
+        let centre_m = blocks[link.bodies[end]].centre_m;
+        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies[end], 0));
+        let (rotation_rad, _) = self.group.motion.turn(link.bodies[end], 0);
         Pose::about(centre_m, centre_m + moved_m, rotation_rad)
             .of(self.group.row.joints()[joint].corner_m(edge))
     }

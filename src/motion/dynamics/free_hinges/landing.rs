@@ -300,7 +300,7 @@ impl<'a> LandingStepper<'a> {
             return Err(FreeHingeError::Open { error_m });
         }
         self.closer.close(&mut self.placement);
-        let gaps = self.placement.gaps_m().iter();
+        let gaps = self.placement.gaps_m.iter();
         let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
         let open = active
             .iter()
@@ -312,11 +312,11 @@ impl<'a> LandingStepper<'a> {
         }
         self.program.place(&self.placement);
         self.weigh_pieces();
-        let poses = self.placement.poses();
+        let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         self.start_energy = self.energy();
         self.stands = open == 0;
-        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
+        let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         let sway = self.sway_kg_m();
         self.course
             .released(rotations, self.start_energy, sway, open > 0);
@@ -413,7 +413,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Marks the corners that touch: they may not close.
     fn touch_shut(&mut self) {
-        for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
+        for (touching, gaps) in self.touching.iter_mut().zip(&self.placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
     }
@@ -425,7 +425,7 @@ impl<'a> LandingStepper<'a> {
             let end = self.pieces.get(index + 1).map_or(blocks, |next| next.first);
             self.free[piece.first..end].fill(piece.twist(kick));
         }
-        let centres_m = self.placement.centres_m();
+        let centres_m = &self.placement.centres_m;
         let free = &mut self.free;
         self.ties
             .pull(centres_m, lasts_s, |block, velocity, turning| {
@@ -504,7 +504,7 @@ impl<'a> LandingStepper<'a> {
             let Some(edge) = self.turning[joint] else {
                 continue;
             };
-            let gaps = self.placement.gaps_m()[joint];
+            let gaps = self.placement.gaps_m[joint];
             let nearer = if gaps[0] < gaps[1] {
                 Edge::Intrados
             } else if gaps[0] > gaps[1] {
@@ -512,7 +512,7 @@ impl<'a> LandingStepper<'a> {
             } else {
                 edge
             };
-            let point = self.placement.frames()[joint].corner_m(nearer);
+            let point = self.placement.frames[joint].corner_m(nearer);
             let bend = |piece: &Piece| piece.bend(point, step);
             let left = index.checked_sub(1).map(|left| &self.pieces[left]);
             let jump = left.map_or(Vector2::zeros(), bend) - right.map_or(Vector2::zeros(), bend);
@@ -520,7 +520,7 @@ impl<'a> LandingStepper<'a> {
         }
         for (joint, rates) in self.landing.iter().enumerate() {
             if *rates != [0.0; 2] {
-                let frame = &self.placement.frames()[joint];
+                let frame = &self.placement.frames[joint];
                 let rate = self.row.handedness() * (rates[1] - rates[0]) / frame.thickness_m;
                 self.jumps[joint] = self.jumps[joint]
                     + Twist::translation(frame.normal * rates[0])
@@ -545,7 +545,7 @@ impl<'a> LandingStepper<'a> {
             return 0.0;
         }
         self.program.joint_impulses(&mut self.shares);
-        let mut joints = self.placement.frames().iter().zip(&self.shares);
+        let mut joints = self.placement.frames.iter().zip(&self.shares);
         let by_row = joints
             .next_back()
             .map_or(Vector2::zeros(), |(frame, shares)| {
@@ -560,7 +560,7 @@ impl<'a> LandingStepper<'a> {
     fn first_fall(&self) -> Option<Fall> {
         let mut first: Option<Fall> = None;
         for (joint, rates) in self.program.open_joints() {
-            let gaps = self.placement.gaps_m()[joint];
+            let gaps = self.placement.gaps_m[joint];
             for edge in 0..2 {
                 let fall = Fall {
                     joint,
@@ -590,10 +590,10 @@ impl<'a> LandingStepper<'a> {
         for round in 0.. {
             self.landed.clear();
             for (joint, rates) in self.program.open_joints() {
-                let gaps = self.placement.gaps_m()[joint];
+                let gaps = self.placement.gaps_m[joint];
                 for edge in 0..2 {
                     let rate = rates[edge] + self.landing[joint][edge];
-                    let thickness = self.placement.frames()[joint].thickness_m;
+                    let thickness = self.placement.frames[joint].thickness_m;
                     let lands = gaps[edge] + step * rate < -SHUT_RATIO * thickness;
                     if !self.touching[joint][edge] && lands {
                         self.landed.push((joint, edge));
@@ -607,7 +607,7 @@ impl<'a> LandingStepper<'a> {
             if round >= LANDING_ROUNDS {
                 let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
                 let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
-                for (touching, gaps) in self.touching.iter_mut().zip(self.placement.gaps_m()) {
+                for (touching, gaps) in self.touching.iter_mut().zip(&self.placement.gaps_m) {
                     for edge in 0..2 {
                         touching[edge] |= gaps[edge] < step * fastest;
                     }
@@ -618,7 +618,7 @@ impl<'a> LandingStepper<'a> {
                 self.program.press(*joint, *edge);
             }
             for (joint, touching) in self.touching.iter().enumerate() {
-                let rates = self.placement.gaps_m()[joint].map(|gap| -gap / step);
+                let rates = self.placement.gaps_m[joint].map(|gap| -gap / step);
                 self.landing[joint] = match touching {
                     [true, true] => rates,
                     [true, false] => [rates[0]; 2],
@@ -672,7 +672,7 @@ impl<'a> LandingStepper<'a> {
             if ends {
                 let sum = moments[joint] - moments[first];
                 let centre = sum.centroid();
-                let twist = self.program.velocities()[first];
+                let twist = self.program.velocities[first];
                 self.next_pieces.push(Piece {
                     first,
                     mass: sum.mass,
@@ -729,7 +729,7 @@ impl<'a> LandingStepper<'a> {
         self.take_pieces();
         self.course.time += step.length_s;
         self.closer.close(&mut self.placement);
-        let poses = self.placement.poses();
+        let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
@@ -754,8 +754,8 @@ impl<'a> LandingStepper<'a> {
         }
         let was_open = self.placement.open_corners() > 0;
         self.right.go(time_s);
-        let stood = self.rest.placement().support_poses();
-        let poses = self.right.poses(stood);
+        let stood = self.rest.placement().support_poses;
+        let poses = self.right.poses(&stood);
         self.placement.move_supports(poses);
         self.ties.move_supports(poses);
         self.placement.open(|joint| change[joint]);
@@ -770,7 +770,7 @@ impl<'a> LandingStepper<'a> {
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
         for (joint, _) in self.program.open_joints() {
-            self.turning[joint] = Some(match self.program.active()[joint] {
+            self.turning[joint] = Some(match self.program.active[joint] {
                 [false, true] => Edge::Extrados,
                 _ => Edge::Intrados,
             });
@@ -789,7 +789,7 @@ impl<'a> LandingStepper<'a> {
             let (mut first, mut mass) = (Vector2::zeros(), 0.0);
             for (block, centre) in blocks[piece.first..end]
                 .iter()
-                .zip(&self.placement.centres_m()[piece.first..end])
+                .zip(&self.placement.centres_m[piece.first..end])
             {
                 first += centre * block.mass_kg;
                 mass += block.mass_kg;
@@ -801,7 +801,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Whether a corner touches that did not at the beginning of the step.
     fn has_landed(&self) -> bool {
-        let corners = self.placement.gaps_m().iter().zip(&self.closed);
+        let corners = self.placement.gaps_m.iter().zip(&self.closed);
         corners
             .flat_map(|(gaps, closed)| gaps.iter().zip(closed))
             .any(|(gap, closed)| *gap == 0.0 && !closed)
@@ -810,12 +810,12 @@ impl<'a> LandingStepper<'a> {
     /// Completes the velocity at a landing with the old mechanism, then projects it.
     fn impact(&mut self) -> Result<(), FreeHingeError> {
         self.shut_what_landed();
-        self.pressed.copy_from_slice(self.program.active());
+        self.pressed.copy_from_slice(&self.program.active);
         self.complete_kick()?;
         let kinetic_before = kinetic(&self.next_pieces);
         self.course.potential = self.energy();
         self.audit(kinetic_before);
-        self.free.copy_from_slice(self.program.velocities());
+        self.free.copy_from_slice(&self.program.velocities);
         self.touch_shut();
         self.program.start_from(&self.pressed);
         self.press_landed();
@@ -887,7 +887,7 @@ mod tests {
     /// are per block the velocity of its centre and its rate times the radius of gyration, all times the root of its mass.
     fn judged(stepper: &LandingStepper) -> Option<Vec<Twist>> {
         let blocks = stepper.row.blocks();
-        let centres = stepper.placement.centres_m();
+        let centres = &stepper.placement.centres_m;
         let gyration = |b: usize| (blocks[b].inertia_kg_m2 / blocks[b].mass_kg).sqrt();
         let root = |b: usize| (blocks[b].mass_kg / blocks[0].mass_kg).sqrt();
         let scale = 1e-2;
@@ -903,7 +903,7 @@ mod tests {
         let gates: usize = stepper.touching.iter().flatten().filter(|t| **t).count();
         let mut right = vec![0.0; joints + gates];
         let mut gate = joints;
-        for (joint, frame) in stepper.placement.frames().iter().enumerate() {
+        for (joint, frame) in stepper.placement.frames.iter().enumerate() {
             let jump = stepper.jumps[joint];
             let mut kinds = vec![(joint, frame.intrados_m, frame.along, 1.0)];
             for (edge, touching) in [Edge::Intrados, Edge::Extrados]
@@ -995,11 +995,11 @@ mod tests {
                 // The solver cannot decide near rest, where the impulses are not unique.
                 let judge = judged(&stepper);
                 compared += usize::from(judge.is_some());
-                let velocities = stepper.program.velocities();
+                let velocities = &stepper.program.velocities;
                 for (block, (ours, judge)) in
                     velocities.iter().zip(judge.iter().flatten()).enumerate()
                 {
-                    let centre = stepper.placement.centres_m()[block];
+                    let centre = stepper.placement.centres_m[block];
                     fastest = fastest.max(ours.at(centre).norm());
                     worst = worst.max((ours.at(centre) - judge.at(centre)).norm());
                 }

@@ -21,7 +21,7 @@ impl<'a> Rest<'a> {
     pub fn new(row: &'a Row, placement: &Placement) -> Self {
         Self {
             row,
-            touching: touching(placement.gaps_m()).collect(),
+            touching: touching(&placement.gaps_m).collect(),
             placement: placement.clone(),
         }
     }
@@ -47,7 +47,7 @@ impl<'a> Rest<'a> {
 
     /// How the blocks are turned from there.
     pub fn turned_rad(&self, poses: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
-        let stood = self.placement.poses().iter().map(Pose::rotation_rad);
+        let stood = self.placement.poses.iter().map(Pose::rotation_rad);
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
@@ -62,7 +62,7 @@ impl<'a> Rest<'a> {
     }
 
     fn moved_kg_m(&self, centres_m: &[Vector2<f64>], part: impl Fn(Vector2<f64>) -> f64) -> f64 {
-        let stood = self.placement.centres_m().iter();
+        let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks().iter().zip(centres_m.iter().zip(stood));
         blocks
             .map(|(block, (now, stood))| block.mass_kg * part(now - stood))

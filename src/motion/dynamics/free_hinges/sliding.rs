@@ -145,9 +145,9 @@ impl<'a> SlidingStepper<'a> {
         let faces = Faces::of_row(row);
         let thicknesses_m = faces.iter().map(|faces| faces.thickness_m);
         let thinnest_m = thicknesses_m.fold(f64::INFINITY, f64::min);
-        let supports = placement.support_poses().map(|pose| Position::of(&pose));
+        let supports = placement.support_poses.map(|pose| Position::of(&pose));
         let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
-            let at = placement.centres_m().iter().zip(placement.poses());
+            let at = placement.centres_m.iter().zip(&placement.poses);
             let positions: Vec<Position> = at
                 .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()))
                 .collect();
@@ -165,12 +165,12 @@ impl<'a> SlidingStepper<'a> {
         course.of_row.sliding = Some(Sliding::none(joints));
         course.of_row.ties = ties.at_rest(ground.start_s());
         course.note_return();
-        let start_energy = gravity * rest.rise_kg_m(placement.centres_m());
-        let stands = rest.has(placement.gaps_m());
+        let start_energy = gravity * rest.rise_kg_m(&placement.centres_m);
+        let stands = rest.has(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
             let rotations = rest.turned_rad(rotations);
-            let sway = rest.sway_kg_m(placement.centres_m());
+            let sway = rest.sway_kg_m(&placement.centres_m);
             course.released(rotations, start_energy, sway, true);
         }
         Self {
@@ -204,7 +204,7 @@ impl<'a> SlidingStepper<'a> {
             quiet_since_s: ground.start_s(),
             friction_demand: 0.0,
             least_normal: f64::INFINITY,
-            centres: placement.centres_m().to_vec(),
+            centres: placement.centres_m.to_vec(),
             before: Vec::with_capacity(blocks),
             faces,
             thinnest_m,
@@ -267,7 +267,7 @@ impl<'a> SlidingStepper<'a> {
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
             // A joint that moves as one has no curvature, whatever straight lines say.
             let mut right = None;
-            if self.program.modes()[joint] != Mode::WHOLE {
+            if self.program.modes[joint] != Mode::WHOLE {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 lag += then.coordinates_m - now - self.program.joint_rate(joint) * step;
@@ -305,7 +305,7 @@ impl<'a> SlidingStepper<'a> {
     }
 
     fn note_forces(&mut self, time_s: f64) {
-        let impulses = self.program.impulses().iter();
+        let impulses = self.program.impulses.iter();
         let normals = impulses.clone().map(|impulse| impulse.x + impulse.y);
         let least = normals.fold(f64::INFINITY, f64::min);
         let loaded = self.course.least_load_n() * time_s;
@@ -320,7 +320,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// The impact that begins in the step that was solved, if a corner lands, without its energy.
     fn find_landing(&self, step: f64) -> Option<Landing> {
-        let (before, after) = (&self.modes_before, self.program.modes());
+        let (before, after) = (&self.modes_before, &self.program.modes);
         let lands = |joint: usize| {
             let (gaps, rates) = (
                 &self.contacts[joint].coordinates_m,
@@ -379,7 +379,7 @@ impl<'a> SlidingStepper<'a> {
     fn taken(&self, mean_m_s: Vector2<f64>) -> [Taken; 2] {
         let landed_before = self.landing.as_ref().map(|landing| &landing.corners);
         let mut parts = [Taken::default(); 2];
-        for (joint, impulse) in self.program.impulses().iter().enumerate() {
+        for (joint, impulse) in self.program.impulses.iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5
                 + self.carried(joint, mean_m_s);
             let by_row = impulse.component_mul(&mean);
@@ -390,7 +390,7 @@ impl<'a> SlidingStepper<'a> {
             let part = &mut parts[usize::from(late == [false; 2])];
             part.total_j -= by_row.z;
             let slips = |modes: &[Mode]| modes[joint].along != Along::Stick;
-            if slips(&self.modes_before) || slips(self.program.modes()) {
+            if slips(&self.modes_before) || slips(&self.program.modes) {
                 // Below the tolerance of the rates its sign is rounding.
                 part.friction_j += (-by_row.z).max(0.0);
             }
@@ -401,8 +401,8 @@ impl<'a> SlidingStepper<'a> {
     /// Energy that friction took in the step that was solved, at the rates at its end.
     fn held_back_j(&self) -> f64 {
         let mut held_back_j = 0.0;
-        for (joint, impulse) in self.program.impulses().iter().enumerate() {
-            if let Along::Slip(_) = self.program.modes()[joint].along {
+        for (joint, impulse) in self.program.impulses.iter().enumerate() {
+            if let Along::Slip(_) = self.program.modes[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
                 // Below the tolerance of the rates its sign is rounding.
                 held_back_j += (-impulse.z * rate).max(0.0);
@@ -428,14 +428,14 @@ impl<'a> SlidingStepper<'a> {
             return;
         }
         let after = if alone {
-            self.program.modes()
+            &self.program.modes
         } else {
             &self.modes_before
         };
         self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
         self.course.shut = landing.shut;
         let sticks = |mode: &Mode| mode.along == Along::Stick;
-        let moves = !(self.touches_as_it_stood() && self.program.modes().iter().all(sticks));
+        let moves = !(self.touches_as_it_stood() && self.program.modes.iter().all(sticks));
         self.tell_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
     }
 
@@ -455,14 +455,14 @@ impl<'a> SlidingStepper<'a> {
             self.right.take();
             self.right.go(self.course.time);
             self.right.is_followed();
-            let poses = self.right.poses(self.rest.placement().support_poses());
+            let poses = self.right.poses(&self.rest.placement().support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
             self.ties.move_supports(poses);
         }
         for joint in 0..self.faces.len() {
             let contact = contact(&self.faces, &self.supports, &self.positions, joint);
             let offset_m = contact.coordinates_m.z;
-            if self.program.modes()[joint].along != Along::Stick {
+            if self.program.modes[joint].along != Along::Stick {
                 self.stuck[joint] = offset_m;
             }
             let offset_m = self.stuck[joint].abs();
@@ -510,7 +510,7 @@ impl<'a> SlidingStepper<'a> {
     /// How far the row slid along its supports, left and right.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
-            let support = self.rest.placement().support_poses()[usize::from(joint > 0)];
+            let support = self.rest.placement().support_poses[usize::from(joint > 0)];
             let along = support.turned(self.row.joints()[joint].along());
             along * (sign * self.contacts[joint].coordinates_m.z)
         };
@@ -527,7 +527,7 @@ impl<'a> SlidingStepper<'a> {
         let gone = [left, right + self.right.gone_m()];
         let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
         let stood = self.rest.placement();
-        let stood = stood.centres_m().iter().zip(stood.poses());
+        let stood = stood.centres_m.iter().zip(&stood.poses);
         let mut blocks = stood.zip(&self.positions);
         blocks.any(|((centre_m, pose), position)| {
             let moved = position.centre_m - centre_m;
@@ -557,7 +557,7 @@ impl<'a> SlidingStepper<'a> {
         self.right.stop_at(self.course.time);
         let last = self.faces.len() - 1;
         let parting = self.carried(last, self.right.next_m_s());
-        let (modes, contacts, step) = (self.program.modes(), &self.contacts, self.last_step);
+        let (modes, contacts, step) = (&self.program.modes, &self.contacts, self.last_step);
         let apart = |joint: usize| {
             let gap = |end: usize| {
                 if modes[joint].pressed[end] {
@@ -582,7 +582,7 @@ impl<'a> SlidingStepper<'a> {
     fn report_uplift(&mut self, from_s: f64, energy_j: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
-        for (joint, mode) in self.program.modes().iter().enumerate() {
+        for (joint, mode) in self.program.modes.iter().enumerate() {
             let stood = self.rest.touching()[joint];
             if mode.pressed != stood && mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
@@ -602,7 +602,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Whether the corners are pressed that were where the row stood.
     fn touches_as_it_stood(&self) -> bool {
-        let modes = self.program.modes().iter().zip(self.rest.touching());
+        let modes = self.program.modes.iter().zip(self.rest.touching());
         modes
             .into_iter()
             .all(|(mode, stood)| mode.pressed == *stood)
@@ -685,7 +685,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         }
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
-        self.modes_before.copy_from_slice(self.program.modes());
+        self.modes_before.copy_from_slice(&self.program.modes);
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
@@ -720,7 +720,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let mean_m_s = self.right.mean_m_s();
         if self.right.moves() {
             let last = self.faces.len() - 1;
-            let carried_j = self.program.impulses()[last].dot(&self.carried(last, mean_m_s));
+            let carried_j = self.program.impulses[last].dot(&self.carried(last, mean_m_s));
             self.right.works(-carried_j);
             let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
             self.right.works(-pulled.dot(&mean_m_s));
@@ -775,7 +775,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         if thrust_line {
-            let impulses = self.auxiliary.impulses().iter();
+            let impulses = self.auxiliary.impulses.iter();
             let corners = impulses.map(|impulse| [impulse.x, impulse.y]);
             sample
                 .eccentricity_ratios
@@ -791,7 +791,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
-        let pressed = self.program.modes()[joint].pressed;
+        let pressed = self.program.modes[joint].pressed;
         let gaps = &self.contacts[joint].coordinates_m;
         [0, 1].map(|end| {
             if pressed[end] {
@@ -812,7 +812,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn slips(&self) -> bool {
-        let mut modes = self.program.modes().iter();
+        let mut modes = self.program.modes.iter();
         modes.any(|mode| matches!(mode.along, Along::Slip(_)))
     }
 

@@ -42,7 +42,7 @@ impl<'a> Ties<'a> {
         let mut ties = Self {
             row,
             ties: ties.collect(),
-            supports: *standing.placement.support_poses(),
+            supports: standing.placement.support_poses,
             at_rest_j: 0.0,
         };
         ties.at_rest_j = ties.energy_j();

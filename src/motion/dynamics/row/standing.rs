@@ -171,7 +171,7 @@ impl RigidRow {
         if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
             return Err(SettledError::Falls(part));
         }
-        if let Some(tie) = follower.stance().broken_tie() {
+        if let Some(tie) = follower.stance.broken_tie() {
             return Err(SettledError::Tie(tie));
         }
         let first_g = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
@@ -179,7 +179,7 @@ impl RigidRow {
         Ok(Self {
             incipient_g,
             with_friction_g: None,
-            standing: follower.stance().clone(),
+            standing: follower.stance.clone(),
             // That of the blocks alone: energies are judged beside it.
             first: self.first,
             row: self.row,

@@ -40,7 +40,7 @@ impl Closer {
     /// Takes up the closure error by the open joints, in positions only, while that at least halves it: the displacement of
     /// least kinetic norm, as far as the first corner shuts. That one stays shut, and the others take up the rest.
     pub fn close(&mut self, placement: &mut Placement) {
-        while let Some(closure) = placement.closure() {
+        while let Some(closure) = placement.closure {
             let error_m = closure.error_m.norm();
             if error_m <= CLOSURE_RATIO * self.thinnest_m {
                 return;
@@ -66,7 +66,7 @@ impl Closer {
 
     /// Changes of the gaps by the solution of the closure, as far as the first corner shuts; whether one does.
     fn closing_change(&mut self, placement: &Placement) -> bool {
-        let gaps_m = placement.gaps_m();
+        let gaps_m = &placement.gaps_m;
         let mut first = (1.0, None);
         for (joint, changes) in self.program.open_joints() {
             for edge in 0..2 {

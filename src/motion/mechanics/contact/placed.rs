@@ -53,9 +53,9 @@ impl Placed {
     /// Takes the positions of the blocks.
     pub fn place(&mut self, placement: &Placement) {
         self.frames.clear();
-        self.frames.extend_from_slice(placement.frames());
+        self.frames.extend_from_slice(&placement.frames);
         let mut moments = NO_MASS;
-        for (block, centre) in placement.centres_m().iter().enumerate() {
+        for (block, centre) in placement.centres_m.iter().enumerate() {
             let (mass, inertia) = self.masses[block];
             let own = MassMoments {
                 mass,

@@ -386,7 +386,7 @@ mod tests {
             let miss = |block| (program.velocity(block) - other.velocity(block)).norm();
             let miss = (0..positions.len()).map(miss).fold(0.0, f64::max);
             same += usize::from(miss < 1e-4);
-            let modes = program.modes();
+            let modes = program.modes;
             slipping += modes
                 .iter()
                 .filter(|mode| matches!(mode.along, Along::Slip(_)))

@@ -47,11 +47,16 @@ impl<R: Real> Place<R> {
 /// What a joint joins, undeformed: the first body is before the joint, the second one after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    bodies: [usize; 2],
-    arms_m: [[f64; 2]; 2],
-    along: [f64; 2],
-    handedness: f64,
-    length_m: f64,
+    /// The indices of the two bodies.
+    pub bodies: [usize; 2],
+    /// From the centres of the bodies to the middle of the joint, in m.
+    pub arms_m: [[f64; 2]; 2],
+    /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
+    pub along: [f64; 2],
+    /// 1 where the second body is to the left of that vector, else -1.
+    pub handedness: f64,
+    /// Length of the joint, in m.
+    pub length_m: f64,
     /// The arm of the first body along the joint, and across it, a quarter turn anticlockwise from there. Twice the second one less
     /// the first one, and their sum, likewise.
     first_m: [f64; 2],
@@ -128,37 +133,6 @@ impl Link {
             twice_between_m: both!(i: 2.0 * (second_m[i] - first_m[i])),
             sum_m: both!(i: first_m[i] + second_m[i]),
         }
-    }
-
-    /// The indices of the two bodies.
-    #[inline(always)]
-    #[must_use]
-    pub const fn bodies(&self) -> [usize; 2] {
-        self.bodies
-    }
-
-    /// From the centres of the bodies to the middle of the joint, in m.
-    #[must_use]
-    pub const fn arms_m(&self) -> [[f64; 2]; 2] {
-        self.arms_m
-    }
-
-    /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
-    #[must_use]
-    pub const fn along(&self) -> [f64; 2] {
-        self.along
-    }
-
-    /// 1 where the second body is to the left of that vector, else -1.
-    #[must_use]
-    pub const fn handedness(&self) -> f64 {
-        self.handedness
-    }
-
-    /// Length of the joint, in m.
-    #[must_use]
-    pub const fn length_m(&self) -> f64 {
-        self.length_m
     }
 
     /// The relative position of the faces with the bodies at these places.

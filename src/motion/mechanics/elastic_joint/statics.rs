@@ -105,9 +105,9 @@ impl Rest {
         let each = structure.fibres();
         let place =
             |body: usize| Place::at(self.moved.get(body).unwrap_or(structure.support(body)));
-        let joints = structure.joints().iter().enumerate();
+        let joints = structure.joints.iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
-            let [first, second] = joint.link.bodies().map(place);
+            let [first, second] = joint.link.bodies.map(place);
             let mut fibres = self.fibres[index * each..(index + 1) * each].to_vec();
             let memory = &self.memories[index];
             let (edges_n, _) = structure.elastic_n(joint, [&first, &second], memory, &mut fibres);
@@ -142,7 +142,7 @@ impl ElasticStructure {
         }
         let would_rest = |other: Self| other.balanced(load_m_s2).is_some();
         let without_slip = self.without_slip();
-        let law = self.law();
+        let law = &self.law;
         if law.friction[0] > 0.0 && would_rest(without_slip.clone()) {
             return Err(RestError::Friction);
         }
@@ -168,7 +168,7 @@ impl ElasticStructure {
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
         // What both supports do alike moves everything and bends nothing.
         let (along_m, along) = self.moved_along();
-        let from = along.supports().iter().zip(self.supports());
+        let from = along.supports.iter().zip(self.supports);
         let ways = from.map(|(from, to)| far(&[0, 1, 2].map(|axis| to[axis] - from[axis])));
         let extent_m = ways.sum::<f64>();
         // Parts of the whole movement.
@@ -287,7 +287,7 @@ impl ElasticStructure {
     #[must_use]
     pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
         // What ties add to it is not known.
-        if !self.ties().is_empty() {
+        if !self.ties.is_empty() {
             return None;
         }
         let load_m_s2 = [0.0, -gravity_m_s2];
@@ -296,7 +296,7 @@ impl ElasticStructure {
             return Some(pass_j - rest_j);
         }
         // Where it rests on supports that have moved depends on its way there, which softer joints go differently.
-        if self.law().crushes || self.has_settled() {
+        if self.law.crushes || self.has_settled() {
             return None;
         }
         let mut softer = self.without_slip().continuous();
@@ -390,19 +390,19 @@ struct Search<'a> {
 
 impl<'a> Search<'a> {
     fn new(structure: &'a ElasticStructure, load_m_s2: [f64; 2]) -> Self {
-        let joints = structure.joints();
-        let bodies = structure.bodies().len();
-        let ties = structure.ties().iter().map(|tie| tie.bodies);
-        let pairs = joints.iter().map(|joint| joint.link.bodies()).chain(ties);
+        let joints = &structure.joints;
+        let bodies = structure.bodies.len();
+        let ties = structure.ties.iter().map(|tie| tie.bodies);
+        let pairs = joints.iter().map(|joint| joint.link.bodies).chain(ties);
         let reach = pairs.map(|pair| match pair {
             [one, other] if one < bodies && other < bodies => one.abs_diff(other),
             _ => 0,
         });
-        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m()).sum();
+        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m).sum();
         Self {
             structure,
             load_m_s2,
-            yielded_m: vec![0.0; structure.ties().len()],
+            yielded_m: vec![0.0; structure.ties.len()],
             weight_n: structure.mass_kg() * load_m_s2[0].hypot(load_m_s2[1]),
             length_m: lengths / joints.len() as f64,
             width: 3 * reach.max().unwrap_or(0) + 2,
@@ -423,7 +423,7 @@ impl<'a> Search<'a> {
         matrix: Option<&mut Banded>,
         forces: &mut [f64],
     ) {
-        let bodies = self.structure.bodies();
+        let bodies = &self.structure.bodies;
         for (index, body) in bodies.iter().enumerate() {
             forces[3 * index] = body.mass_kg * self.load_m_s2[0];
             forces[3 * index + 1] = body.mass_kg * self.load_m_s2[1];
@@ -459,7 +459,7 @@ impl<'a> Search<'a> {
         place: impl Fn(usize, usize) -> Place<R>,
         mut found: impl FnMut(usize, [usize; 2], R),
     ) {
-        let bodies = self.structure.bodies().len();
+        let bodies = self.structure.bodies.len();
         let mut between = |pair: [usize; 2], action: &Action<R>| {
             let [x, y] = action.force_n;
             let on = [
@@ -474,10 +474,10 @@ impl<'a> Search<'a> {
                 }
             }
         };
-        for joint in self.structure.joints() {
-            let pair = joint.link.bodies();
+        for joint in &self.structure.joints {
+            let pair = joint.link.bodies;
             let [first, second] = [0, 1].map(|end| place(pair[end], end));
-            let section = &self.structure.law().section;
+            let section = &self.structure.law.section;
             let action = if bonded {
                 let gap = joint.link.gap(&first, &second);
                 let edges = section.bonded(gap.penetrations_m);
@@ -493,7 +493,7 @@ impl<'a> Search<'a> {
             };
             between(pair, &action);
         }
-        for (bound, yielded_m) in self.structure.ties().iter().zip(&self.yielded_m) {
+        for (bound, yielded_m) in self.structure.ties.iter().zip(&self.yielded_m) {
             let pair = bound.bodies;
             let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let span = bound.span([&first, &second]);
@@ -536,7 +536,7 @@ impl<'a> Search<'a> {
 
     /// Displacements with joints that can pull as well.
     fn bonded(&self) -> Option<Vec<[f64; 3]>> {
-        let bodies = self.structure.bodies().len();
+        let bodies = self.structure.bodies.len();
         let moved = vec![[0.0; 3]; bodies];
         let mut matrix = Banded::new(3 * bodies, self.width);
         let mut forces = vec![0.0; 3 * bodies];
@@ -586,7 +586,7 @@ impl<'a> Search<'a> {
 
     /// How far the centre of gravity has moved to the right.
     fn sway_m(&self, moved: &[[f64; 3]]) -> f64 {
-        let bodies = self.structure.bodies().iter().zip(moved);
+        let bodies = self.structure.bodies.iter().zip(moved);
         let moments: f64 = bodies.map(|(body, moved)| body.mass_kg * moved[0]).sum();
         moments / self.structure.mass_kg()
     }
@@ -599,7 +599,7 @@ impl<'a> Search<'a> {
         here: &Pushed,
         stride_m: f64,
     ) -> Option<(Pushed, usize)> {
-        let bodies = self.structure.bodies();
+        let bodies = &self.structure.bodies;
         let size = 3 * bodies.len();
         let sway_m = here.sway_m + stride_m;
         let (mut moved, mut push_m_s2) = (here.moved.clone(), here.push_m_s2);
@@ -662,24 +662,19 @@ impl<'a> Search<'a> {
 
     /// Adds a push to the right, per mass, to forces.
     fn push(&self, push_m_s2: f64, forces: &mut [f64]) {
-        for (index, body) in self.structure.bodies().iter().enumerate() {
+        for (index, body) in self.structure.bodies.iter().enumerate() {
             forces[3 * index] += body.mass_kg * push_m_s2;
         }
     }
 
     /// Elastic and potential energy, in J.
     fn energy_j(&self, rest: &Rest) -> f64 {
-        let bodies = self.structure.bodies().iter().zip(&rest.moved);
+        let bodies = self.structure.bodies.iter().zip(&rest.moved);
         let lifted: f64 = bodies
             .map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1])
             .sum();
         let each = self.structure.fibres();
-        let joints = self
-            .structure
-            .joints()
-            .iter()
-            .zip(&rest.memories)
-            .enumerate();
+        let joints = self.structure.joints.iter().zip(&rest.memories).enumerate();
         let elastic: f64 = joints
             .map(|(index, (joint, memory))| {
                 let fibres = &rest.fibres[index * each..(index + 1) * each];
@@ -690,12 +685,12 @@ impl<'a> Search<'a> {
     }
 
     fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Rest {
-        let joints = self.structure.joints();
+        let joints = &self.structure.joints;
         let each = self.structure.fibres();
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
         let place = |body: usize| self.place(&moved, body);
-        let ties = self.structure.ties().iter().zip(&self.yielded_m);
+        let ties = self.structure.ties.iter().zip(&self.yielded_m);
         let ties = ties.map(|(bound, yielded_m)| {
             let [first, second] = bound.bodies.map(place);
             let stretch_m = bound.span([&first, &second]).stretch_m;
@@ -703,7 +698,7 @@ impl<'a> Search<'a> {
         });
         let ties = ties.collect();
         for (index, joint) in joints.iter().enumerate() {
-            let [one, other] = joint.link.bodies().map(place);
+            let [one, other] = joint.link.bodies.map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];
             let memory = &mut memories[index];
             self.structure

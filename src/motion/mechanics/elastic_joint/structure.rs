@@ -175,15 +175,20 @@ pub struct Body {
 /// whatever joints name beyond that is the right one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticStructure {
-    bodies: Vec<Body>,
+    /// The bodies.
+    pub bodies: Vec<Body>,
     /// Displacements (m) and rotations (rad) of the supports.
-    supports: [[f64; 3]; 2],
-    joints: Vec<ElasticJoint>,
-    ties: Vec<BoundTie>,
+    pub supports: [[f64; 3]; 2],
+    /// The joints.
+    pub joints: Vec<ElasticJoint>,
+    /// The ties.
+    pub ties: Vec<BoundTie>,
     /// What they add to the square of the highest frequency, at most.
     ties_square_frequency: f64,
-    law: Law,
-    damping_time_s: f64,
+    /// The law of its joints.
+    pub(crate) law: Law,
+    /// Damping time in s.
+    pub damping_time_s: f64,
 }
 
 impl ElasticStructure {
@@ -273,30 +278,12 @@ impl ElasticStructure {
         }
     }
 
-    /// The bodies.
-    #[must_use]
-    pub fn bodies(&self) -> &[Body] {
-        &self.bodies
-    }
-
-    /// The joints.
-    #[must_use]
-    pub fn joints(&self) -> &[ElasticJoint] {
-        &self.joints
-    }
-
     /// The same with supports that have moved by these displacements (m) and rotations (rad), those of a row about the middle of its
     /// first and last joint.
     #[must_use]
     pub const fn on_supports(mut self, moved: [[f64; 3]; 2]) -> Self {
         self.supports = moved;
         self
-    }
-
-    /// Displacements (m) and rotations (rad) of the left and the right support.
-    #[must_use]
-    pub const fn supports(&self) -> &[[f64; 3]; 2] {
-        &self.supports
     }
 
     /// Those of the support that joints name so.
@@ -329,22 +316,10 @@ impl ElasticStructure {
         self.clone().on_supports([between(0), between(1)])
     }
 
-    /// The ties.
-    #[must_use]
-    pub fn ties(&self) -> &[BoundTie] {
-        &self.ties
-    }
-
     /// Whether joints slip for good.
     #[must_use]
     pub const fn slips(&self) -> bool {
         self.law.friction[1] == 0.0
-    }
-
-    /// Damping time in s.
-    #[must_use]
-    pub const fn damping_time_s(&self) -> f64 {
-        self.damping_time_s
     }
 
     /// Mass of all bodies, in kg.
@@ -392,11 +367,6 @@ impl ElasticStructure {
             tie.tie.stiffness_n_m *= factor;
         }
         other
-    }
-
-    /// The law of its joints.
-    pub(crate) const fn law(&self) -> &Law {
-        &self.law
     }
 
     /// What a joint bears with its bodies at these places, and its action on them; its memory is updated. `damping` is the damping time over
@@ -451,7 +421,7 @@ impl ElasticStructure {
     pub fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
         for joint in &self.joints {
-            for body in joint.link.bodies() {
+            for body in joint.link.bodies {
                 if let Some(held) = held_n_m.get_mut(body) {
                     *held += joint.normal_n_m;
                 }
@@ -460,9 +430,9 @@ impl ElasticStructure {
         let squares = self.joints.iter().map(|joint| {
             let mut flexibility = Matrix3::zeros();
             let link = &joint.link;
-            let along = Vector2::from(link.along());
-            let normal = Vector2::new(-along.y, along.x) * link.handedness();
-            for (body, arm_m) in link.bodies().into_iter().zip(link.arms_m()) {
+            let along = Vector2::from(link.along);
+            let normal = Vector2::new(-along.y, along.x) * link.handedness;
+            for (body, arm_m) in link.bodies.into_iter().zip(link.arms_m) {
                 let Some(of_body) = self.bodies.get(body) else {
                     continue;
                 };
@@ -476,7 +446,7 @@ impl ElasticStructure {
                 flexibility += (by_x * by_x.transpose() + by_y * by_y.transpose()) / mass;
                 flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);
             }
-            let turning = self.law.section.second_moment() * link.length_m().powi(2);
+            let turning = self.law.section.second_moment() * link.length_m.powi(2);
             let roots = Vector3::new(
                 joint.normal_n_m.sqrt(),
                 joint.shear_n_m.sqrt(),

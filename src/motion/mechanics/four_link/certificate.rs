@@ -102,7 +102,7 @@ pub fn joints_rad(
         HingeSites::Anywhere => {
             let mut joints = profile.sections(count);
             let (spacing, end) = (joints[1], profile.end());
-            let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad().to_vec());
+            let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad.to_vec());
             // A hinge at a springing already has its joint; a body in between would have no mass.
             hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
             joints.retain(|joint| {

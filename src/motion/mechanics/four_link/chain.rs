@@ -54,9 +54,11 @@ impl ArchLink {
 pub struct Chain {
     /// As seen in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
     profiles: [Arc<dyn Profile>; 2],
-    sites: HingeSites,
+    /// Where hinges may form.
+    pub sites: HingeSites,
     law: ImpactLaw,
-    incipient: Incipient,
+    /// Onset of rocking; its mechanism is link 0.
+    pub incipient: Incipient,
     /// Boxed, because a chain has room for many links and usually needs few.
     links: Box<[OnceLock<Option<Box<ArchLink>>>]>,
     /// First link of the pair that repeats; the second has the mechanism of the link before it.
@@ -86,18 +88,6 @@ impl Chain {
     #[must_use]
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
-    }
-
-    /// Where hinges may form.
-    #[must_use]
-    pub const fn sites(&self) -> HingeSites {
-        self.sites
-    }
-
-    /// Onset of rocking; its mechanism is link 0.
-    #[must_use]
-    pub const fn incipient(&self) -> &Incipient {
-        &self.incipient
     }
 
     /// The mechanism after `index` impacts; `None` when an impact before it stops the ring, because
@@ -143,7 +133,7 @@ impl Chain {
             impact(&closing, profile, self.sites, model)?
         };
         if let Some(earlier) = previous.checked_sub(1).and_then(mechanism) {
-            let (hinges, earlier) = (impact.mechanism.hinges_rad(), earlier.hinges_rad());
+            let (hinges, earlier) = (impact.mechanism.hinges_rad, earlier.hinges_rad);
             if (0..4).all(|i| (hinges[i] - earlier[i]).abs() < REPETITION_RAD) {
                 self.pair.get_or_init(|| index);
             }
@@ -193,7 +183,7 @@ mod tests {
             chain(0.15, 157.5, HingeSites::Anywhere),
             chain(0.12, 180.0, HingeSites::Anywhere),
         ] {
-            let hinges = |i| chain.link(i).unwrap().mechanism.hinges_rad();
+            let hinges = |i| chain.link(i).unwrap().mechanism.hinges_rad;
             assert_eq!(hinges(400), hinges(402));
             let pair = *chain.pair.get().unwrap();
             assert!(pair < MAX_CHAIN_LENGTH - 2, "{pair}");

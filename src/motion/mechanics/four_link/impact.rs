@@ -149,12 +149,12 @@ pub fn impact(
             most_energetic(&closing_field(mechanism, profile), profile, sites)?
         }
         ImpactModel::SameSections => {
-            let [a, b, c, d] = mechanism.hinges_rad().map(|angle| profile.end() - angle);
+            let [a, b, c, d] = mechanism.hinges_rad.map(|angle| profile.end() - angle);
             FourLink::new(profile, [d, c, b, a])?
         }
         // The mirror image of a mechanism has, in its own frame, the same hinges.
         ImpactModel::Mirrored | ImpactModel::Prescribed { .. } => {
-            FourLink::new(profile, mechanism.hinges_rad())?
+            FourLink::new(profile, mechanism.hinges_rad)?
         }
     };
     impact_onto(next, mechanism, profile, model)
@@ -235,7 +235,7 @@ impl RetainedEnergy<'_> {
 
 impl Objective for RetainedEnergy<'_> {
     fn kinks_rad(&self) -> &[f64] {
-        self.before.cuts_rad()
+        &self.before.cuts_rad
     }
 
     fn value(&self, mechanism: &FourLink) -> f64 {
@@ -248,14 +248,14 @@ impl Objective for RetainedEnergy<'_> {
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
         let (value, rate) = self.retained(mechanism);
         let after = mechanism.field().scaled(rate);
-        let angles = mechanism.hinges_rad();
+        let angles = mechanism.hinges_rad;
         let local: [Twist; 4] = std::array::from_fn(|i| {
             let side = if above[i] { Side::After } else { Side::Before };
             let mean = (after.at(angles[i], Side::Before) + after.at(angles[i], Side::After)) * 0.5;
             self.before.at(angles[i], side) - mean
         });
         let line = ImpulseLine::new(self.profile, mechanism, self.before, &after);
-        let gradient = line.resultants().power_gradient(mechanism, local);
+        let gradient = line.resultants.power_gradient(mechanism, local);
         (value, gradient.map(|slope| 2.0 * rate * slope))
     }
 }

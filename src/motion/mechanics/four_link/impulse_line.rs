@@ -23,7 +23,8 @@ use crate::mechanics::sway::Sway;
 pub struct ImpulseLine {
     profile: Arc<dyn Profile>,
     mechanism: FourLink,
-    resultants: ResultantLine,
+    /// The impulse that each part transmits to its neighbour on the right.
+    pub resultants: ResultantLine,
 }
 
 impl ImpulseLine {
@@ -40,12 +41,6 @@ impl ImpulseLine {
         }
     }
 
-    /// The impulse that each part transmits to its neighbour on the right.
-    #[must_use]
-    pub const fn resultants(&self) -> &ResultantLine {
-        &self.resultants
-    }
-
     /// Impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the
     /// left body on the middle one, by the right body on the middle one, by the ground on the right body.
     ///
@@ -53,7 +48,7 @@ impl ImpulseLine {
     #[must_use]
     pub fn hinge_impulses(&self) -> [Vector2<f64>; 4] {
         let sides = [1.0, 1.0, -1.0, -1.0];
-        let hinges = self.mechanism.hinges_rad();
+        let hinges = self.mechanism.hinges_rad;
         std::array::from_fn(|i| self.resultants.at(hinges[i]).linear * sides[i])
     }
 

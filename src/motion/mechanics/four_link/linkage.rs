@@ -105,13 +105,13 @@ impl Linkage {
     /// The linkage of `mechanism`.
     #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
-        let [a, b, c, d] = mechanism.hinges_rad();
-        let [point_a, point_b, point_c, point_d] = mechanism.points();
+        let [a, b, c, d] = mechanism.hinges_rad;
+        let [point_a, point_b, point_c, point_d] = mechanism.points;
         let middle = profile.sector(b, c);
         Self {
             profile: profile.shared(),
-            hinges_rad: mechanism.hinges_rad(),
-            points: mechanism.points(),
+            hinges_rad: mechanism.hinges_rad,
+            points: mechanism.points,
             left: Body::new(&profile.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
             right: Body::new(&profile.sector(c, d), point_d, point_c - point_d),

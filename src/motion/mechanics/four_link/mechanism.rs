@@ -50,9 +50,13 @@ pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
 /// that turns about the first hinge; see [`super::linkage`] for the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourLink {
-    hinges_rad: [f64; 4],
-    openings: [f64; 4],
-    points: [Vector2<f64>; 4],
+    /// Sections of the hinges A, B, C, D, in radians from the left springing.
+    pub hinges_rad: [f64; 4],
+    /// Relative rotation rate of the part after each hinge to the part before it, at `q' = 1`:
+    /// negative at intrados hinges, positive at extrados hinges, -1 at the first.
+    pub openings: [f64; 4],
+    /// Positions of the hinges.
+    pub points: [Vector2<f64>; 4],
 }
 
 impl FourLink {
@@ -73,12 +77,6 @@ impl FourLink {
             openings: openings.map(|opening| opening / -openings[0]),
             points,
         })
-    }
-
-    /// Sections of the hinges A, B, C, D, in radians from the left springing.
-    #[must_use]
-    pub const fn hinges_rad(&self) -> [f64; 4] {
-        self.hinges_rad
     }
 
     /// Sections (in radians from the left springing) and edges of the hinges from left to right, as
@@ -108,19 +106,6 @@ impl FourLink {
                     edge,
                 },
             })
-    }
-
-    /// Positions of the hinges.
-    #[must_use]
-    pub const fn points(&self) -> [Vector2<f64>; 4] {
-        self.points
-    }
-
-    /// Relative rotation rate of the part after each hinge to the part before it, at `q' = 1`:
-    /// negative at intrados hinges, positive at extrados hinges, -1 at the first.
-    #[must_use]
-    pub const fn openings(&self) -> [f64; 4] {
-        self.openings
     }
 
     /// The velocity field at `q' = 1`.
@@ -164,7 +149,7 @@ mod tests {
     fn the_field_is_continuous_at_hinges_and_zero_outside() {
         let (_, mechanism) = semicircle();
         let field = mechanism.field();
-        for (angle, point) in mechanism.hinges_rad().into_iter().zip(mechanism.points()) {
+        for (angle, point) in mechanism.hinges_rad.into_iter().zip(mechanism.points) {
             let jump =
                 field.at(angle, Side::After).at(point) - field.at(angle, Side::Before).at(point);
             assert!(jump.norm() < 1e-15);
@@ -179,7 +164,7 @@ mod tests {
         // Eq. (2) of the paper with all rotations anticlockwise: the middle body's centre C3 is where
         // AB and CD meet, k31 = (x_B - x_A) / (x_B - x_C3), and likewise from the right.
         let (_, mechanism) = semicircle();
-        let [a, b, c, d] = mechanism.points();
+        let [a, b, c, d] = mechanism.points;
         let (ab, cd) = (b - a, d - c);
         let center = a + ab * ((c - a).perp(&cd) / ab.perp(&cd));
         let field = mechanism.field();
@@ -194,7 +179,7 @@ mod tests {
     fn every_hinge_opens() {
         let (ring, mechanism) = semicircle();
         let field = mechanism.field();
-        for (angle, edge) in mechanism.hinges_rad().into_iter().zip(EDGES) {
+        for (angle, edge) in mechanism.hinges_rad.into_iter().zip(EDGES) {
             let far = ring.point(angle, edge.opposite());
             let gap = field.at(angle, Side::After).at(far) - field.at(angle, Side::Before).at(far);
             assert!(gap.dot(&ring.tangent(angle)) > 0.0);

@@ -106,14 +106,14 @@ impl ResultantLine {
     #[must_use]
     pub fn through_hinges(profile: &dyn Profile, mechanism: &FourLink, load: Field) -> Self {
         let hinges = [0, 1, 3];
-        let points = mechanism.points();
+        let points = mechanism.points;
         let matrix = Matrix3::from_fn(|row, column| {
             let point = points[hinges[row]];
             [-point.y, point.x, -1.0][column]
         });
         let moments = Vector3::from_fn(|row, _| {
             let hinge = hinges[row];
-            load.momentum_to(profile, mechanism.hinges_rad()[hinge])
+            load.momentum_to(profile, mechanism.hinges_rad[hinge])
                 .about(points[hinge])
         });
         let start = matrix
@@ -185,7 +185,7 @@ impl ResultantLine {
             HingeSites::Anywhere => {
                 let inside = |cut: &&f64| **cut > 0.0 && **cut < self.profile.end();
                 let mut sections = self.profile.sections(SAMPLES);
-                sections.extend(self.load.cuts_rad().iter().filter(inside));
+                sections.extend(self.load.cuts_rad.iter().filter(inside));
                 sections.sort_by(f64::total_cmp);
                 sections
             }
@@ -219,7 +219,7 @@ impl ResultantLine {
     /// A moved hinge changes the rotations at all four, but the line has no moment at any of them: only
     /// the moment that the moved point itself picks up counts. `local` is the load at each hinge.
     pub(crate) fn power_gradient(&self, mechanism: &FourLink, local: [Twist; 4]) -> [f64; 4] {
-        let (hinges, openings) = (mechanism.hinges_rad(), mechanism.openings());
+        let (hinges, openings) = (mechanism.hinges_rad, mechanism.openings);
         std::array::from_fn(|i| {
             -openings[i] * self.edge_moment_slope(hinges[i], EDGES[i], local[i])
         })

@@ -253,7 +253,7 @@ fn ascend_all_sides(
     let mut top = ascend(profile, ends, start, objective)?;
     let interval = profile.end() / LATTICE_INTERVALS as f64;
     loop {
-        let angles = top.1.hinges_rad();
+        let angles = top.1.hinges_rad;
         let twins = (0..4).flat_map(|i| {
             objective.kinks_rad().iter().filter_map(move |kink| {
                 let distance = (angles[i] - kink).abs();
@@ -317,7 +317,7 @@ struct Climber<'a, O> {
 
 impl<O: Objective> Climber<'_, O> {
     fn evaluate(&self, mechanism: &FourLink) -> (f64, [f64; 4]) {
-        let angles = mechanism.hinges_rad();
+        let angles = mechanism.hinges_rad;
         // At the lower end of its cell a hinge sees the slope above, and the other way round.
         let above =
             std::array::from_fn(|i| angles[i] < 0.5 * (self.cells[i].low + self.cells[i].high));
@@ -349,7 +349,7 @@ impl<O: Objective> Climber<'_, O> {
 
     /// One Newton step of the hinges that are free to move; `None` when nothing improves.
     fn step(&self, mechanism: &FourLink) -> Option<FourLink> {
-        let angles = mechanism.hinges_rad();
+        let angles = mechanism.hinges_rad;
         let (value, gradient) = self.evaluate(mechanism);
         let free: Vec<usize> = (0..4)
             .filter(|i| !self.is_stopped(&angles, *i, gradient[*i]))
@@ -400,7 +400,7 @@ impl<O: Objective> Climber<'_, O> {
 
     /// Second derivatives for the free hinges, by differences of the exact gradient inside the cells.
     fn curvature(&self, mechanism: &FourLink, free: &[usize]) -> Option<DMatrix<f64>> {
-        let angles = mechanism.hinges_rad();
+        let angles = mechanism.hinges_rad;
         let mut matrix = DMatrix::zeros(free.len(), free.len());
         for (column, i) in free.iter().enumerate() {
             let h = 1e-6;
@@ -421,7 +421,7 @@ impl<O: Objective> Climber<'_, O> {
 
     /// Lets every hinge that presses against a kink pass, if the slope beyond still rises in its direction.
     fn cross_kinks(&mut self, mechanism: &FourLink, ends: &[f64]) -> bool {
-        let angles = mechanism.hinges_rad();
+        let angles = mechanism.hinges_rad;
         let gradient = self.evaluate(mechanism).1;
         let mut crossed = false;
         for i in 0..4 {

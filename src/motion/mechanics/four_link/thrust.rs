@@ -168,7 +168,8 @@ impl Part {
 #[derive(Clone, Debug)]
 pub struct ThrustLine {
     profile: Arc<dyn Profile>,
-    parts: Vec<Part>,
+    /// The parts.
+    pub parts: Vec<Part>,
 }
 
 impl ThrustLine {
@@ -267,12 +268,6 @@ impl ThrustLine {
                     })
             }
         }
-    }
-
-    /// The parts.
-    #[must_use]
-    pub fn parts(&self) -> &[Part] {
-        &self.parts
     }
 }
 

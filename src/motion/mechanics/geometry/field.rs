@@ -24,7 +24,8 @@ pub enum Side {
 /// the springings as outermost bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
-    cuts_rad: Vec<f64>,
+    /// Sections where the field may jump, in radians, ascending.
+    pub cuts_rad: Vec<f64>,
     twists: Vec<Twist>,
 }
 
@@ -62,12 +63,6 @@ impl Field {
             Side::After => *cut <= angle_rad,
         });
         self.twists[index]
-    }
-
-    /// Sections where the field may jump, in radians, ascending.
-    #[must_use]
-    pub fn cuts_rad(&self) -> &[f64] {
-        &self.cuts_rad
     }
 
     /// This field times `factor`.

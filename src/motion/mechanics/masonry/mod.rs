@@ -191,16 +191,20 @@ impl Shape {
 pub struct Masonry {
     #[serde(flatten)]
     shape: Shape,
+    /// The piers that its springings stand on.
     #[serde(skip_serializing_if = "Piers::are_none")]
-    piers: Piers,
+    pub piers: Piers,
+    /// The fill above it.
     #[serde(skip_serializing_if = "Option::is_none")]
-    fill: Option<Fill>,
+    pub fill: Option<Fill>,
+    /// The masses on its extrados.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
-    loads: Vec<PlacedLoad>,
+    pub loads: Vec<PlacedLoad>,
     #[serde(skip)]
     row: Row,
+    /// What the arch carries, as it is drawn.
     #[serde(skip)]
-    carried: Carried,
+    pub carried: Carried,
 }
 
 /// What an arch carries, as it is drawn: each part with the block of the row that it moves with.
@@ -364,34 +368,10 @@ impl Masonry {
         &self.shape
     }
 
-    /// The piers that its springings stand on.
-    #[must_use]
-    pub const fn piers(&self) -> &Piers {
-        &self.piers
-    }
-
-    /// The fill above it.
-    #[must_use]
-    pub const fn fill(&self) -> Option<&Fill> {
-        self.fill.as_ref()
-    }
-
-    /// The masses on its extrados.
-    #[must_use]
-    pub fn loads(&self) -> &[PlacedLoad] {
-        &self.loads
-    }
-
     /// Its blocks and joints.
     #[must_use]
     pub const fn row(&self) -> &Row {
         &self.row
-    }
-
-    /// What the arch carries, as it is drawn.
-    #[must_use]
-    pub const fn carried(&self) -> &Carried {
-        &self.carried
     }
 
     /// The joints at the springings of the arch; none of blocks, whose arch may begin anywhere.

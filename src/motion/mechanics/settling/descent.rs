@@ -138,9 +138,9 @@ impl<'a> Descent<'a> {
         self.program.reset();
         self.nudge(stance, from, to, force_g)?;
         self.jumps.fill(Twist::ZERO);
-        let start_m = stance.placement.centres_m().to_vec();
+        let start_m = stance.placement.centres_m.to_vec();
         let turns = |stance: &Stance| {
-            let poses = stance.placement.poses().iter();
+            let poses = stance.placement.poses.iter();
             poses.map(Pose::rotation_rad).collect::<Vec<f64>>()
         };
         let start_rad = turns(stance);
@@ -150,12 +150,8 @@ impl<'a> Descent<'a> {
             // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
             let pins = (!self.ties_kg.is_empty()).then(|| Pins::of(self.row, &stance.placement));
             if let Some(pins) = pins.flatten() {
-                stayed = if pins.hinges() == hinges {
-                    stayed + 1
-                } else {
-                    0
-                };
-                hinges = pins.hinges().to_vec();
+                stayed = if pins.hinges == hinges { stayed + 1 } else { 0 };
+                hinges = pins.hinges.to_vec();
                 if (step == 0 || stayed.is_power_of_two()) && self.rests_near(&pins, stance, to) {
                     return Ok(true);
                 }
@@ -175,7 +171,7 @@ impl<'a> Descent<'a> {
             longest = (0.9 * farthest_m / fastest)
                 .min(2.0 * longest)
                 .min(LONGEST * size_m);
-            let centres = start_m.iter().zip(stance.placement.centres_m());
+            let centres = start_m.iter().zip(&stance.placement.centres_m);
             let moved = centres.map(|(start, now)| (now - start).norm() / size_m);
             let turned = start_rad.iter().zip(turns(stance));
             let turned = turned.map(|(start, now)| (now - start).abs());
@@ -194,7 +190,7 @@ impl<'a> Descent<'a> {
     fn rests_near(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
-            let pairs = state.rotations_rad.iter().zip(stance.placement.poses());
+            let pairs = state.rotations_rad.iter().zip(&stance.placement.poses);
             let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
             state.holds(ROUNDING) && turns.all(|turn_rad| turn_rad < NEAR_RAD)
         })
@@ -242,7 +238,7 @@ impl<'a> Descent<'a> {
     ) -> Result<f64, ContactError> {
         let placement = &stance.placement;
         self.free.fill(Twist::translation(force_g * times));
-        let (blocks, centres_m) = (self.row.blocks(), placement.centres_m());
+        let (blocks, centres_m) = (self.row.blocks(), &placement.centres_m);
         let pulls_kg = self.ties_kg.iter().map(|kg| kg * times);
         pull_blocks(
             blocks,
@@ -250,7 +246,7 @@ impl<'a> Descent<'a> {
             lines.iter().zip(pulls_kg),
             &mut self.free,
         );
-        for (touching, gaps) in self.touching.iter_mut().zip(placement.gaps_m()) {
+        for (touching, gaps) in self.touching.iter_mut().zip(&placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
         self.program.place(placement);
@@ -259,13 +255,11 @@ impl<'a> Descent<'a> {
             jumps: &self.jumps,
             touching: &self.touching,
         })?;
-        let velocities = self.program.velocities().iter();
-        let speeds = velocities
-            .zip(placement.centres_m())
-            .map(|(twist, centre)| {
-                let turning = twist.rate.abs() * self.row.size_m();
-                twist.at(*centre).norm().max(turning)
-            });
+        let velocities = self.program.velocities.iter();
+        let speeds = velocities.zip(&placement.centres_m).map(|(twist, centre)| {
+            let turning = twist.rate.abs() * self.row.size_m();
+            twist.at(*centre).norm().max(turning)
+        });
         Ok(speeds.fold(0.0, f64::max))
     }
 
@@ -298,8 +292,8 @@ impl<'a> Descent<'a> {
         self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
             let lacks_m = self.lacks_m(step);
-            if step.pressing != self.program.active() {
-                step.pressing = self.program.active().to_vec();
+            if step.pressing != self.program.active {
+                step.pressing = self.program.active.to_vec();
                 step.lengthen = self.lengthen(step);
             }
             let Some(way_kg) = self.way_kg(step, &lacks_m) else {
@@ -328,7 +322,7 @@ impl<'a> Descent<'a> {
 
     /// By how much longer each tie is at the end of a step than its force makes it, with the last velocities.
     fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
-        let velocities = self.program.velocities();
+        let velocities = &self.program.velocities;
         let lacks_m = step.lines.iter().enumerate().map(|(tie, line)| {
             let then_m = line.stretch_m + step.length * line.lengthening(velocities);
             let elastic_m = self.ties_kg[tie] * self.ties_m_kg[tie];
@@ -382,7 +376,7 @@ impl<'a> Descent<'a> {
     /// such motions as soon as one of them adds nothing.
     fn lengthen(&mut self, step: &Step<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
-        let centres_m = step.stance.placement.centres_m();
+        let centres_m = &step.stance.placement.centres_m;
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
             let pairs = one
                 .iter()
@@ -400,7 +394,7 @@ impl<'a> Descent<'a> {
             // No two ties, and no two trials, have parts in a simple ratio.
             let phase = 1.0 + f64::sqrt(2.0) * motions.len() as f64;
             self.respond(step, |tie| (phase * (1.0 + tie as f64)).fract() - 0.5);
-            let mut motion = self.program.velocities().to_vec();
+            let mut motion = self.program.velocities.to_vec();
             // Twice, so that rounding leaves nothing in common.
             for known in motions.iter().chain(&motions) {
                 let part = product(known, &motion);
@@ -425,7 +419,7 @@ impl<'a> Descent<'a> {
 
     /// Velocities that ties alone give the row while the same corners press, each with so much over gravity.
     fn respond(&mut self, step: &Step<'_>, kg: impl Fn(usize) -> f64) {
-        let centres_m = step.stance.placement.centres_m();
+        let centres_m = &step.stance.placement.centres_m;
         self.free.fill(Twist::ZERO);
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
@@ -440,7 +434,7 @@ impl<'a> Descent<'a> {
     /// By how much less the ties lack, each times its part of a way, for the whole of that way.
     fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
         self.respond(step, |tie| way_kg[tie]);
-        let velocities = self.program.velocities();
+        let velocities = &self.program.velocities;
         let each = self.ties_m_kg.iter().zip(&step.lines).zip(way_kg);
         each.map(|((m_kg, line), kg)| {
             let elastic_m = kg * m_kg;
@@ -505,7 +499,7 @@ impl<'a> Descent<'a> {
     fn first_shut(&self, placement: &Placement, longest: f64) -> (f64, Option<(usize, usize)>) {
         let mut length = longest;
         let mut first = None;
-        let gaps_m = placement.gaps_m();
+        let gaps_m = &placement.gaps_m;
         for (joint, rates) in self.program.open_joints() {
             for edge in 0..2 {
                 let gap = gaps_m[joint][edge];
@@ -521,7 +515,7 @@ impl<'a> Descent<'a> {
     /// Goes on with the last velocities for so long, until this corner shuts.
     fn go_on(&mut self, stance: &mut Stance, length: f64, shut: Option<(usize, usize)>) {
         let placement = &mut stance.placement;
-        let gaps_m = placement.gaps_m();
+        let gaps_m = &placement.gaps_m;
         let mut change = vec![[0.0; 2]; gaps_m.len()];
         for (joint, rates) in self.program.open_joints() {
             change[joint] = rates.map(|rate| rate * length);
@@ -598,7 +592,7 @@ mod tests {
         assert!(fastest > 0.01, "{fastest}");
         let lines: Vec<TieLine> = stance.lines(&row).collect();
         for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
-            let longer_m = length * line.lengthening(descent.program.velocities());
+            let longer_m = length * line.lengthening(&descent.program.velocities);
             let then_kg = tie.stiffness_n_m * longer_m / row.gravity_m_s2();
             let kg = descent.ties_kg[index];
             assert!(kg > 0.01 * row.mass_kg(), "{kg}");
@@ -626,7 +620,7 @@ mod tests {
         for pulling in 0..4 {
             descent.respond(&step, |tie| f64::from(u8::from(tie == pulling)));
             for (lacking, line) in step.lines.iter().enumerate() {
-                let due = -line.lengthening(descent.program.velocities());
+                let due = -line.lengthening(&descent.program.velocities);
                 let off = (told[(lacking, pulling)] - due).abs();
                 assert!(off < 1e-9 * told.amax(), "{lacking} {pulling}: {off:e}");
             }

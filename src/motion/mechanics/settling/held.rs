@@ -84,7 +84,7 @@ impl<'a> Held<'a> {
             end_rad: 0.0,
             ties: vec![row.ties().iter().map(TieMemory::undeformed).collect()],
         };
-        let first = held.pins.hinges()[0].joint;
+        let first = held.pins.hinges[0].joint;
         held.sense = onset.velocities[first].rate.signum();
         for step in 1_u32.. {
             let q_rad = f64::from(step) * STEP_RAD;
@@ -109,7 +109,7 @@ impl<'a> Held<'a> {
     /// Its hinges.
     #[must_use]
     pub fn hinges(&self) -> &[Hinge] {
-        self.pins.hinges()
+        &self.pins.hinges
     }
 
     /// How many bodies move.

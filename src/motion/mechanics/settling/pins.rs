@@ -42,7 +42,8 @@ pub struct Hinge {
 /// Hinges, from left to right: three or more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pins {
-    hinges: Vec<Hinge>,
+    /// The hinges.
+    pub hinges: Vec<Hinge>,
     /// Corners of the hinges in the undeformed row, in metres.
     pub(super) pins_m: Vec<Vector2<f64>>,
 }
@@ -53,7 +54,8 @@ pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 /// A row on hinges: positions and forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    hinges: Vec<Hinge>,
+    /// The hinges.
+    pub hinges: Vec<Hinge>,
     /// Of the part right of each hinge against the part left of it, anticlockwise.
     pub turns_rad: Vec<f64>,
     /// By how much each hinge is open, in radians; below zero it would have to penetrate.
@@ -71,12 +73,6 @@ pub struct State {
 }
 
 impl State {
-    /// The hinges.
-    #[must_use]
-    pub fn hinges(&self) -> &[Hinge] {
-        &self.hinges
-    }
-
     /// How far it is from giving way: the least of all openings in radians and of all forces that could pull, over the weight.
     #[must_use]
     pub fn margin(&self) -> f64 {
@@ -138,7 +134,7 @@ impl Pins {
     /// The open joints of a placement; `None` where they are less than three, or one has parted.
     #[must_use]
     pub fn of(row: &Row, placement: &Placement) -> Option<Self> {
-        let open = placement.gaps_m().iter().enumerate();
+        let open = placement.gaps_m.iter().enumerate();
         let mut hinges = Vec::with_capacity(3);
         for (joint, gaps) in open.filter(|(_, gaps)| **gaps != [0.0; 2]) {
             let edge = match gaps {
@@ -149,12 +145,6 @@ impl Pins {
             hinges.push(Hinge { joint, edge });
         }
         (hinges.len() >= 3).then(|| Self::new(row, hinges))
-    }
-
-    /// The hinges.
-    #[must_use]
-    pub fn hinges(&self) -> &[Hinge] {
-        &self.hinges
     }
 
     /// The same without those of these that it has, and with the others; `None` where that leaves less than three, or a joint would open at
@@ -184,16 +174,10 @@ impl Pins {
     /// Where the pins are in a row that stands so.
     fn pins_in(&self, stance: &Stance) -> Vec<Vector2<f64>> {
         let placement = &stance.placement;
-        let last = &placement.support_poses()[1];
+        let last = &placement.support_poses[1];
         let pins = self.hinges.iter().zip(&self.pins_m);
-        pins.map(|(hinge, pin_m)| {
-            placement
-                .poses()
-                .get(hinge.joint)
-                .unwrap_or(last)
-                .of(*pin_m)
-        })
-        .collect()
+        pins.map(|(hinge, pin_m)| placement.poses.get(hinge.joint).unwrap_or(last).of(*pin_m))
+            .collect()
     }
 
     /// Positions and forces of a row on these hinges that stood so before; `None` where they cannot meet, carry no force, or nothing holds
@@ -525,7 +509,7 @@ impl<'a> Chain<'a> {
                 *moment += arm_m * (block.mass_kg * per_mass);
             }
         }
-        let poses = before.placement.poses();
+        let poses = &before.placement.poses;
         let bodies = pins.hinges.iter().take(count);
         let support = |anchor: &Anchor| anchor.support(row.feet_m()) * (count + 1);
         let parts: Vec<usize> = (0..row.blocks().len())

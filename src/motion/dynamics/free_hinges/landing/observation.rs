@@ -34,7 +34,7 @@ const LEAST_SWING_RATIO: f64 = 1e-18;
 
 impl LandingStepper<'_> {
     pub(super) fn height_energy(&self) -> f64 {
-        self.gravity * self.rest.rise_kg_m(self.placement.centres_m())
+        self.gravity * self.rest.rise_kg_m(&self.placement.centres_m)
     }
 
     /// Potential energy of the blocks.
@@ -70,7 +70,7 @@ impl LandingStepper<'_> {
         let swings =
             self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
         self.course.moved |= !lies || swings;
-        let rotations = self.placement.poses().iter().map(Pose::rotation_rad);
+        let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
@@ -99,7 +99,7 @@ impl LandingStepper<'_> {
         self.summit.note_results(&mut self.course, height);
         let far_m = OVERTURNED_RATIO * self.row.size_m();
         let stood = self.rest.placement();
-        let moved_m = self.placement.centres_m().iter().zip(stood.centres_m());
+        let moved_m = self.placement.centres_m.iter().zip(&stood.centres_m);
         let gone_m = [Vector2::zeros(), self.right.gone_m()];
         self.overturned |= moved_m.into_iter().any(|(now, stood)| {
             gone_m
@@ -112,7 +112,7 @@ impl LandingStepper<'_> {
 
     /// Whether the row lies where it stood before it moved.
     fn lies_at_rest(&self) -> bool {
-        self.rest.has(self.placement.gaps_m()) && !self.right_support_is_gone()
+        self.rest.has(&self.placement.gaps_m) && !self.right_support_is_gone()
     }
 
     /// Whether the right support is not where it stood beside the left one.
@@ -122,7 +122,7 @@ impl LandingStepper<'_> {
 
     /// Horizontal displacement of the centre of gravity times the mass; from between the feet, where these part.
     pub(super) fn sway_kg_m(&self) -> f64 {
-        let sway = self.rest.sway_kg_m(self.placement.centres_m());
+        let sway = self.rest.sway_kg_m(&self.placement.centres_m);
         sway - 0.5 * self.row.mass_kg() * self.right.gone_m().x
     }
 
@@ -145,7 +145,7 @@ impl LandingStepper<'_> {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
             let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
             if was_shut && opens {
-                let edge = only(self.program.active()[joint]);
+                let edge = only(self.program.active[joint]);
                 opened.push(Hinge::Joint { joint, edge });
             }
         }
@@ -159,7 +159,7 @@ impl LandingStepper<'_> {
     fn report_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
-        let gaps = self.placement.gaps_m().iter().enumerate();
+        let gaps = self.placement.gaps_m.iter().enumerate();
         let stood = self.rest.touching();
         opened.extend(
             gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
@@ -235,10 +235,10 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let ground = self.half_kick();
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         self.program.place(&self.placement);
-        self.program.start_from(self.auxiliary.active());
+        self.program.start_from(&self.auxiliary.active);
         let solved = self.solve();
         let kinetic_j = self.kinetic_of_solution();
-        let rates = self.program.velocities().iter().map(|twist| twist.rate);
+        let rates = self.program.velocities.iter().map(|twist| twist.rate);
         sample.rates_rad_s.extend(rates);
         if thrust_line {
             let impulses = self.program.corner_impulses().iter().copied();
@@ -256,26 +256,26 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.ground_work += work;
         self.right.works(-right_j);
         sample.feet_apart_m = self.right.gone_m();
-        sample.poses.extend(self.placement.poses());
+        sample.poses.extend(&self.placement.poses);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         Ok(kinetic_j)
     }
 
     fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
-        let rates = self.program.velocities().iter().map(|twist| twist.rate);
-        let poses = self.placement.poses().iter();
+        let rates = self.program.velocities.iter().map(|twist| twist.rate);
+        let poses = self.placement.poses.iter();
         self.rest
             .turned_rad(poses.map(Pose::rotation_rad))
             .zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
-        self.placement.gaps_m()[joint]
+        self.placement.gaps_m[joint]
     }
 
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
-        self.placement.frames()[joint].corner_m(edge)
+        self.placement.frames[joint].corner_m(edge)
     }
 
     fn momentum(&self) -> Vector2<f64> {
