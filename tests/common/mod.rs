@@ -1,6 +1,10 @@
 //! Code that several test files share: arches by their published names, and short ways to run them.
 
+pub mod browser;
 pub mod momentum;
+pub mod motions;
+pub mod program;
+pub mod results;
 
 use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};

@@ -1,0 +1,146 @@
+//! Running the program in tests.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// The program with these arguments, in a folder, without a keyboard.
+pub fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_archrock"));
+    command
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// What the program printed; it must have succeeded.
+#[track_caller]
+pub fn stdout(output: &Output) -> String {
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+/// What the program prints; it must succeed.
+#[track_caller]
+pub fn printed(folder: &Path, arguments: &[&str]) -> String {
+    stdout(&archrock(folder, arguments))
+}
+
+/// What the program reports while it works; it must succeed, and no study prints anything.
+#[track_caller]
+pub fn done(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let prints = !output.stdout.is_empty();
+    assert!(!prints || arguments[0] == "run", "{arguments:?} prints");
+    stderr(&output)
+}
+
+/// What the program says about wrong input; it must have printed nothing.
+#[track_caller]
+pub fn refusal(output: &Output) -> String {
+    let said = stderr(output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty(), "{said}");
+    said
+}
+
+/// What the program says about wrong input, including these words; it must print nothing.
+#[track_caller]
+pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
+    let said = refusal(&archrock(folder, arguments));
+    for words in words {
+        assert!(said.contains(words), "{words:?} is not in: {said}");
+    }
+    said
+}
+
+/// Names of the entries of a folder, in order.
+pub fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<_> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// All results in a folder with their contents: all files except the one that names the scenario file.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    names(folder)
+        .into_iter()
+        .filter(|name| name != ".scenario")
+        .map(|name| {
+            let contents = fs::read(folder.join(&name)).unwrap();
+            (name, contents)
+        })
+        .collect()
+}
+
+/// The folder of the scenarios of the repository.
+pub fn scenarios() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")
+}
+
+/// The single scenarios among them.
+pub fn scenario_files() -> Vec<PathBuf> {
+    let names = names(&scenarios()).into_iter();
+    let files = names.filter(|name| name.ends_with(".toml"));
+    files.map(|name| scenarios().join(name)).collect()
+}
+
+/// The commands that a page of the documentation shows, each with the lines of its output that are shown.
+pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
+    let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
+    for line in page.lines() {
+        let Some(line) = line.strip_prefix("    ") else {
+            continue;
+        };
+        match line.strip_prefix("$ archrock ") {
+            Some(command) => {
+                // None of the words has a blank, so a shell would only drop the quotation marks.
+                let words = command
+                    .split_whitespace()
+                    .map(|word| word.trim_matches('\'').to_owned());
+                commands.push((words.collect(), Vec::new()));
+            }
+            None => commands.last_mut().unwrap().1.push(line.to_owned()),
+        }
+    }
+    commands
+}
+
+/// Runs the commands of a page, as printed there, in a folder; each must print the lines shown, in their order. Returns
+/// the number of commands.
+#[track_caller]
+pub fn says_what_it_shows(page: &str, folder: &Path) -> usize {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
+    let commands = shown_commands(&fs::read_to_string(page).unwrap());
+    for (command, shown) in &commands {
+        let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+        let output = archrock(folder, &arguments);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let said = String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output);
+        let mut lines = said.lines();
+        assert!(!shown.is_empty());
+        for line in shown {
+            assert!(
+                line == "..." || lines.any(|said| said == line),
+                "{arguments:?} does not say {line:?}, or not after the line before:\n{said}"
+            );
+        }
+    }
+    commands.len()
+}

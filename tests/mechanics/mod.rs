@@ -1,0 +1,12 @@
+//! Mechanics without time: impacts, limit loads, joints, ties and shapes.
+
+mod certificate;
+mod elastic_joint;
+mod four_link_rows;
+mod impact;
+mod impulse_line;
+mod rows;
+mod shapes;
+pub mod spread;
+mod thrust_line;
+mod ties;

@@ -1,0 +1,492 @@
+//! Arches of rigid blocks that rock from springings that have moved.
+
+use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::history::{Outcome, State};
+use archrock::mechanics::blocks::Row;
+use archrock::mechanics::elastic_joint::ElasticProperties;
+use archrock::mechanics::friction;
+use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::settling::{Follower, Movement, Movements};
+use archrock::mechanics::sway::Sway;
+use archrock::mechanics::tie::{Anchor, Tie};
+use roxmltree::Document;
+
+use archrock::{ElasticJoints, FreeHinges, Hinge, History, Model as _, Request, RowOptions};
+
+use crate::common::program::{printed, refused};
+use crate::common::results::{Table, json};
+use crate::mechanics::spread::Blocks;
+
+const GRAVITY: f64 = 9.81;
+const RADIUS_M: f64 = 5.0;
+
+fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
+    let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
+    Row::arch(&ring, voussoirs, RADIUS_M, 1.0, 2000.0).unwrap()
+}
+
+/// The right springing has gone so far out and down, in radii.
+fn right(spread: f64, settlement: f64) -> Movements {
+    Movements {
+        right: Movement {
+            spread_m: RADIUS_M * spread,
+            settlement_m: RADIUS_M * settlement,
+            rotation_rad: 0.0,
+        },
+        ..Movements::default()
+    }
+}
+
+/// A semicircle of 16 voussoirs with a tie between its intrados corners at a quarter and three quarters of its joints; its stiffness in
+/// weights per metre, its prestress in weights.
+fn tied(stiffness: f64, prestress: f64) -> Row {
+    let row = arch(180.0, 0.15, 16);
+    let weight_n = row.mass_kg() * GRAVITY;
+    let end = |block, joint: usize| Anchor {
+        block: Some(block),
+        at_m: row.joints()[joint].intrados_m,
+    };
+    let tie = Tie {
+        ends: [end(4, 4), end(11, 12)],
+        stiffness_n_m: stiffness * weight_n,
+        prestress_n: prestress * weight_n,
+        yield_force_n: f64::INFINITY,
+        breaks_at_strain: f64::INFINITY,
+    };
+    row.with_ties(vec![tie], GRAVITY).unwrap()
+}
+
+fn settled(row: &Row, movements: &Movements) -> FreeHinges {
+    let model = FreeHinges::new(row.clone()).unwrap();
+    model.on_supports(movements).unwrap()
+}
+
+fn slipping(model: FreeHinges, coefficient: f64) -> FreeHinges {
+    let options = RowOptions {
+        friction_coefficient: Some(coefficient),
+        ..RowOptions::default()
+    };
+    model.with_options(options).unwrap()
+}
+
+/// A rectangular push to a side, in units of gravity.
+fn push(push_g: f64, sway: Sway, duration_s: f64) -> GroundMotion {
+    let acceleration = -sway.sign() * push_g * GRAVITY;
+    GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, 0.0).unwrap()
+}
+
+fn history(model: &dyn archrock::Model, ground: &GroundMotion, end_s: f64) -> History {
+    let request = Request {
+        end_s,
+        output_step_s: 0.01,
+        ..Request::default()
+    };
+    model.history(ground, &request).unwrap()
+}
+
+fn largest(rotations_rad: &[f64]) -> f64 {
+    rotations_rad
+        .iter()
+        .fold(0.0, |most, now| most.max(now.abs()))
+}
+
+fn joint(hinge: Hinge) -> usize {
+    match hinge {
+        Hinge::Joint { joint, .. } => joint,
+        Hinge::Section { .. } | Hinge::Toe(_) => panic!("a row has joints"),
+    }
+}
+
+/// Ground that moves by nothing worth it after four seconds, so that a history goes on until then.
+fn four_seconds() -> GroundMotion {
+    GroundMotion::pulse(Pulse::HalfSine, 1e-12, 0.1, 3.95).unwrap()
+}
+
+#[test]
+fn a_settled_arch_stays_where_it_is() {
+    for (row, movements) in [
+        (arch(180.0, 0.15, 36), right(0.0279, 0.0)),
+        (arch(180.0, 0.15, 36), right(0.0, 0.13)),
+        (arch(157.5, 0.15, 12), right(0.1, 0.03)),
+        // Three hinges with a tie, and four that the tie holds.
+        (tied(0.2, 0.05), right(0.06, 0.0)),
+        (tied(30.0, 0.03), right(0.0, 0.12)),
+    ] {
+        let mut follower = Follower::new(&row).unwrap();
+        let way = |part: f64| movements.times(part);
+        follower.move_supports(way, 0.0, 1.0).unwrap();
+        let model = settled(&row, &movements);
+        for model in [model.clone(), slipping(model, 0.7)] {
+            let history = history(&model, &four_seconds(), 4.1);
+            let summary = &history.summary;
+            assert_eq!(summary.outcome, Outcome::NeverMoved);
+            assert!(summary.end_s > 4.0);
+            // Rounding of angles of a tenth.
+            let moved = largest(&summary.peak_rotations_rad);
+            assert!(moved < 1e-13, "{moved:e}");
+            for sample in history.samples.iter() {
+                assert_eq!(sample.state, State::Rest);
+                let open: Vec<usize> = sample.hinges.iter().map(|open| joint(open.hinge)).collect();
+                let expected: Vec<usize> = follower
+                    .hinges()
+                    .unwrap()
+                    .hinges
+                    .iter()
+                    .map(|hinge| hinge.joint)
+                    .collect();
+                assert_eq!(open, expected);
+                for (pose, there) in sample.poses.iter().zip(&follower.placement().poses) {
+                    let centre = row.blocks()[0].centre_m;
+                    assert!((pose.of(centre) - there.of(centre)).norm() < 1e-12);
+                }
+            }
+        }
+    }
+}
+
+/// It moves at the push of the linear programme of forces in the moved place, to a millionth, and not before.
+#[test]
+fn a_settled_arch_starts_at_the_push_of_its_programme() {
+    for (embrace_deg, thickness, voussoirs, spread, settlement) in [
+        (180.0, 0.15, 16, 0.04, 0.0),
+        (180.0, 0.15, 16, 0.0, 0.1),
+        (157.5, 0.15, 12, 0.08, 0.0),
+    ] {
+        let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
+        for step in 1..=20 {
+            blocks.support = [spread, settlement].map(|part| part * f64::from(step) / 20.0);
+            assert!(blocks.settle());
+        }
+        let due_g = blocks.first_motion();
+        let row = arch(embrace_deg, thickness, voussoirs);
+        let model = settled(&row, &right(spread, settlement));
+        let told_g = model.incipient_acceleration_g(Sway::Right).unwrap();
+        // The judge knows its place to 1e-7, and its push to 1e-9.
+        assert!((told_g - due_g).abs() < 1e-6, "{told_g} {due_g}");
+        for model in [model.clone(), slipping(model, 2.0)] {
+            let starts = |factor: f64| {
+                let ground = push(due_g * factor, Sway::Right, 0.1);
+                history(&model, &ground, 0.2).summary.outcome != Outcome::NeverMoved
+            };
+            assert!(!starts(1.0 - 1e-6) && starts(1.0 + 1e-6), "{due_g}");
+        }
+    }
+}
+
+/// With a tie the same, to the push of the programme with the force of the tie there: of forces at the corners of all joints, by an
+/// interior-point method.
+#[test]
+fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
+    let row = tied(0.2, 0.05);
+    let movements = right(0.06, 0.0);
+    let mut follower = Follower::new(&row).unwrap();
+    follower
+        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .unwrap();
+    // As good as glue.
+    let onset = friction::onset_at(&row, &follower.stance, 20.0, Sway::Right).unwrap();
+    let due_g = onset.unwrap().acceleration_g;
+    let model = settled(&row, &movements);
+    let told_g = model.incipient_acceleration_g(Sway::Right).unwrap();
+    assert!((told_g - due_g).abs() < 1e-6, "{told_g} {due_g}");
+    for model in [model.clone(), slipping(model, 2.0)] {
+        let starts = |factor: f64| {
+            let ground = push(told_g * factor, Sway::Right, 0.1);
+            history(&model, &ground, 0.2).summary.outcome != Outcome::NeverMoved
+        };
+        assert!(!starts(1.0 - 1e-6) && starts(1.0 + 1e-6), "{due_g}");
+    }
+    // Four hinges that a tie holds start at once, and swing about where they stood: rigid blocks on a spring, whose energy stays.
+    let model = settled(&tied(30.0, 0.03), &right(0.0, 0.12));
+    assert_eq!(model.incipient_acceleration_g(Sway::Right), Some(0.0));
+    for model in [model.clone(), slipping(model, 3.0)] {
+        let history = history(&model, &push(0.002, Sway::Right, 0.05), 0.6);
+        let summary = &history.summary;
+        let of_row = summary.row.as_ref().unwrap();
+        assert_eq!(summary.outcome, Outcome::StillRocking);
+        assert!(summary.impacts == 0 && of_row.ties[0].peak_force_n > 0.0);
+        assert!(
+            summary.energy_defect_ratio < 1e-6,
+            "{:e}",
+            summary.energy_defect_ratio
+        );
+        let first: Vec<f64> = history
+            .samples
+            .iter()
+            .map(|sample| sample.rotations_rad[8])
+            .collect();
+        let [least, most] = [f64::min, f64::max].map(|of| first.iter().copied().fold(0.0, of));
+        assert!(most - least > 1e-6, "{least} {most}");
+    }
+}
+
+/// A tie that is stretched by a part more than it bears has broken where the arch is to stand, which is an error: its motion would begin
+/// without a tie that it has.
+#[test]
+fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
+    let movements = right(0.06, 0.0);
+    let row = tied(0.2, 0.05);
+    let mut follower = Follower::new(&row).unwrap();
+    follower
+        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .unwrap();
+    let stretch_m = follower.stance.ties[0].stretch_m.0[0];
+    let on_supports = |bears: f64| {
+        let tie = row.ties()[0];
+        let tie = Tie {
+            breaks_at_strain: bears * stretch_m / tie.slack_length_m(),
+            ..tie
+        };
+        let row = row.clone().with_ties(vec![tie], GRAVITY).unwrap();
+        FreeHinges::new(row).unwrap().on_supports(&movements)
+    };
+    assert!(on_supports(1.0 + 1e-9).is_ok());
+    let error = on_supports(1.0 - 1e-9).unwrap_err().to_string();
+    assert!(error.contains("tie 1 breaks before"), "{error}");
+}
+
+/// How the blocks are turned from where they stood, in samples of 10 ms.
+fn turned(history: &History) -> Vec<Vec<f64>> {
+    let samples = history.samples.iter();
+    samples
+        .map(|sample| sample.rotations_rad.to_vec())
+        .collect()
+}
+
+/// The largest difference of two motions until a time.
+fn apart(one: &[Vec<f64>], other: &[Vec<f64>], until: usize) -> f64 {
+    let pairs = one.iter().zip(other).take(until);
+    let apart = pairs.flat_map(|(one, other)| {
+        one.iter()
+            .zip(other)
+            .map(|(one, other)| (one - other).abs())
+    });
+    apart.fold(0.0, f64::max)
+}
+
+/// Only how the springings stand to each other counts; and the mirror image moves to the other side.
+#[test]
+fn only_the_movement_of_one_springing_against_the_other_counts() {
+    let row = arch(157.5, 0.15, 12);
+    let movement = |spread: f64, settlement: f64, rotation_rad: f64| Movement {
+        spread_m: RADIUS_M * spread,
+        settlement_m: RADIUS_M * settlement,
+        rotation_rad,
+    };
+    let moved = Movements {
+        left: Movement::default(),
+        right: movement(0.05, 0.02, 0.01),
+    };
+    let mirrored = Movements {
+        left: movement(0.05, 0.02, -0.01),
+        right: Movement::default(),
+    };
+    let shifted = Movements {
+        left: movement(-0.3, 0.1, 0.0),
+        right: movement(0.35, 0.12, 0.01),
+    };
+    let pushed = |movements: &Movements, push_g, sway| {
+        let model = settled(&row, movements);
+        turned(&history(&model, &push(push_g, sway, 0.2), 1.0))
+    };
+    let built = pushed(&Movements::default(), 0.5, Sway::Right);
+    let along = Movements {
+        left: movement(-0.3, 0.1, 0.0),
+        right: movement(0.3, 0.1, 0.0),
+    };
+    let as_one = pushed(&along, 0.5, Sway::Right);
+    let motion = |movements: &Movements, sway| pushed(movements, 0.3, sway);
+    assert!(largest(&built.concat()) > 1e-2);
+    // Places differ by their rounding, some 1e-16 of a metre and a half.
+    assert!(apart(&built, &as_one, 25) < 1e-11);
+    let far = Movements {
+        left: movement(-20.0, 8.0, 0.0),
+        right: movement(20.0, 8.0, 0.0),
+    };
+    // And 1e-14 of a hundred.
+    assert!(apart(&built, &pushed(&far, 0.5, Sway::Right), 25) < 1e-9);
+    let first = motion(&moved, Sway::Right);
+    let elsewhere = motion(&shifted, Sway::Right);
+    let mut image = motion(&mirrored, Sway::Left);
+    for rotations in &mut image {
+        rotations.reverse();
+        for rotation in rotations {
+            *rotation = -*rotation;
+        }
+    }
+    assert!(largest(&first.concat()) > 1e-2);
+    assert!(apart(&first, &elsewhere, 101) < 1e-11);
+    // The last open joint on the right closes the row, which is worth the square of the steps: measured 1e-8 of a radian up to here.
+    let off = apart(&first, &image, 25);
+    assert!(off < 5e-8, "{off:e}");
+}
+
+/// Steps that end at landings of joints that do not slip, and equal steps with Coulomb's law on all blocks with friction that is as good as
+/// glue, share no mechanics but the row: they move alike until the first impact, come to the same end, and balance their energy.
+#[test]
+fn both_ways_to_move_rigid_blocks_agree() {
+    let row = arch(157.5, 0.15, 12);
+    let free = settled(&row, &right(0.08, 0.0));
+    let ground = push(0.3, Sway::Right, 0.2);
+    let [one, other] =
+        [free.clone(), slipping(free, 3.0)].map(|model| history(&model, &ground, 0.26));
+    let (one_rad, other_rad) = (turned(&one), turned(&other));
+    assert!(largest(&one_rad.concat()) > 0.05 && one.summary.impacts == 0);
+    // Equal steps are wrong by 1.3e-8 of a radian there: the square of what they are of the motion.
+    let off = apart(&one_rad, &other_rad, 26);
+    assert!(off < 5e-8, "{off:e}");
+    let row = arch(180.0, 0.15, 36);
+    let free = settled(&row, &right(0.0279, 0.0));
+    for (push_g, falls) in [(0.05, false), (0.3, true)] {
+        for model in [free.clone(), slipping(free.clone(), 3.0)] {
+            let history = history(&model, &push(push_g, Sway::Right, 0.2), 10.0);
+            let summary = &history.summary;
+            let expected = if falls {
+                Outcome::Overturned(Sway::Right)
+            } else {
+                Outcome::Rest
+            };
+            assert_eq!(summary.outcome, expected);
+            let of_row = summary.row.as_ref().unwrap();
+            // In weights times radii: measured 1.3e-7 at most, over some two thousand impacts.
+            assert!(
+                summary.energy_defect_ratio < 1e-6,
+                "{:e}",
+                summary.energy_defect_ratio
+            );
+            assert!(of_row.closure_error_m < 1e-9 && of_row.energy_taken_j > 0.0);
+            if !falls {
+                // It stands on three hinges again.
+                let last = history.samples.iter().last().unwrap();
+                assert_eq!(last.hinges.len(), 3, "{:?}", last.hinges);
+            }
+        }
+    }
+}
+
+/// The block between hinges that neighbouring joints pass on to each other turns as far with elastic joints, the more so the stiffer they are. They
+/// start a little earlier, as they hand hinges on little by little, so they come near slowly.
+#[test]
+fn stiff_joints_move_a_settled_arch_as_rigid_ones_do() {
+    let row = arch(157.5, 0.15, 12);
+    let movements = right(0.08, 0.0);
+    let ground = push(0.3, Sway::Right, 0.2);
+    let turned_rad =
+        |model: &dyn archrock::Model| turned(&history(model, &ground, 0.2)).last().unwrap()[1];
+    let rigid_rad = turned_rad(&settled(&row, &movements));
+    let mut last = f64::INFINITY;
+    for stiffness_pa_m in [1e10, 1e11, 1e12] {
+        let properties = ElasticProperties {
+            friction_coefficient: None,
+            ..ElasticProperties::of_stiffness(stiffness_pa_m)
+        };
+        let model = ElasticJoints::new(row.clone(), properties).unwrap();
+        let elastic_rad = turned_rad(&model.on_supports(movements).unwrap());
+        let off = (elastic_rad / rigid_rad - 1.0).abs();
+        assert!(off < 0.75 * last, "{stiffness_pa_m:e}: {off}");
+        last = off;
+    }
+    // Measured 0.19, 0.13 and 0.065.
+    assert!(last < 0.08, "{last}");
+}
+
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\
+                    [supports]\nright = { spread_m = 0.13956 }\n\
+                    [ground.rectangular]\namplitude_g = -0.05\nduration_s = 0.2\n[simulation]\nduration_s = 0.3\n";
+
+#[test]
+fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |more: &str| {
+        std::fs::write(folder.path().join("arch.toml"), format!("{ARCH}{more}")).unwrap()
+    };
+    write("[free_hinges]\n");
+    let told = printed(folder.path(), &["limit", "arch.toml", "--format", "json"]);
+    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    for side in ["right", "left"] {
+        // The first quarter of the way of this semicircle, by another program; it is known to six digits, and so is the movement.
+        let number = |key: &str| told[key][side].as_f64().unwrap();
+        assert!((number("incipient_acceleration_g") - 0.006_437_48).abs() < 2e-7);
+        assert!((number("capacity_g") - 0.115_773).abs() < 1e-5);
+    }
+    assert_eq!(told["hinges"][1]["joint"], 18);
+    let words = printed(folder.path(), &["limit", "arch.toml"]);
+    assert!(
+        words.contains("joint 6 (intrados), joint 18 (extrados), joint 30 (intrados)"),
+        "{words}"
+    );
+    let run = ["--quiet", "run", "arch.toml", "--no-repeat", "--no-report"];
+    printed(folder.path(), &run);
+    let told = json(&folder.path().join("results/arch/summary.json"));
+    let told_g = told["incipient_acceleration_g"]["right"].as_f64().unwrap();
+    assert!((told_g - 0.006_437_48).abs() < 2e-7, "{told_g}");
+    // Where it stands, and from where it is told.
+    let first = |table: &str, column: &str| {
+        Table::read(folder.path().join("results/arch").join(table)).numbers(column)[0]
+    };
+    assert_eq!(first("rotations.csv", "rotation_18_rad"), 0.0);
+    // The hinge at the crown turns by 0.04627, on the extrados, over a thickness of 0.75 m.
+    assert!((first("joints.csv", "gap_18_intrados_m") - 0.0347).abs() < 1e-4);
+    // As it stands, on its hinges, and as it was built: the springings are farther apart by the movement, and so are the outer corners.
+    printed(folder.path(), &["check", "arch.toml", "--plot", "arch.svg"]);
+    let picture = std::fs::read_to_string(folder.path().join("arch.svg")).unwrap();
+    assert_eq!(picture.matches("data-name=\"hinge\"").count(), 3);
+    let wide_px = |name: &str| {
+        let all = Document::parse(&picture).unwrap();
+        let paths = all
+            .descendants()
+            .filter(|node| node.attribute("data-name") == Some(name));
+        let corners: Vec<f64> = paths
+            .flat_map(|node| {
+                let path = node.attribute("points").or(node.attribute("d")).unwrap();
+                let numbers = path.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-'));
+                let numbers = numbers.filter_map(|number| number.parse::<f64>().ok());
+                numbers.step_by(2).collect::<Vec<_>>()
+            })
+            .collect();
+        let [least, most] =
+            [f64::min, f64::max].map(|of| corners.iter().copied().reduce(of).unwrap());
+        most - least
+    };
+    let parts = (wide_px("block") / wide_px("built") - 1.0) * 10.75;
+    // Coordinates have three digits of a pixel.
+    assert!((parts - 0.13956).abs() < 1e-4, "{parts}");
+    write("[free_hinges]\nfriction_coefficient = 0.7\n");
+    let words = printed(folder.path(), &["limit", "arch.toml"]);
+    assert!(words.contains("coefficient of friction of 0.7"), "{words}");
+    for (more, set, message) in [
+        (
+            "[free_hinges]\n",
+            "supports.right.spread_m=0.7",
+            "lets the arch fall when its springings have gone 79.75 % of this way",
+        ),
+        (
+            "[free_hinges]\nfriction_coefficient = 0.36\n",
+            "title=slides",
+            "does not hold the structure where its springings have gone",
+        ),
+        (
+            "[free_hinges]\n[[tie]]\nheight_m = 2.0\nstiffness_n_m = 1e5\nbreaks_at_strain = 0.01\n",
+            "title=tied",
+            "`[[tie]]` in `tie` breaks before the springings have gone the way of [supports]",
+        ),
+        (
+            "[impact]\nmodel = \"max_restitution\"\n",
+            "title=four",
+            "four links start undeformed; choose [free_hinges]",
+        ),
+    ] {
+        write(more);
+        refused(
+            folder.path(),
+            &["run", "arch.toml", "--set", set],
+            &[message],
+        );
+    }
+    write("[free_hinges]\n");
+    refused(
+        folder.path(),
+        &["capacity", "arch.toml"],
+        &["the studies `limit` and `spread` compute the push"],
+    );
+}

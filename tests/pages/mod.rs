@@ -1,0 +1,6 @@
+//! Pictures and pages, read back and compared with the tables they show.
+
+mod figures;
+mod map;
+mod pictures;
+mod report;

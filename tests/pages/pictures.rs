@@ -1,0 +1,707 @@
+//! The contents of pictures: read back from the SVG and compared with the mechanics.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::program::{done, printed, scenarios};
+use crate::common::results::{Table, named, number, points, strokes, texts};
+use archrock::mechanics::four_link::chain::Chain;
+use archrock::mechanics::geometry::profile::Profile;
+use archrock::mechanics::geometry::ring::Edge;
+use archrock::output::Figure;
+use archrock::output::scene::Scene;
+use archrock::scenario::Structure;
+use archrock::studies::impact::LinkImpact;
+use archrock::studies::map::{OverturningMap, outcome, picture};
+use archrock::studies::pictures;
+use archrock::studies::results::Look;
+use archrock::studies::runner::Study as _;
+use archrock::{Arch, FourLinks, ImpactModel, Scenario, Sway};
+use nalgebra::Vector2;
+use roxmltree::{Document, Node};
+
+/// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
+const PIXEL: f64 = 0.02;
+
+fn four_links(arch: Arch) -> FourLinks {
+    FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap()
+}
+
+fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinks {
+    four_links(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
+}
+
+/// The impact that leads to a link of the chain after a first sway to the right.
+fn impact(arch: &FourLinks, index: usize) -> LinkImpact<'_> {
+    LinkImpact {
+        model: arch,
+        first: Sway::Right,
+        index,
+    }
+}
+
+fn center(node: &Node<'_, '_>) -> Vector2<f64> {
+    Vector2::new(number(node, "cx"), number(node, "cy"))
+}
+
+/// Place and scale of a ring on the sheet, from its first and last hinge: centre and pixels per radius.
+struct Sheet {
+    center: Vector2<f64>,
+    scale: f64,
+}
+
+impl Sheet {
+    fn new(shown: [Vector2<f64>; 2], exact: [Vector2<f64>; 2]) -> Self {
+        let scale = (shown[1].x - shown[0].x) / (exact[1].x - exact[0].x);
+        let flipped = Vector2::new(exact[0].x, -exact[0].y);
+        Self {
+            center: shown[0] - flipped * scale,
+            scale,
+        }
+    }
+
+    fn back(&self, shown: Vector2<f64>) -> Vector2<f64> {
+        let away = (shown - self.center) / self.scale;
+        Vector2::new(away.x, -away.y)
+    }
+}
+
+/// Checks the hinges A to D of a picture and returns the sheet they define.
+fn check_hinges(document: &Document<'_>, chain: &Chain, link: usize, sway: Sway) -> Sheet {
+    let mark = if link == 0 { "" } else { "'" };
+    let ring = chain.profile(0);
+    let mechanism = chain.link(link).unwrap().mechanism;
+    let exact = mechanism
+        .hinges_from_left(ring, sway)
+        .map(|(angle, edge)| ring.point(angle, edge));
+    let shown = ["A", "B", "C", "D"].map(|letter| {
+        let circles = named(document, &format!("hinge {letter}{mark}"));
+        assert_eq!(circles.len(), 1);
+        center(&circles[0])
+    });
+    let sheet = Sheet::new([shown[0], shown[3]], [exact[0], exact[3]]);
+    assert!(sheet.scale > 100.0);
+    for (shown, exact) in shown.into_iter().zip(exact) {
+        let error = (sheet.back(shown) - exact).norm() * sheet.scale;
+        assert!(error < PIXEL, "{error}");
+    }
+    for letter in ["A", "B", "C", "D"] {
+        assert!(texts(document).contains(&format!("{letter}{mark}")));
+    }
+    sheet
+}
+
+/// Distance of the curve's points from the axis over the thickness: the eccentricity drawn.
+fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &dyn Profile) -> Vec<f64> {
+    let radius = |point: &Vector2<f64>| sheet.back(*point).norm();
+    curve
+        .iter()
+        .map(|point| (radius(point) - 1.0) / ring.thickness(0.0))
+        .collect()
+}
+
+#[test]
+fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
+    for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
+        let arch = arch(thickness_ratio, embrace_deg);
+        let chain = arch.chain();
+        let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+        let document = Document::parse(&picture).unwrap();
+        let sheet = check_hinges(&document, chain, 0, Sway::Right);
+        let lines = named(&document, "thrust line");
+        assert_eq!(lines.len(), 1);
+        let curve = points(&lines[0]);
+        let tolerance = 2.0 * PIXEL / (sheet.scale * thickness_ratio);
+        for e in eccentricities(&curve, &sheet, chain.profile(0)) {
+            assert!(e.abs() < 0.5 + tolerance, "{e}");
+        }
+        // Between points of the polyline, about half a pixel apart, it passes through the hinges.
+        for point in chain.link(0).unwrap().mechanism.points {
+            let nearest = curve
+                .iter()
+                .map(|shown| (sheet.back(*shown) - point).norm() * sheet.scale)
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < 1.0, "{nearest}");
+        }
+        let acceleration = format!("{:.5} g", chain.incipient.acceleration_g);
+        assert!(texts(&document)[0].contains(&acceleration));
+    }
+}
+
+#[test]
+fn joints_are_drawn_where_there_are_voussoirs() {
+    let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
+    let arch = four_links(arch.with_voussoirs(7).unwrap());
+    let chain = arch.chain();
+    for picture in [
+        pictures::limit(Figure::SCREEN, chain, Sway::Right, None),
+        pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap(),
+    ] {
+        let document = Document::parse(&picture).unwrap();
+        assert_eq!(named(&document, "joint").len(), 8);
+    }
+    // The hinges are at joints.
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+    let document = Document::parse(&picture).unwrap();
+    check_hinges(&document, chain, 0, Sway::Right);
+}
+
+/// The corners of a displaced body are where its circular arcs begin and end: read from its path.
+fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
+    let path = node.attribute("d").unwrap().replace(['M', 'L', 'Z'], " ");
+    path.split('A')
+        .flat_map(|piece| {
+            let numbers: Vec<f64> = piece
+                .split_whitespace()
+                .map(|text| text.parse().unwrap())
+                .collect();
+            // An arc's radii and flags come before its end.
+            let skip = numbers.len() % 2 + if numbers.len() > 4 { 4 } else { 0 };
+            numbers[skip.min(numbers.len())..]
+                .chunks_exact(2)
+                .map(|pair| Vector2::new(pair[0], pair[1]))
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+#[test]
+fn limit_shows_rigid_bodies_joined_at_hinges() {
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+    let document = Document::parse(&picture).unwrap();
+    let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
+    assert_eq!(hinges.len(), 4);
+    let body = |name: &str| corners(&named(&document, name)[0]);
+    // B is a corner of the left and the middle bodies, C of the middle and the right ones.
+    for (hinge, bodies) in [
+        (hinges[0], ["still", "left"]),
+        (hinges[1], ["left", "middle"]),
+        (hinges[2], ["middle", "right"]),
+    ] {
+        for name in bodies {
+            let nearest = body(name)
+                .iter()
+                .map(|corner| (corner - hinge).norm())
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < PIXEL, "{name}: {nearest}");
+        }
+    }
+    // Rigid: the bars A-B, B-C and C-D keep their lengths.
+    let points = chain.link(0).unwrap().mechanism.points;
+    let bar = |points: &[Vector2<f64>], i: usize| (points[i + 1] - points[i]).norm();
+    let scale = bar(&hinges, 0) / bar(&points, 0);
+    for i in [1, 2] {
+        assert!((bar(&hinges, i) - scale * bar(&points, i)).abs() < PIXEL);
+    }
+    // It sways right, which lowers B.
+    assert!(hinges[1].x - hinges[0].x > scale * (points[1].x - points[0].x));
+}
+
+/// The mechanism after the second impact sways right again, so nothing is mirrored.
+#[test]
+fn the_second_impact_has_a_picture_of_its_own() {
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let scene = Scene::new(&Structure::Arch(Arch::new(5.0, 0.15, 180.0).unwrap()));
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), Some(&scene)).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    check_hinges(&document, chain, 2, Sway::Right);
+    let title = &texts(&document)[0];
+    assert!(
+        title.contains("Impact 2: ") && title.contains("r = 0.737099"),
+        "{title}"
+    );
+    // Bodies are counted from the left, as at the first impact.
+    let left = |name: &str| {
+        let bodies = named(&document, name);
+        corners(&bodies[0])
+            .iter()
+            .map(|corner| corner.x)
+            .fold(f64::INFINITY, f64::min)
+    };
+    assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
+    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0), None).is_none());
+
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    printed(
+        folder.path(),
+        &["impact", "s.toml", "--link", "2", "--plot", "2.svg"],
+    );
+    assert_eq!(
+        fs::read_to_string(folder.path().join("2.svg")).unwrap(),
+        picture
+    );
+}
+
+/// Fig. 10 and Eq. (3) of the paper: for the semicircle, whose last hinges share the right springing, the
+/// seventh body is empty.
+#[test]
+fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
+    let arch = arch(0.15, 180.0);
+    let chain = arch.chain();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    let sheet = check_hinges(&document, chain, 1, Sway::Left);
+    assert!(
+        texts(&document)[0].contains("Impact 1: ") && texts(&document)[0].contains("r = 0.681186")
+    );
+    let angles: [f64; 7] = [
+        0.0, 24.01353, 76.37611, 81.78741, 133.81620, 139.56130, 180.0,
+    ];
+    for (index, pair) in angles.windows(2).enumerate() {
+        let bodies = named(&document, &format!("body {}", index + 1));
+        assert_eq!(bodies.len(), 1);
+        assert!(texts(&document).contains(&(index + 1).to_string()));
+        let expected: Vec<_> = pair
+            .iter()
+            .flat_map(|angle| {
+                [Edge::Intrados, Edge::Extrados]
+                    .map(|edge| chain.profile(0).point(angle.to_radians(), edge))
+            })
+            .collect();
+        let shown = corners(&bodies[0]);
+        assert_eq!(shown.len(), 4);
+        for corner in shown {
+            let nearest = expected
+                .iter()
+                .map(|point| (sheet.back(corner) - point).norm() * sheet.scale)
+                .fold(f64::INFINITY, f64::min);
+            assert!(nearest < PIXEL, "{nearest}");
+        }
+    }
+    assert!(named(&document, "body 7").is_empty());
+    let lines = named(&document, "impulse line");
+    assert_eq!(lines.len(), 1);
+    let drawn = eccentricities(&points(&lines[0]), &sheet, chain.profile(0));
+    let worst = drawn
+        .into_iter()
+        .fold(0.0, |worst: f64, e| worst.max(e.abs()));
+    // Published: |e|/t = 0.50199 at most; a hundredth of a pixel is 3e-4 of t.
+    assert!((worst - 0.50199).abs() < 5e-4, "{worst}");
+}
+
+/// An uneven arch on piers, whose blocks, onset and hinges are known from the row and the static programme.
+#[test]
+fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let text = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\n\
+                [piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
+                [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
+    fs::write(folder.join("s.toml"), text).unwrap();
+    let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+    let Structure::Masonry(masonry) = scenario.structure() else {
+        panic!("{:?}", scenario.structure());
+    };
+    let outlines_m = masonry.row().outlines_m();
+    let corner = |outlines: &[Vec<Vector2<f64>>], block: usize| outlines[block][0];
+    let printed_json = printed(folder, &["limit", "s.toml", "--format", "json"]);
+    let onset: serde_json::Value = serde_json::from_str(&printed_json).unwrap();
+    for side in ["right", "left"] {
+        let options = ["--first", side, "--plot"];
+        printed(
+            folder,
+            &[&["limit", "s.toml"], &options[..], &["l.svg"]].concat(),
+        );
+        printed(
+            folder,
+            &[&["impact", "s.toml"], &options[..], &["i.svg"]].concat(),
+        );
+        let [limit, impact] =
+            ["l.svg", "i.svg"].map(|file| fs::read_to_string(folder.join(file)).unwrap());
+        let (limit, impact) = (
+            Document::parse(&limit).unwrap(),
+            Document::parse(&impact).unwrap(),
+        );
+        let last = outlines_m.len() - 1;
+        let exact = [corner(outlines_m, 0), corner(outlines_m, last)];
+        let mut sheets = Vec::new();
+        for document in [&limit, &impact] {
+            // The structure at rest is similar to its blocks, wherever it is drawn whole.
+            let whole = named(document, "ring");
+            assert!(!whole.is_empty());
+            for node in &whole {
+                let drawn = strokes(node);
+                assert_eq!(drawn.len(), outlines_m.len());
+                let sheet = Sheet::new([corner(&drawn, 0), corner(&drawn, last)], exact);
+                for (drawn, outline_m) in drawn.iter().zip(outlines_m) {
+                    assert_eq!(drawn.len(), outline_m.len());
+                    for (drawn, corner_m) in drawn.iter().zip(outline_m) {
+                        assert!((sheet.back(*drawn) - corner_m).norm() * sheet.scale < PIXEL);
+                    }
+                }
+                sheets.push(sheet);
+            }
+        }
+        // Hinges of the first mechanism lie on the thrust line, at the joints that the static programme opens.
+        let mechanism = onset["mechanism"][side].as_array().unwrap();
+        assert_eq!(mechanism.len(), 4);
+        let mut line = points(&named(&limit, "thrust line")[0]);
+        assert_eq!(line.len(), outlines_m.len() + 1);
+        let mut moved: Vec<_> = named(&limit, "moved hinge").iter().map(center).collect();
+        if side == "left" {
+            // Drawn in the frame of the sway, hence reversed.
+            line.reverse();
+            moved.reverse();
+        }
+        for (letter, opening) in ["A", "B", "C", "D"].into_iter().zip(mechanism) {
+            let shown = center(&named(&limit, &format!("hinge {letter}"))[0]);
+            let [x_m, y_m] = ["x_m", "y_m"].map(|key| opening[key].as_f64().unwrap());
+            let exact = Vector2::new(x_m, y_m);
+            assert!((sheets[0].back(shown) - exact).norm() * sheets[0].scale < PIXEL);
+            let joint = usize::try_from(opening["joint"].as_u64().unwrap()).unwrap();
+            assert!((line[joint] - shown).norm() < PIXEL, "{letter}");
+        }
+        // Rigid bodies share their hinges: left and middle the second, middle and right the third.
+        for (name, hinges) in [("left", [0, 1]), ("middle", [1, 2]), ("right", [2, 3])] {
+            let body = strokes(&named(&limit, name)[0]);
+            for hinge in hinges {
+                let corners = body.iter().flatten();
+                let distances = corners.map(|corner| (corner - moved[hinge]).norm());
+                assert!(
+                    distances.fold(f64::INFINITY, f64::min) < PIXEL,
+                    "{name} {hinge}"
+                );
+            }
+        }
+        let drawn: usize = ["still", "left", "middle", "right"]
+            .iter()
+            .flat_map(|name| named(&limit, name))
+            .map(|node| strokes(&node).len())
+            .sum();
+        assert_eq!(drawn, outlines_m.len());
+        // It sways to that side: the hinge between the left and middle bodies moves there.
+        let at_rest = center(&named(&limit, "hinge B")[0]);
+        let sway = sheets[1].back(moved[1]).x - sheets[0].back(at_rest).x;
+        assert_eq!(sway > 0.0, side == "right");
+        // The impulse line passes through the hinges of the new mechanism, and all its bodies are numbered.
+        let line = points(&named(&impact, "impulse line")[0]);
+        for letter in ["A'", "B'", "C'", "D'"] {
+            let shown = center(&named(&impact, &format!("hinge {letter}"))[0]);
+            let distances = line.iter().map(|point| (point - shown).norm());
+            assert!(distances.fold(f64::INFINITY, f64::min) < PIXEL);
+        }
+        let bodies = (1..9).take_while(|n| !named(&impact, &format!("body {n}")).is_empty());
+        assert!(bodies.count() >= 3);
+    }
+}
+
+fn scenario(folder: &Path, more: &str) {
+    let text = format!(
+        "title = \"A < B & C\"\n[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\n\
+         embrace_deg = 180.0\n{more}"
+    );
+    fs::write(folder.join("s.toml"), text).unwrap();
+}
+
+#[test]
+fn run_draws_the_history() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(
+        folder.path(),
+        "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n\
+         [simulation]\noutput_step_s = 1e-4\n",
+    );
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
+    let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
+    // Thirty thousand samples of six quantities, thinned.
+    assert!(text.len() < 400_000, "{}", text.len());
+    let document = Document::parse(&text).unwrap();
+    assert_eq!(texts(&document)[0], "A < B & C");
+    for label in [
+        "Ground (g)",
+        "Rotation (rad)",
+        "Total energy / barrier",
+        "Time (s)",
+    ] {
+        assert!(texts(&document).iter().any(|text| text == label), "{label}");
+    }
+    let curve = |name: &str| {
+        let found = named(&document, name);
+        let curves: Vec<_> = found
+            .iter()
+            .filter(|node| node.has_tag_name("path"))
+            .collect();
+        assert_eq!(curves.len(), 1, "{name}");
+        points(curves[0])
+    };
+    // The largest rotations have the ratios of the published peaks, measured from zero, where all curves start.
+    let peak = |name: &str| {
+        let points = curve_of(&document, name);
+        let start = points[0].y;
+        points
+            .iter()
+            .map(|point| point.y - start)
+            .fold(
+                0.0,
+                |peak: f64, y| if y.abs() > peak.abs() { y } else { peak },
+            )
+    };
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(folder.path().join("out/summary.json")).unwrap())
+            .unwrap();
+    let key = |name: &str| summary[name].as_f64().unwrap();
+    let scale = peak("right") / key("peak_rotation_right_rad");
+    for (name, sign) in [("left", 1.0), ("middle", -1.0)] {
+        let expected = sign * scale * key(&format!("peak_rotation_{name}_rad"));
+        assert!((peak(name) - expected).abs() < 0.1, "{name}");
+    }
+    // Only the first half cycle goes far: its line is at the left body's unstable equilibrium, as `limit` prints it.
+    let unstable = curve("unstable");
+    for end in &unstable {
+        let from_zero = end.y - curve_of(&document, "left")[0].y;
+        assert!((from_zero - scale * 0.031_048).abs() < 0.1);
+    }
+    // One time axis: the curves begin and end together, at the frame.
+    let (left, right) = (66.0, 875.0);
+    for name in ["ground", "middle", "energy", "excess"] {
+        let points = curve(name);
+        assert!((points[0].x - left).abs() < PIXEL);
+        assert!((points[points.len() - 1].x - right).abs() < PIXEL);
+    }
+    assert!((unstable[0].x - left).abs() < PIXEL);
+    // The first impact, published at 1.0279 s, is marked at that fraction of the time.
+    let end_s = key("outcome_time_s");
+    let marks = named(&document, "impact");
+    let foot: f64 = marks[0].attribute("d").unwrap()[1..]
+        .split(' ')
+        .next()
+        .unwrap()
+        .parse()
+        .unwrap();
+    let expected = left + (right - left) * 1.0279 / end_s;
+    assert!((foot - expected).abs() < 0.05, "{foot} {expected}");
+    assert!(marks.len() > 10);
+    // It sways right until then, in each of four panels.
+    let bands = named(&document, "right");
+    let bands: Vec<_> = bands
+        .iter()
+        .filter(|node| node.has_tag_name("rect"))
+        .filter(|node| (number(node, "x") - left).abs() < PIXEL)
+        .collect();
+    assert_eq!(bands.len(), 4);
+    assert!((number(bands[0], "width") - (expected - left)).abs() < 0.1);
+}
+
+fn curve_of(document: &Document<'_>, name: &str) -> Vec<Vector2<f64>> {
+    let found = named(document, name);
+    points(found.iter().find(|node| node.has_tag_name("path")).unwrap())
+}
+
+#[test]
+fn a_run_in_which_nothing_moves_has_its_picture_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let weak = "[ground.rectangular]\namplitude_g = 0.01\nduration_s = 0.1\n";
+    scenario(
+        folder.path(),
+        &format!("{weak}[simulation]\nduration_s = 1.0\n"),
+    );
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
+    let text = fs::read_to_string(folder.path().join("out/history.svg")).unwrap();
+    assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
+    Document::parse(&text).unwrap();
+}
+
+/// Bands wide enough to be seen have the sway between the events on either side; narrower hops
+/// share one shade, which is neither.
+#[test]
+fn bands_have_the_sway_of_the_events() {
+    let folder = tempfile::tempdir().unwrap();
+    scenario(
+        folder.path(),
+        "[ground.rectangular]\namplitude_g = -0.30\nduration_s = 0.20\n",
+    );
+    done(folder.path(), &["run", "s.toml", "--out", "out"]);
+    let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+    let picture = read("history.svg");
+    let document = Document::parse(&picture).unwrap();
+    let mut events: Vec<(f64, String)> = vec![(0.0, String::new())];
+    for row in Table::read(folder.path().join("out/events.csv")).rows {
+        events.push((row.number("time_s"), row["sway"].to_owned()));
+    }
+    let summary: serde_json::Value = serde_json::from_str(&read("summary.json")).unwrap();
+    let end_s = summary["outcome_time_s"].as_f64().unwrap();
+    let place = |time_s: f64| 66.0 + 809.0 * time_s / end_s;
+    let mut hops = 0;
+    let mut swaying = [0, 0];
+    for name in ["right", "left", "hops"] {
+        let bands = named(&document, name);
+        let bands = bands.iter().filter(|node| node.has_tag_name("rect"));
+        for band in bands {
+            let (left, width) = (number(band, "x"), number(band, "width"));
+            let inside = |&&(time_s, _): &&(f64, String)| {
+                let x = place(time_s);
+                left + 0.05 < x && x < left + width - 0.05
+            };
+            let within: Vec<_> = events.iter().filter(inside).collect();
+            if name == "hops" {
+                hops += within.len();
+                continue;
+            }
+            // Events inside a visible band that have another sway take less than a pixel together.
+            let first = within.iter().map(|(time_s, _)| place(*time_s) - left);
+            assert!(first.fold(0.0, f64::max) < 1.0, "{name} {left} {width}");
+            let middle_s = (left + 0.5 * width - 66.0) / 809.0 * end_s;
+            let here = events
+                .iter()
+                .rfind(|(time_s, _)| *time_s <= middle_s)
+                .unwrap();
+            assert_eq!(here.1, name, "{left} {width}");
+            swaying[usize::from(name == "left")] += 1;
+        }
+    }
+    // In each of four panels, for each event that a visible interval follows; there are several to each side.
+    let seen = |side: &str| {
+        let ends = events
+            .iter()
+            .skip(1)
+            .map(|(time_s, _)| *time_s)
+            .chain([end_s]);
+        let visible = |((time_s, sway), end_s): &(&(f64, String), f64)| {
+            sway == side && place(*end_s) - place(*time_s) > 5.0
+        };
+        events.iter().zip(ends).filter(visible).count()
+    };
+    for (count, side) in swaying.into_iter().zip(["right", "left"]) {
+        assert!(
+            count >= 4 * seen(side) && seen(side) >= 3,
+            "{side}: {count}"
+        );
+    }
+    // In each of four panels, at the end of the decay.
+    assert!(hops > 4 * 20, "{hops}");
+}
+
+/// Rectangles of a path of cells: left, right, top, bottom.
+fn rectangles(document: &Document<'_>, name: &str) -> Vec<[f64; 4]> {
+    let paths = named(document, name);
+    let paths = paths.iter().map(|node| node.attribute("d").unwrap());
+    paths
+        .flat_map(|path| path.split_terminator('Z'))
+        .map(|part| {
+            let numbers: Vec<f64> = part
+                .split(['M', ' ', 'H', 'V'])
+                .filter(|text| !text.is_empty())
+                .map(|text| text.parse().unwrap())
+                .collect();
+            [numbers[0], numbers[2], numbers[3], numbers[1]]
+        })
+        .collect()
+}
+
+/// Every cell has its colour in its place, on axes whose edges lie halfway between the values.
+#[test]
+fn the_map_shows_every_cell() {
+    let text = "title = 'a < b'\n[column]\nheight_m = 4.0\nwidth_m = 0.8\n\
+                [ground.rectangular]\namplitude_g = 1\nduration_s = 1\n\
+                [simulation]\nduration_s = 60\n[map]\nduration_s = [0.2, 0.3, 0.6]\n\
+                amplitude_g = { from = 0.1, to = 1.6, count = 5, spacing = 'logarithmic' }";
+    let scenario = Scenario::parse(text, "s.toml").unwrap();
+    let cells = OverturningMap::new(&scenario).unwrap();
+    let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
+    let picture = picture::draw("a < b", &cells, &rows, Look::of(Figure::SCREEN));
+    let document = Document::parse(&picture).unwrap();
+    assert!(texts(&document).iter().any(|text| text == "a < b"));
+
+    // The frame is 790 by 560 pixels; x from 0.15 to 0.75 s, y over five octaves from 0.1 g / sqrt(2).
+    let (left, width, height) = (85.0, 790.0, 560.0);
+    let kinds = ["never_moved", "rest", "overturned-0"];
+    let all: Vec<_> = kinds
+        .iter()
+        .flat_map(|name| rectangles(&document, name))
+        .collect();
+    // Below title and legend.
+    let top = all
+        .iter()
+        .map(|[_, _, top, _]| *top)
+        .fold(f64::INFINITY, f64::min);
+    let bottom = all
+        .iter()
+        .map(|[_, _, _, bottom]| *bottom)
+        .fold(0.0, f64::max);
+    assert!((bottom - top - height).abs() < PIXEL);
+    let x_edges = [0.15, 0.25, 0.45, 0.75].map(|x: f64| left + width * (x - 0.15) / 0.6);
+    let y_edge = |row: u32| top + height * (1.0 - f64::from(row) / 5.0);
+    let mut shown = 0;
+    for (name, wanted) in [
+        ("never_moved", "never_moved"),
+        ("rest", "rest"),
+        ("overturned-0", "overturned"),
+    ] {
+        for [l, r, t, b] in rectangles(&document, name) {
+            let column = x_edges.iter().position(|x| (x - l).abs() < PIXEL).unwrap();
+            assert!((x_edges[column + 1] - r).abs() < PIXEL);
+            let at = |y: f64| {
+                (0..=5)
+                    .find(|row| (y_edge(*row) - y).abs() < PIXEL)
+                    .unwrap()
+            };
+            for row in at(b)..at(t) {
+                let row = &rows[column * 5 + row as usize];
+                assert_eq!(outcome(&row.result), wanted);
+                shown += 1;
+            }
+        }
+    }
+    assert_eq!(shown, 15);
+}
+
+/// Whatever draws an arch draws what it carries, and its dimensions; small pictures have these in words.
+#[test]
+fn pictures_of_an_arch_have_fill_loads_and_dimensions() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("pointed-arch-on-piers.toml");
+    let scenario = scenario.to_str().unwrap();
+    let draw = |arguments: &[&str], picture: &str| {
+        let mut all = vec![arguments[0], scenario];
+        all.extend(&arguments[1..]);
+        printed(folder.path(), &all);
+        fs::read_to_string(folder.path().join(picture)).unwrap()
+    };
+    let narrow = ["impact", "--plot", "n.svg", "--figure-width", "84mm"];
+    for (arguments, picture, draws_sizes) in [
+        (&["check", "--plot", "c.svg"][..], "c.svg", true),
+        (&["limit", "--plot", "l.svg"][..], "l.svg", true),
+        (&["impact", "--plot", "i.svg"][..], "i.svg", true),
+        (&narrow[..], "n.svg", false),
+        (
+            &["spread", "--angle", "0", "--out", "."],
+            "spread.svg",
+            false,
+        ),
+        (
+            &[
+                "run",
+                "--no-repeat",
+                "--no-report",
+                "--snapshots",
+                "0.3",
+                "--out",
+                ".",
+            ],
+            "snapshots.svg",
+            false,
+        ),
+    ] {
+        let picture = draw(arguments, picture);
+        let document = Document::parse(&picture).unwrap();
+        // Span, rise, fill, and the height and width of its equal piers.
+        let dimensions = if draws_sizes { 5 } else { 0 };
+        assert_eq!(
+            named(&document, "dimension").len(),
+            dimensions,
+            "{arguments:?}"
+        );
+        let words = texts(&document).join(" ");
+        assert!(
+            words.contains("span 6 m") && words.contains("1500 kg"),
+            "{words}"
+        );
+        assert!(named(&document, "fill").len() >= 4, "{arguments:?}");
+        assert!(!named(&document, "load").is_empty(), "{arguments:?}");
+    }
+}

@@ -1,0 +1,131 @@
+//! Caveats and warnings: each command gives them, in words and in its JSON file.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::program::{archrock, scenarios, stderr};
+use crate::common::results::json;
+use crate::common::{ARCH, COLUMN, parsed};
+
+const PULSE: &str = "[ground.one_sine]\namplitude_g = 0.4\nduration_s = 0.8\n";
+const GUIDE: &str = "four links are a rough guide, not on the safe side";
+
+/// The warnings in a JSON file.
+fn warnings(file: &Value) -> Vec<&str> {
+    let all = file["warnings"].as_array().unwrap();
+    all.iter()
+        .map(|warning| warning.as_str().unwrap())
+        .collect()
+}
+
+/// Studies do not follow the line of thrust, and say so of four links; a column has no line of thrust that could leave it.
+#[test]
+fn four_links_are_a_rough_guide_in_every_study() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::copy(scenarios().join("records/wave-1.at2"), at.join("w.at2")).unwrap();
+    let tables = "[map]\nduration_s = [0.4, 0.8]\namplitude_g = [0.2, 0.6]\n\
+                  [suite]\nrecords = 'w.at2'\npeaks_g = [0.2, 0.8]\n\
+                  [simulation]\nduration_s = 60.0\n[uncertain]\nsamples = 2\n";
+    let arch = format!("{ARCH}{PULSE}{tables}'arch.thickness_ratio' = {{ deviation = 0.001 }}\n");
+    let column = format!("{COLUMN}{PULSE}{tables}'column.width_m' = {{ deviation = 0.001 }}\n");
+    fs::write(at.join("arch.toml"), &arch).unwrap();
+    fs::write(at.join("column.toml"), &column).unwrap();
+    for (command, files) in [
+        ("map", &["map.json", "uncertain_map/uncertain.json"][..]),
+        (
+            "suite",
+            &["fragility.json", "uncertain_suite/uncertain.json"],
+        ),
+        (
+            "threshold",
+            &["threshold.json", "uncertain_threshold/uncertain.json"],
+        ),
+    ] {
+        for (name, is_arch) in [("arch.toml", true), ("column.toml", false)] {
+            let out = format!("{command}-{name}");
+            let mut arguments = vec![command, name, "--out", &out];
+            if command == "threshold" {
+                arguments.extend(["--stride", "0.5"]);
+            }
+            let output = archrock(at, &arguments);
+            assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+            let said = stderr(&output) + &String::from_utf8(output.stdout).unwrap();
+            assert_eq!(said.contains(GUIDE), is_arch, "{command}: {said}");
+            for file in files {
+                let file = json(&at.join(&out).join(file));
+                let told = warnings(&file);
+                assert_eq!(told.len(), usize::from(is_arch), "{command} {told:?}");
+                assert!(told.iter().all(|warning| warning.starts_with(GUIDE)));
+            }
+        }
+    }
+}
+
+/// A run follows the line of thrust, and its summary has what the words and the warnings say.
+#[test]
+fn the_summary_lists_the_warnings() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = format!("{ARCH}{PULSE}");
+    fs::write(at.join("s.toml"), &text).unwrap();
+    let output = archrock(at, &["run", "s.toml", "--out", "o", "--no-report"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains(GUIDE), "{said}");
+    let summary = json(&at.join("o/summary.json"));
+    let told = warnings(&summary);
+    let wanted = format!("{GUIDE}: the thrust line leaves the arch by up to ");
+    assert!(told[0].starts_with(&wanted), "{told:?}");
+    assert!(
+        told.iter()
+            .any(|warning| warning.contains("needs a friction of ")),
+        "{told:?}"
+    );
+    // Unlikely numbers, which the program prints as warnings.
+    let text = text.replace("= 5.0", "= 500").replace("= 0.4", "= 30");
+    fs::write(at.join("s.toml"), text).unwrap();
+    let output = archrock(at, &["run", "s.toml", "--out", "o", "--no-report"]);
+    let summary = json(&at.join("o/summary.json"));
+    for unlikely in [
+        "the mean radius is 500 m: is it in centimetres?",
+        "the pulse peaks at 30 g: is its amplitude in units of gravity?",
+    ] {
+        assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
+        assert!(stderr(&output).contains(&format!("warning: {unlikely}")));
+    }
+    // Statics warn of them too.
+    for command in ["limit", "capacity"] {
+        let said = stderr(&archrock(at, &[command, "s.toml"]));
+        assert!(
+            said.contains("warning: the mean radius is 500 m"),
+            "{command}: {said}"
+        );
+    }
+    // A column that hardly rocks has none.
+    fs::write(
+        at.join("s.toml"),
+        format!("{COLUMN}{}", PULSE.replace("0.4", "0.21")),
+    )
+    .unwrap();
+    archrock(at, &["run", "s.toml", "--out", "o", "--no-report"]);
+    assert!(warnings(&json(&at.join("o/summary.json"))).is_empty());
+}
+
+/// On springings that have moved far a small fraction of its own strength starts an arch, which says nothing about the unit of a pulse.
+#[test]
+fn moved_springings_raise_no_doubt_about_units() {
+    let arch = format!(
+        "{ARCH}voussoirs = 16\n[free_hinges]\n[supports]\nright = {{ spread_m = 0.5 }}\n\
+         [ground.rectangular]\namplitude_g = 0.7\nduration_s = 0.2\n"
+    );
+    let scenario = parsed(&arch);
+    let model = scenario.model().unwrap();
+    let starts = [archrock::Sway::Right, archrock::Sway::Left];
+    let starts = starts.map(|sway| model.incipient_acceleration_g(sway).unwrap());
+    assert!(starts[0].min(starts[1]) < 0.7 / 20.0, "{starts:?}");
+    assert_eq!(scenario.unlikely(), [""; 0]);
+    // A pulse in another unit is found all the same.
+    let strong = parsed(&arch.replace("= 0.7\nd", "= 30\nd"));
+    assert!(strong.unlikely()[0].contains("in units of gravity"));
+}

@@ -1,0 +1,120 @@
+//! The README: its pictures are those that the program draws, its printed output is the program's, its links lead somewhere.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::common::program::{archrock, scenarios, stderr};
+
+fn repository() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn run(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let output = archrock(folder.path(), arguments);
+    assert!(output.status.success(), "{}", stderr(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The commands are those of `docs/pictures/draw`.
+#[test]
+fn its_pictures_are_up_to_date() {
+    let script = fs::read_to_string(repository().join("docs/pictures/draw")).unwrap();
+    let script = script.replace("\\\n", " ");
+    let folder = tempfile::tempdir().unwrap();
+    let drawn = folder.path().to_str().unwrap();
+    let mut commands = 0;
+    for line in script.lines() {
+        let Some(arguments) = line.strip_prefix("\"$program\" ") else {
+            continue;
+        };
+        let arguments = arguments.replace("../../scenarios", scenarios().to_str().unwrap());
+        let arguments = arguments
+            .replace("\"$folder/", &format!("{drawn}/"))
+            .replace('"', "");
+        run(&arguments.split_whitespace().collect::<Vec<_>>());
+        commands += 1;
+    }
+    assert_eq!(commands, 3);
+    for picture in ["free/snapshots.svg", "pulse/history.svg", "map/map.svg"] {
+        let name = Path::new(picture).file_name().unwrap();
+        let committed = fs::read_to_string(repository().join("docs/pictures").join(name));
+        let drawn = fs::read_to_string(folder.path().join(picture)).unwrap();
+        assert!(
+            committed.unwrap_or_default() == drawn,
+            "{picture} is stale: draw it with docs/pictures/draw and look at it"
+        );
+    }
+}
+
+#[test]
+fn what_it_quotes_is_what_run_says() {
+    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
+    let scenario = scenarios().join("semicircle-pulse.toml");
+    let said = run(&["run", scenario.to_str().unwrap()]);
+    let title = said.lines().next().unwrap();
+    let (_, quoted) = readme.split_once(&format!("    {title}\n")).unwrap();
+    let quoted = quoted.lines().map_while(|line| line.strip_prefix("    "));
+    let mut lines = said.lines();
+    for line in quoted.clone().filter(|line| *line != "...") {
+        assert!(lines.any(|own| own == line), "{line}\n{said}");
+    }
+    assert!(quoted.count() > 5);
+}
+
+#[test]
+fn it_is_short() {
+    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
+    let words = readme.split_whitespace();
+    let words = words
+        .filter(|word| word.contains(char::is_alphanumeric))
+        .count();
+    assert!(words <= 700, "{words} words");
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let docs = fs::read_dir(repository().join("docs")).unwrap();
+    let pages = docs.map(|entry| entry.unwrap().path());
+    let mut pages: Vec<PathBuf> = pages
+        .filter(|path| path.extension().is_some_and(|e| e == "md"))
+        .collect();
+    pages.push(repository().join("README.md"));
+    let mut links = 0;
+    for page in pages {
+        let text = fs::read_to_string(&page).unwrap();
+        for link in text
+            .split("](")
+            .skip(1)
+            .filter_map(|after| after.split_once(')'))
+        {
+            let (path, anchor) = link.0.split_once('#').unwrap_or((link.0, ""));
+            if path.starts_with("http") {
+                continue;
+            }
+            let to = if path.is_empty() {
+                page.clone()
+            } else {
+                page.with_file_name(path)
+            };
+            assert!(to.exists(), "{} links to {path}", page.display());
+            if !anchor.is_empty() {
+                let text = fs::read_to_string(&to).unwrap();
+                let headings = text.lines().filter_map(|line| line.strip_prefix('#'));
+                let found = headings.map(anchor_of).any(|known| known == anchor);
+                assert!(found, "{} links to {path}#{anchor}", page.display());
+            }
+            links += 1;
+        }
+    }
+    assert!(links > 30);
+}
+
+/// The anchor of a heading, as repository hosts form it.
+fn anchor_of(heading: &str) -> String {
+    let words = heading.trim_start_matches('#').trim().to_lowercase();
+    let kept = words
+        .chars()
+        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+}

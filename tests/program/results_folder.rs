@@ -1,0 +1,356 @@
+//! A results folder holds one scenario: its lock, what a command removes and keeps, and its warnings.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::Child;
+use std::thread::sleep;
+use std::time::Duration;
+
+use archrock::studies::catalogue::StudyKind;
+
+use crate::common::program::{archrock, command, names, stderr};
+use crate::common::results::json;
+
+/// A column that overturns at once under a strong pulse, and stands still under a weak one.
+fn column(amplitude_g: f64, samples: usize) -> String {
+    format!(
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 0.5\n\
+         [simulation]\nduration_s = 2.0\n[uncertain]\nsamples = {samples}\n\
+         \"ground.one_sine.amplitude_g\" = {{ deviation = 0.01 }}\n"
+    )
+}
+
+/// All files below a folder, as paths relative to it.
+fn below(folder: &Path) -> Vec<String> {
+    let mut all = Vec::new();
+    for name in names(folder) {
+        let path = folder.join(&name);
+        if path.is_dir() {
+            let inner = below(&path).into_iter();
+            all.extend(inner.map(|inner| format!("{name}/{inner}")));
+        } else {
+            all.push(name);
+        }
+    }
+    all
+}
+
+#[track_caller]
+fn succeeds(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    stderr(&output)
+}
+
+/// Asserts that all results in a folder are sealed and come from a pulse of this amplitude.
+#[track_caller]
+fn all_are_of(folder: &Path, amplitude_g: f64) {
+    let of = |summary: &str| {
+        json(&folder.join(summary))["scenario"]["ground"]["one_sine"]["amplitude_g"].clone()
+    };
+    assert_eq!(of("summary.json"), amplitude_g);
+    for seal in below(folder).iter().filter(|name| name.ends_with(".json")) {
+        assert_eq!(of(seal), amplitude_g, "{seal}");
+    }
+}
+
+/// Starts a run with samples that takes minutes, and waits until some of its samples are computed.
+fn long_run(at: &Path, out: &str) -> Child {
+    fs::write(at.join("long.toml"), column(0.9, 60_000)).unwrap();
+    let arguments = [
+        "run",
+        "long.toml",
+        "--hinges",
+        "free",
+        "--threads",
+        "1",
+        "--quiet",
+        "--out",
+        out,
+    ];
+    let mut run = command(at, &arguments).spawn().unwrap();
+    let part = at.join(out).join("uncertain/uncertain.part");
+    while fs::metadata(&part).map_or(0, |part| part.len()) < 3000 {
+        assert!(run.try_wait().unwrap().is_none(), "the run is too short");
+        sleep(Duration::from_millis(10));
+    }
+    run
+}
+
+#[test]
+fn a_run_locks_its_folder_and_all_below_until_its_samples_are_done() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("weak.toml"), column(0.05, 4)).unwrap();
+    succeeds(at, &["run", "weak.toml", "--out", "o/inner", "--quiet"]);
+    let mut run = long_run(at, "o");
+    let visible = || -> Vec<String> {
+        let all = below(&at.join("o")).into_iter();
+        all.filter(|name| !name.contains(".archrock-")).collect()
+    };
+    let before = visible();
+    for out in ["o", "o/inner", "o/uncertain", "o/new/folder"] {
+        for command in ["run", "threshold"] {
+            let second = archrock(at, &[command, "weak.toml", "--out", out]);
+            assert_eq!(second.status.code(), Some(2), "{command} {out}");
+            let said = stderr(&second);
+            assert!(
+                said.contains("is being written to by another run"),
+                "{said}"
+            );
+        }
+    }
+    // A folder beside it is free.
+    succeeds(at, &["run", "weak.toml", "--out", "p/inner", "--quiet"]);
+    assert_eq!(visible(), before);
+    run.kill().unwrap();
+    run.wait().unwrap();
+    // Nor is a folder locked around one that is being written to.
+    let mut inner = long_run(at, "q/inner");
+    let second = archrock(at, &["run", "weak.toml", "--out", "q"]);
+    assert_eq!(second.status.code(), Some(2));
+    inner.kill().unwrap();
+    inner.wait().unwrap();
+}
+
+#[test]
+fn a_run_removes_all_results_of_the_last_run_of_its_command() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("strong.toml"), column(0.9, 4)).unwrap();
+    fs::write(at.join("weak.toml"), column(0.05, 4)).unwrap();
+    let plain = [
+        "events.csv",
+        "history.svg",
+        "impacts.csv",
+        "report.html",
+        "rotations.csv",
+        "summary.json",
+    ];
+    let films = ["--film", "20", "--snapshots", "0.1", "--poses", "--quiet"];
+    for first in [&["--hinges", "four,free"][..], &["--hinges", "free"], &[]] {
+        let strong = [&["run", "strong.toml", "--out", "o"], first, &films].concat();
+        succeeds(at, &strong);
+        assert!(below(&at.join("o")).len() > 20);
+        fs::create_dir_all(at.join("o/film")).unwrap();
+        fs::write(at.join("o/film/notes.txt"), "mine").unwrap();
+        fs::write(at.join("o/uncertain.txt"), "mine").unwrap();
+        let weak = [
+            "run",
+            "weak.toml",
+            "--no-uncertain",
+            "--out",
+            "o",
+            "--quiet",
+        ];
+        succeeds(at, &weak);
+        let kept = ["film/notes.txt", "uncertain.txt"].map(str::to_owned);
+        let mut left = below(&at.join("o"));
+        left.retain(|name| !kept.contains(name));
+        assert_eq!(left, plain, "{first:?}");
+        all_are_of(&at.join("o"), 0.05);
+        assert!(kept.iter().all(|name| at.join("o").join(name).exists()));
+    }
+    // A run that fails leaves the last results as they are.
+    let before = below(&at.join("o"));
+    let wrong = archrock(at, &["run", "weak.toml", "--point", "90,90", "--out", "o"]);
+    assert_eq!(wrong.status.code(), Some(2));
+    assert_eq!(below(&at.join("o")), before);
+    // Results that were written to a subfolder by a run of their own are not those of this folder.
+    succeeds(at, &["run", "strong.toml", "--out", "o/four", "--quiet"]);
+    succeeds(at, &["run", "weak.toml", "--out", "o", "--quiet"]);
+    all_are_of(&at.join("o/four"), 0.9);
+}
+
+#[test]
+fn records_of_the_last_suite_go_with_it() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        fs::write(at.join(name), "0.0,0.0\n0.2,1.0\n0.4,-1.0\n0.6,0.0\n").unwrap();
+    }
+    let suite = |records: &str| {
+        let text = format!(
+            "[column]\nheight_m = 4\nwidth_m = 0.8\n[simulation]\nduration_s = 1\n\
+             [suite]\nrecords = {records}\nunit = 'm/s2'\npeaks_g = [0.1]\n"
+        );
+        fs::write(at.join("s.toml"), text).unwrap();
+    };
+    for command in ["run", "threshold"] {
+        suite("['a.csv', 'b.csv']");
+        succeeds(
+            at,
+            &[command, "s.toml", "--suite", "--out", command, "--quiet"],
+        );
+        assert_eq!(names(&at.join(command)), ["a.csv", "b.csv"]);
+        // A folder that is no result of a record stays, whatever its name.
+        fs::create_dir(at.join(command).join("mine.csv")).unwrap();
+        suite("['b.csv', 'c.csv']");
+        succeeds(
+            at,
+            &[command, "s.toml", "--suite", "--out", command, "--quiet"],
+        );
+        assert_eq!(names(&at.join(command)), ["b.csv", "c.csv", "mine.csv"]);
+    }
+}
+
+/// Runs of two scenarios are killed at many instants. A folder then has the results of one of them, or none that are sealed.
+#[test]
+fn after_a_kill_a_folder_holds_one_scenario() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("strong.toml"), column(0.9, 40)).unwrap();
+    fs::write(at.join("weak.toml"), column(0.05, 40)).unwrap();
+    let strong = [
+        "run",
+        "strong.toml",
+        "--hinges",
+        "four,free",
+        "--film",
+        "20",
+        "--out",
+        "o",
+        "--quiet",
+    ];
+    let weak = [
+        "run",
+        "weak.toml",
+        "--no-uncertain",
+        "--out",
+        "o",
+        "--quiet",
+    ];
+    let begun = std::time::Instant::now();
+    succeeds(at, &strong);
+    let whole = begun.elapsed();
+    for turn in 1..=8_u32 {
+        let mut run = command(at, &strong).spawn().unwrap();
+        sleep(whole.mul_f64(f64::from(turn) / 8.0));
+        run.kill().unwrap();
+        run.wait().unwrap();
+        succeeds(at, &weak);
+        all_are_of(&at.join("o"), 0.05);
+        let left = below(&at.join("o"));
+        // Rows of samples are never lost; they are no results.
+        let others: Vec<_> = left
+            .iter()
+            .filter(|name| name.contains('/') && !name.ends_with(".part"))
+            .collect();
+        assert!(others.is_empty(), "{others:?}");
+        for model in ["four", "free"] {
+            let _ = fs::remove_file(at.join(format!("o/{model}/uncertain/uncertain.part")));
+        }
+    }
+}
+
+#[test]
+fn results_of_other_commands_stay_and_other_scenarios_are_warned_of() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let table = |peak: f64| format!("0.0,0.0\n0.2,{peak}\n0.4,-{peak}\n0.6,0.0\n");
+    fs::write(at.join("a.csv"), table(1.0)).unwrap();
+    let scenario = |width_m: f64| {
+        let text = format!(
+            "[column]\nheight_m = 4\nwidth_m = {width_m}\n[ground.record]\nfile = 'a.csv'\nunit = 'm/s2'\n\
+             [simulation]\nduration_s = 2\n[suite]\nrecords = ['a.csv']\nunit = 'm/s2'\npeaks_g = [0.1]\n\
+             [uncertain]\nsamples = 2\n'column.height_m' = {{ deviation = 0.01 }}\n"
+        );
+        fs::write(at.join("s.toml"), text).unwrap();
+    };
+    scenario(0.8);
+    let quick = ["--from", "1", "--to", "2", "--stride", "0.5"];
+    let commands: [(&[&str], &str, StudyKind); 3] = [
+        (
+            &["run", "s.toml", "--out", "o"],
+            "summary.json",
+            StudyKind::Uncertain,
+        ),
+        (
+            &["threshold", "s.toml", "--out", "o"],
+            "threshold.json",
+            StudyKind::UncertainThreshold,
+        ),
+        (
+            &["suite", "s.toml", "--out", "o"],
+            "suite.csv",
+            StudyKind::UncertainSuite,
+        ),
+    ];
+    let line = |arguments: &[&'static str]| -> Vec<&'static str> {
+        let more = if arguments[0] == "threshold" {
+            &quick[..]
+        } else {
+            &[]
+        };
+        [arguments, more].concat()
+    };
+    // The scenario is the same, whatever the model of motion and with or without samples.
+    for more in [&[][..], &["--hinges", "free"], &["--no-uncertain"]] {
+        for (arguments, ..) in commands {
+            let said = succeeds(at, &[&line(arguments)[..], more].concat());
+            assert!(!said.contains("another scenario"), "{said}");
+        }
+    }
+    let all = commands.map(|(arguments, ..)| line(arguments));
+    for arguments in &all {
+        succeeds(at, arguments);
+    }
+    for ((_, seal, kind), arguments) in commands.iter().zip(&all) {
+        assert!(at.join("o").join(seal).exists());
+        let samples = at.join("o").join(kind.name());
+        let mut expected: Vec<_> = kind.files().to_vec();
+        expected.sort_unstable();
+        assert_eq!(names(&samples), expected);
+        // What a command removes of its own is all of it, and nothing else.
+        let others = |name: &&String| !name.starts_with(&format!("{}/", kind.name()));
+        let before = below(&at.join("o"));
+        succeeds(at, &[&arguments[..], &["--no-uncertain"]].concat());
+        assert!(!samples.exists());
+        assert!(below(&at.join("o")).iter().eq(before.iter().filter(others)));
+    }
+    scenario(0.9);
+    let said = succeeds(at, &all[0]);
+    for other in ["threshold", "suite"] {
+        let warning = format!(
+            "warning: o holds results of `archrock {other}` from another scenario: [column] differs"
+        );
+        assert!(said.contains(&warning), "{said}");
+    }
+    assert!(at.join("o/threshold.json").exists() && at.join("o/suite.csv").exists());
+    // A record with other contents makes another scenario.
+    fs::write(at.join("a.csv"), table(1.5)).unwrap();
+    let said = succeeds(at, &all[1]);
+    let warning = "results of `archrock run` from another scenario: the contents of a.csv differ";
+    assert!(said.contains(warning), "{said}");
+}
+
+/// A comparison of models belongs to the command that made it.
+#[test]
+fn comparisons_of_models_do_not_replace_one_another() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("a.csv"), "0.0,0.0\n0.2,2.0\n0.4,-2.0\n0.6,0.0\n").unwrap();
+    let text =
+        column(0.4, 8) + "[suite]\nrecords = ['a.csv']\nunit = 'm/s2'\npeaks_g = [0.1, 0.3]\n";
+    fs::write(at.join("s.toml"), text).unwrap();
+    let models = ["--hinges", "four,free", "--out", "o", "--quiet"];
+    succeeds(at, &[&["suite", "s.toml"][..], &models].concat());
+    let of_suite = fs::read(at.join("o/models/peaks.json")).unwrap();
+    succeeds(
+        at,
+        &[
+            &["run", "s.toml", "--no-report", "--no-repeat"][..],
+            &models,
+        ]
+        .concat(),
+    );
+    assert_eq!(fs::read(at.join("o/models/peaks.json")).unwrap(), of_suite);
+    assert!(at.join("o/models_run/peaks.json").exists() && at.join("o/four/suite.csv").exists());
+    succeeds(
+        at,
+        &["run", "s.toml", "--no-uncertain", "--out", "o", "--quiet"],
+    );
+    assert!(!at.join("o/models_run").exists() && !at.join("o/four/summary.json").exists());
+    assert!(at.join("o/models/peaks.json").exists() && at.join("o/four/suite.csv").exists());
+}

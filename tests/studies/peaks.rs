@@ -1,0 +1,343 @@
+//! How close a structure came to overturning: a line per record, and the picture of incremental dynamic analysis.
+
+use std::fs;
+
+use crate::common::program::stdout;
+use crate::common::program::{archrock, scenarios, stderr};
+use crate::common::results::{Row, Table, json, named, strokes};
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
+use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::mechanics::four_links::FourLinks;
+use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
+use serde_json::Value;
+
+const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30\n";
+
+/// A folder with two records and a scenario of them.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for record in ["wave-1.at2", "wave-2.at2"] {
+        fs::copy(
+            scenarios().join("records").join(record),
+            folder.path().join(record),
+        )
+        .unwrap();
+    }
+    let text = format!(
+        "{COLUMN}[ground.record]\nfile = 'wave-1.at2'\n\
+         [suite]\nrecords = 'wave-*.at2'\npeaks_g = {{ from = 0.2, to = 4.0, count = 20, spacing = 'logarithmic' }}\n"
+    );
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    folder
+}
+
+/// The words that follow from the bands and gaps of `threshold.json`.
+fn words(threshold: &Value) -> String {
+    let model = &threshold["models"][0];
+    let four = |value: &Value| {
+        let value = value.as_f64().unwrap();
+        let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
+        format!("{value:.digits$}")
+    };
+    let first = four(&model["lowest_factor"]);
+    let mut again: Vec<String> = model["gaps"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|gap| format!("{} to {}", four(&gap["from"]), four(&gap["to"])))
+        .collect();
+    let last = model["bands"].as_array().unwrap().last().unwrap();
+    if last["to_end"] == "edge" {
+        again.push(format!(
+            "{} to {}",
+            four(&last["to"]),
+            four(&threshold["factors"]["to"])
+        ));
+    }
+    if again.is_empty() {
+        format!("first overturns at {first}")
+    } else {
+        format!(
+            "first overturns at {first}; survives again at {}",
+            again.join(", ")
+        )
+    }
+}
+
+const OPTIONS: [&str; 6] = ["--from", "0.5", "--to", "12", "--stride", "0.05"];
+
+#[test]
+fn a_threshold_of_a_record_is_one_line() {
+    let folder = folder();
+    let path = folder.path();
+    let said = stdout(&archrock(
+        path,
+        &[&["threshold", "s.toml"], &OPTIONS[..]].concat(),
+    ));
+    let found = json(&path.join("results/s/threshold.json"));
+    let line = format!("  wave-1.at2: {} (1 is 0.3000 g)", words(&found));
+    assert_eq!(said.lines().next().unwrap(), line, "{said}");
+    assert_eq!(said.matches("overturns").count(), 1, "{said}");
+}
+
+#[test]
+fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
+    let folder = folder();
+    let path = folder.path();
+    let all = archrock(
+        path,
+        &[&["threshold", "s.toml", "--suite"], &OPTIONS[..]].concat(),
+    );
+    let said = stdout(&all);
+    for (line, record) in said.lines().zip(["wave-1.at2", "wave-2.at2"]) {
+        let found = json(&path.join("results/s").join(record).join("threshold.json"));
+        assert_eq!(
+            line,
+            format!("  {record}: {} (1 is 0.3000 g)", words(&found))
+        );
+        let scenario = &found["models"][0]["scenario"];
+        assert_eq!(scenario["ground"]["record"]["file"], record);
+        assert_eq!(scenario.get("suite"), None);
+    }
+    // The first record is also that of [ground].
+    let single = archrock(
+        path,
+        &[&["threshold", "s.toml", "--out", "o"], &OPTIONS[..]].concat(),
+    );
+    assert_eq!(stdout(&single).lines().next(), said.lines().next());
+    let both = [
+        &["threshold", "s.toml", "--suite", "--format", "json"],
+        &OPTIONS[..],
+    ]
+    .concat();
+    let both: Value = serde_json::from_str(&stdout(&archrock(path, &both))).unwrap();
+    assert_eq!(
+        both[1],
+        json(&path.join("results/s/wave-2.at2/threshold.json"))
+    );
+
+    let said = stdout(&archrock(path, &["run", "s.toml", "--suite"]));
+    for record in ["wave-1.at2", "wave-2.at2"] {
+        assert!(said.contains(&format!("  {record}: ")), "{said}");
+        let summary = json(&path.join("results/s").join(record).join("summary.json"));
+        assert_eq!(summary["scenario"]["ground"]["record"]["file"], record);
+    }
+    // The same as if it were the ground of the scenario.
+    stdout(&archrock(path, &["run", "s.toml", "--out", "o"]));
+    assert_eq!(
+        fs::read(path.join("o/rotations.csv")).unwrap(),
+        fs::read(path.join("results/s/wave-1.at2/rotations.csv")).unwrap()
+    );
+    // If two records had the same name, the results of one would replace those of the other.
+    for place in ["a", "b"] {
+        fs::create_dir(path.join(place)).unwrap();
+        fs::copy(path.join("wave-1.at2"), path.join(place).join("w.at2")).unwrap();
+    }
+    let text = fs::read_to_string(path.join("s.toml")).unwrap();
+    let twins = text.replace("wave-*.at2", "*/w.at2");
+    assert_ne!(text, twins);
+    fs::write(path.join("twins.toml"), twins).unwrap();
+    for command in ["run", "threshold"] {
+        let refused = archrock(path, &[command, "twins.toml", "--suite"]);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = stderr(&refused);
+        let both = "b/w.at2 would both have their results in results/twins/w.at2: rename one";
+        assert!(
+            said.contains("a/w.at2 and ") && said.contains(both),
+            "{said}"
+        );
+        assert!(!path.join("results/twins").exists());
+    }
+    fs::write(path.join("t.toml"), COLUMN).unwrap();
+    for command in ["run", "threshold"] {
+        let refused = archrock(path, &[command, "t.toml", "--suite"]);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(
+            stderr(&refused).contains("t.toml: --suite is for a scenario with a table [suite]")
+        );
+    }
+}
+
+#[test]
+fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
+    let folder = folder();
+    let path = folder.path();
+    let output = archrock(path, &["suite", "s.toml"]);
+    stdout(&output);
+    let said = stderr(&output);
+    let rows = Table::read(path.join("results/s/suite.csv")).rows;
+    let capacities = Table::read(path.join("results/s/capacity.csv")).rows;
+    let picture = fs::read_to_string(path.join("results/s/ida.svg")).unwrap();
+    let picture = roxmltree::Document::parse(&picture).unwrap();
+    let marks = |name: &str| named(&picture, name).len();
+    let mut overturned = 0;
+    for record in ["wave-1.at2", "wave-2.at2"] {
+        let own: Vec<_> = rows
+            .iter()
+            .filter(|row| row["record"] == record && row["sign"] == "1")
+            .collect();
+        assert_eq!(own.len(), 20);
+        overturned += own
+            .iter()
+            .filter(|row| row["outcome"] == "overturned")
+            .count();
+        // The least level that overturns; and beyond it the others, each run of survivors given by its ends.
+        let first = own
+            .iter()
+            .position(|row| row["outcome"] == "overturned")
+            .unwrap();
+        let four = |row: &Row| {
+            let value = row.number("peak_g");
+            let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
+            format!("{value:.digits$}")
+        };
+        // That level is narrowed by bisection, as in capacity.csv.
+        let mut capacity = capacities.iter();
+        let edge = capacity
+            .find(|row| row["record"] == record && row["sign"] == "1")
+            .unwrap();
+        assert!(edge.number("peak_g") < own[first].number("peak_g"));
+        let mut expected = format!("  {record}: first overturns at {} g", four(edge));
+        let again: Vec<String> = own[first..]
+            .chunk_by(|a, b| (a["outcome"] == "overturned") == (b["outcome"] == "overturned"))
+            .filter(|run| run[0]["outcome"] != "overturned")
+            .map(|run| match run {
+                [only] => format!("{} g", four(only)),
+                [from, .., to] => format!("{} to {} g", four(from), four(to)),
+                [] => unreachable!(),
+            })
+            .collect();
+        if !again.is_empty() {
+            expected += &format!("; survives again at {}", again.join(", "));
+        }
+        assert!(
+            said.lines().any(|line| line == expected),
+            "{expected}\n{said}"
+        );
+        assert_eq!(marks(record), 1, "a curve");
+    }
+    assert_eq!(marks("overturned"), overturned);
+    assert_eq!(marks("survived"), 40 - overturned);
+    // Mirrored records give mirrored results, and need no line of their own.
+    assert!(!said.contains("mirrored"), "{said}");
+}
+
+/// Potential energy of a block at this rotation, relative to that at its unstable equilibrium, from Housner's diagonal.
+fn potential_ratio(slenderness_rad: f64, rotation_rad: f64) -> f64 {
+    ((slenderness_rad - rotation_rad).cos() - slenderness_rad.cos()) / (1.0 - slenderness_rad.cos())
+}
+
+#[test]
+fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
+    let slenderness_rad = 0.2_f64.atan();
+    for (amplitude_g, overturns) in [(0.25, false), (0.35, false), (0.5, true)] {
+        let folder = tempfile::tempdir().unwrap();
+        let scenario = format!(
+            "{COLUMN}[free_hinges]\n[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 0.8\n"
+        );
+        fs::write(folder.path().join("s.toml"), scenario).unwrap();
+        let arguments = ["run", "s.toml", "--out", "o", "--no-repeat"];
+        let said = stdout(&archrock(folder.path(), &arguments));
+        let summary = json(&folder.path().join("o/summary.json"));
+        assert_eq!(summary["outcome"] == "overturned", overturns);
+        let peak_rad = summary["peak_rotation_1_rad"].as_f64().unwrap();
+        let due = if overturns {
+            1.0
+        } else {
+            potential_ratio(slenderness_rad, peak_rad)
+        };
+        let ratio = summary["peak_potential_over_barrier"].as_f64().unwrap();
+        assert!((ratio - due).abs() < 1e-7, "{ratio} {due}");
+        let words = if overturns {
+            "  passed the barrier beyond which it overturns\n".to_owned()
+        } else {
+            let percent = (1e3 * due).floor() / 10.0;
+            format!(
+                "  reached {percent:.1} % of the potential energy at which its first mechanism overturns\n"
+            )
+        };
+        assert!(said.contains(&words), "{said}");
+    }
+}
+
+/// A structure released at rest on still ground never rises above the height of release.
+#[test]
+fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
+    let arch = Arch::new(5.0, 0.15, 180.0)
+        .unwrap()
+        .with_voussoirs(12)
+        .unwrap();
+    let links = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
+    let link = links.link(0).unwrap();
+    let free = FreeHinges::of_arch(&arch).unwrap();
+    for (part, sway) in [(0.3, Sway::Right), (0.9, Sway::Left)] {
+        let rotation_rad = part * link.critical_rad;
+        let request = Request {
+            end_s: 0.5,
+            initial: Some(Initial { sway, rotation_rad }),
+            ..Request::default()
+        };
+        let summary = free
+            .simulate(&GroundMotion::still(), &request, None)
+            .unwrap();
+        let due = link.mechanism.displacement(rotation_rad).y / link.barrier;
+        let ratio = summary.peak_potential_over_barrier.unwrap();
+        assert!((ratio / due - 1.0).abs() < 1e-9, "{ratio} {due}");
+    }
+    // For two drums no barrier is known.
+    let folder = tempfile::tempdir().unwrap();
+    let drums = COLUMN.replace("width_m", "drums = 2\nwidth_m");
+    let scenario =
+        format!("{drums}[free_hinges]\n[ground.one_sine]\namplitude_g = 0.25\nduration_s = 0.8\n");
+    fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    let said = stdout(&archrock(
+        folder.path(),
+        &["run", "s.toml", "--out", "o", "--no-repeat"],
+    ));
+    assert!(!said.contains("first mechanism"), "{said}");
+    let summary = json(&folder.path().join("o/summary.json"));
+    assert_eq!(
+        summary.get("peak_potential_over_barrier"),
+        Some(&Value::Null)
+    );
+}
+
+/// The line in the panel of the energy is at 1. The energies of a freely rocking block before and after its first impact
+/// give the scale. A structure that hardly moves has no such line.
+#[test]
+fn the_picture_marks_the_barrier() {
+    let folder = tempfile::tempdir().unwrap();
+    let slenderness_rad = 0.2_f64.atan();
+    let curves = |part: f64| {
+        let scenario = format!(
+            "{COLUMN}[free_hinges]\n[initial]\nsway = 'right'\nrotation_rad = {}\n",
+            part * slenderness_rad
+        );
+        fs::write(folder.path().join("s.toml"), scenario).unwrap();
+        stdout(&archrock(
+            folder.path(),
+            &["run", "s.toml", "--out", "o", "--no-repeat"],
+        ));
+        let picture = fs::read_to_string(folder.path().join("o/history.svg")).unwrap();
+        let picture = roxmltree::Document::parse(&picture).unwrap();
+        ["energy", "barrier"].map(|name| -> Vec<f64> {
+            let found = named(&picture, name);
+            let strokes = found.first().map(strokes).unwrap_or_default();
+            strokes.concat().iter().map(|point| point.y).collect()
+        })
+    };
+    let [energy, barrier] = curves(0.7);
+    let released = potential_ratio(slenderness_rad, 0.7 * slenderness_rad);
+    let restitution = (1.0 - 1.5 * slenderness_rad.sin().powi(2)).powi(2);
+    // On the sheet y points down; the first level is the highest.
+    let second = energy.iter().find(|y| **y > energy[0] + 2.0).unwrap();
+    let scale = (second - energy[0]) / (released * (1.0 - restitution));
+    assert_eq!(barrier.len(), 2);
+    for y in barrier {
+        let level = released + (energy[0] - y) / scale;
+        assert!((level - 1.0).abs() < 0.02, "{level}");
+    }
+    let [_, barrier] = curves(0.1);
+    assert!(barrier.is_empty());
+}

@@ -1,0 +1,1402 @@
+//! Suites of records: rows compared with runs of the same scenario, parts with the whole, and the messages if
+//! there is no curve.
+
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fs;
+use std::path::Path;
+
+use crate::common::pairs;
+use crate::common::program::{done, refused, scenarios};
+use crate::common::results::{Row, Table, json, named};
+use archrock::dynamics::history::Outcome;
+use archrock::mechanics::sway::Sway;
+use archrock::output::Figure;
+use archrock::scenario::{Form, Layout, Measure, Scenario};
+use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
+use archrock::studies::suite::Heading;
+use archrock::studies::suite::{CaseRow, SuiteFragility};
+use serde_json::Value;
+
+const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
+const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
+                    [simulation]\nduration_s = 30.0\n";
+const FILES: [&str; 10] = [
+    "suite.svg",
+    "ida.svg",
+    "peaks.svg",
+    "ida.csv",
+    "peaks.csv",
+    "capacity.csv",
+    "intensity.csv",
+    "fragility.csv",
+    "fragility.json",
+    "suite.csv",
+];
+
+/// A folder with the first records of the repository, one of them also as a table in cm/s2.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let records = folder.path().join("records");
+    fs::create_dir(&records).unwrap();
+    for name in ["wave-1.at2", "wave-2.at2", "wave-6.at2"] {
+        fs::copy(scenarios().join("records").join(name), records.join(name)).unwrap();
+    }
+    let mut table = String::from("t;up;a\n");
+    for (time_s, acceleration_g) in samples(&records.join("wave-1.at2")) {
+        // The table begins before time zero.
+        table += &format!("{};0;{}\n", time_s - 1.0, 0.7 * acceleration_g);
+    }
+    fs::write(folder.path().join("north, \"old\".csv"), table).unwrap();
+    folder
+}
+
+fn samples(path: &Path) -> Vec<(f64, f64)> {
+    let layout = Layout::from(Form::At2 { unit: None });
+    layout.parse(&fs::read(path).unwrap()).unwrap().samples
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    fs::write(folder.join(name), text).unwrap();
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+fn rows(folder: &Path) -> Vec<Row> {
+    let table = Table::read(folder.join("suite.csv"));
+    let columns = "record,sign,scale,peak_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
+                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio";
+    assert_eq!(table.header.join(","), columns);
+    table.rows
+}
+
+/// Two records and a table, either multiplied by factors or scaled to peaks.
+fn mixed(levels: &str) -> String {
+    format!(
+        "{COLUMN}[suite]\nrecords = ['records/wave-[12].at2', 'north, \"old\".csv']\n\
+         acceleration_column = 'a'\nunit = 'g'\n{levels}\n"
+    )
+}
+
+#[test]
+fn rows_are_what_runs_of_the_same_scenario_give() {
+    let folder = folder();
+    let folder = folder.path();
+    for levels in ["scales = [0.5, 1.5, 4.0]", "peaks_g = [0.15, 0.45, 1.2]"] {
+        write(folder, "s.toml", &mixed(levels));
+        done(folder, &["suite", "s.toml", "--out", "o", "--quiet"]);
+        let rows = rows(&folder.join("o"));
+        assert_eq!(rows.len(), 3 * 2 * 3);
+        assert!(rows.iter().any(|row| row["outcome"] == "overturned"));
+        assert!(rows.iter().any(|row| row["outcome"] == "rest"));
+        for row in rows.iter().step_by(5).chain(rows.last()) {
+            let signed = row.number(1) * row.number(2);
+            let table = if row[0].ends_with(".csv") {
+                "acceleration_column = 'a'\nunit = 'g'\nstart_s = 1.0\n"
+            } else {
+                ""
+            };
+            let file = &row[0];
+            let text =
+                format!("{COLUMN}[ground.record]\nfile = '{file}'\nscale = {signed:?}\n{table}");
+            write(folder, "run.toml", &text);
+            done(folder, &["run", "run.toml", "--out", "r", "--quiet"]);
+            let run = json(&folder.join("r/summary.json"));
+            assert_eq!(run["outcome"], row[4]);
+            assert_eq!(
+                run["overturning_sway"].as_str().unwrap_or_default(),
+                &row[5]
+            );
+            assert_eq!(run["impacts"].to_string(), row[6]);
+            // Scaling to a peak in g multiplies in another order.
+            let time_s = run["outcome_time_s"].as_f64().unwrap();
+            assert!((time_s - row.number(8)).abs() < 1e-6, "{row:?} {time_s}");
+            let peak_g = samples_of(folder, file)
+                .iter()
+                .map(|s| s.1.abs())
+                .fold(0.0, f64::max);
+            let peak_g = peak_g * signed.abs();
+            assert!((peak_g / row.number(3) - 1.0).abs() < 1e-14, "{row:?}");
+            // Slenderness 0.8 / 4: the critical rotation is its angle.
+            let rotation = run["peak_rotation_rad"].as_f64().unwrap() / 0.2_f64.atan();
+            if row[4] != "overturned" {
+                assert!(
+                    (rotation - row.number(9)).abs() < 1e-6,
+                    "{row:?} {rotation}"
+                );
+            }
+        }
+    }
+}
+
+/// Samples of a record of `folder()`, in g.
+fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
+    if file.ends_with(".at2") {
+        return samples(&folder.join(file));
+    }
+    let text = read(&folder.join(file));
+    let numbers =
+        |line: &str| -> Vec<f64> { line.split(';').map(|cell| cell.parse().unwrap()).collect() };
+    let lines = text.lines().skip(1).map(numbers);
+    lines.map(|cells| (cells[0], cells[2])).collect()
+}
+
+#[test]
+fn a_mirrored_record_does_the_same_to_the_other_side() {
+    let folder = folder();
+    let folder = folder.path();
+    for structure in [COLUMN, ARCH] {
+        let text = format!(
+            "{structure}[suite]\nrecords = 'records/*.at2'\nscales = [0.5, 1.5, 3.0, 6.0]\n"
+        );
+        write(folder, "s.toml", &text);
+        done(folder, &["suite", "s.toml", "--out", "both", "--quiet"]);
+        let both = rows(&folder.join("both"));
+        let mut overturned = 0;
+        for record in both.chunks(8) {
+            for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
+                assert_eq!([&row["sign"], &mirrored["sign"]], ["1", "-1"]);
+                // They agree to the last bit: no step distinguishes left from right.
+                for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
+                    assert_eq!(row[column], mirrored[column]);
+                }
+                if row[4] == "overturned" {
+                    overturned += 1;
+                    assert_ne!(row[5], mirrored[5]);
+                }
+            }
+        }
+        assert!(overturned > 0);
+
+        write(folder, "s.toml", &format!("{text}both_signs = false\n"));
+        done(folder, &["suite", "s.toml", "--out", "one", "--quiet"]);
+        let one: Vec<_> = both.iter().filter(|row| row[1] == "1").cloned().collect();
+        assert_eq!(rows(&folder.join("one")), one);
+        // Mirror images add no evidence.
+        let levels = |out: &str| read(&folder.join(out).join("fragility.csv"));
+        assert_eq!(levels("both"), levels("one"));
+        let fragility = |out: &str| {
+            let mut fragility = json(&folder.join(out).join("fragility.json"));
+            fragility.as_object_mut().unwrap().remove("scenario");
+            fragility
+        };
+        assert_eq!(fragility("both"), fragility("one"));
+    }
+}
+
+#[test]
+fn the_curve_is_that_of_the_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scenarios().join("column-suite.toml");
+    let said = done(folder.path(), &["suite", file.to_str().unwrap()]);
+    let results = folder.path().join("results/column-suite");
+    let rows = rows(&results);
+    let fragility = json(&results.join("fragility.json"));
+    let levels = Table::read(results.join("fragility.csv"));
+    assert_eq!(levels.header[0], "peak_g");
+    let levels = levels.rows;
+    assert_eq!((rows.len(), levels.len()), (320, 20));
+    let median = fragility["median"].as_f64().unwrap();
+    let mut log_likelihood = 0.0;
+    for level in &levels {
+        let at = rows
+            .iter()
+            .filter(|row| row[1] == "1" && row[3] == level[0]);
+        let at: Vec<_> = at.collect();
+        let overturned = at.iter().filter(|row| row[4] == "overturned").count();
+        assert_eq!(level[1], at.len().to_string());
+        assert_eq!(level[2], overturned.to_string());
+        for none in ["still_rocking", "incomplete", "failed"] {
+            assert_eq!(&level[none], "0");
+        }
+        let (overturned, all) = (overturned as f64, at.len() as f64);
+        assert_eq!(level.number("fraction"), overturned / all);
+        let [p, low, high] = ["probability", "probability_low", "probability_high"]
+            .map(|column| level.number(column));
+        assert!(0.0 < low && low < p && p < high && high < 1.0);
+        assert_eq!(level.number(0) < median, p < 0.5);
+        log_likelihood += overturned * p.ln() + (all - overturned) * (1.0 - p).ln();
+    }
+    let expected = fragility["log_likelihood"].as_f64().unwrap();
+    // Probabilities near one keep fewer digits of their complements.
+    assert!(
+        (log_likelihood / expected - 1.0).abs() < 1e-9,
+        "{log_likelihood} {expected}"
+    );
+    assert_eq!(fragility["no_fit"], Value::Null);
+    assert_eq!(fragility["records"], 8);
+    assert_eq!(fragility["cases"], 160);
+    assert_eq!(fragility["intensity"], "peak_g");
+    for key in ["median", "dispersion"] {
+        let error = |which: &str| fragility[&format!("{key}_{which}")].as_f64().unwrap();
+        let plain = error("standard_error");
+        let by_record = error("standard_error_by_record");
+        let value = fragility[key].as_f64().unwrap();
+        assert!(plain > 0.0 && by_record > 0.0 && plain < value && by_record < value);
+    }
+    assert!(
+        said.contains("320 cases of 8 records") && said.contains("median 0.5"),
+        "{said}"
+    );
+    // The words print the edges of capacity.csv, and say where nothing was searched for.
+    let capacities = Table::read(results.join("capacity.csv")).rows;
+    for capacity in &capacities {
+        let record = format!("{}: first overturns at ", &capacity["record"]);
+        let (_, words) = said.split_once(&record).unwrap();
+        let (edge, _) = words.split_once(" g").unwrap();
+        let known = capacity.number("peak_g");
+        assert!(
+            (edge.parse::<f64>().unwrap() / known - 1.0).abs() < 5e-4,
+            "{record}{edge} {known}"
+        );
+    }
+    assert!(
+        said.contains(
+            "tried: 20 levels from 0.2000 to 4.000 g; where a record first overturns is bisected"
+        ) && said.contains("were not searched for"),
+        "{said}"
+    );
+    // The ranking of measures comes with its intervals: that of the factor on the peak is that of another bootstrap, to the noise of 300 draws.
+    let measures = Table::read(results.join("intensity.csv")).rows;
+    let shares: f64 = measures.iter().map(|row| row.number("best_share")).sum();
+    assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+    for (row, json) in measures
+        .iter()
+        .zip(fragility["intensity_measures"].as_array().unwrap())
+    {
+        let own = row.number("dispersion_of_factor");
+        let [low, high] =
+            ["low", "high"].map(|end| row.number(&*format!("dispersion_of_factor_{end}")));
+        assert!(low < own && own < high, "{row:?}");
+        assert_eq!(json["dispersion_of_factor_interval"][1], high);
+        assert!(
+            said.contains(&format!(" {own:.2} ({low:.2} to {high:.2})")),
+            "{said}"
+        );
+    }
+    let peaks: Vec<f64> = capacities
+        .iter()
+        .map(|row| row.number("peak_g").ln())
+        .collect();
+    let mut state = 7_u64;
+    let mut draw = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        peaks[(state >> 33) as usize % peaks.len()]
+    };
+    let mut dispersions: Vec<f64> = (0..4000)
+        .map(|_| {
+            let drawn: Vec<f64> = peaks.iter().map(|_| draw()).collect();
+            let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
+            let squares: f64 = drawn.iter().map(|one| (one - mean).powi(2)).sum();
+            (squares / (drawn.len() as f64 - 1.0)).sqrt()
+        })
+        .collect();
+    dispersions.sort_by(f64::total_cmp);
+    let peak = measures
+        .iter()
+        .find(|row| &row["measure"] == "peak_g")
+        .unwrap();
+    for (end, known) in [("low", dispersions[100]), ("high", dispersions[3900])] {
+        let found = peak.number(&*format!("dispersion_of_factor_{end}"));
+        assert!((found / known - 1.0).abs() < 0.2, "{end} {found} {known}");
+    }
+    let picture = read(&results.join("suite.svg"));
+    let picture = roxmltree::Document::parse(&picture).unwrap();
+    let named = |name| named(&picture, name).len();
+    assert_eq!((named("fraction"), named("fit"), named("band")), (20, 1, 1));
+}
+
+#[test]
+fn the_records_of_the_repository_are_what_they_are_said_to_be() {
+    for k in 1..=8_u32 {
+        let frequency_hz = 0.6 + 0.1 * f64::from(k);
+        let wave = |t: f64| {
+            let sum: f64 = (1..=25)
+                .map(f64::from)
+                .map(|j| {
+                    let phase = frequency_hz * t * j / 10.0 + j * j * f64::from(k + 1).sqrt();
+                    (-((j - 10.0) / 5.0).powi(2)).exp() * (2.0 * PI * phase).cos()
+                })
+                .sum();
+            (t / 1.5).powi(2) * (2.0 - 2.0 * t / 1.5).exp() * sum
+        };
+        let record = samples(&scenarios().join(format!("records/wave-{k}.at2")));
+        let peak = record.iter().map(|s| wave(s.0).abs()).fold(0.0, f64::max);
+        for (time_s, acceleration_g) in record {
+            // Samples are written with seven digits.
+            assert!((acceleration_g - 0.3 / peak * wave(time_s)).abs() < 1e-7);
+        }
+    }
+}
+
+#[test]
+fn patterns_and_lists_are_the_same_suite() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::write(folder.join("records/.hidden.at2"), "no record").unwrap();
+    fs::create_dir(folder.join("records/folder.at2")).unwrap();
+    let suites = [
+        "'records/*.at2'",
+        "['./records/wave-6.at2', 'records/*.at2', 'records/wave-1.at2']",
+        "['records/wave-6.at2', 'records/wave-1.at2', 'records/wave-2.at2']",
+        "['*/wave-?.at2']",
+    ];
+    for (index, records) in suites.iter().enumerate() {
+        let text = format!("{COLUMN}[suite]\nrecords = {records}\nscales = [1.0, 3.0]\n");
+        write(folder, "s.toml", &text);
+        let out = format!("o{index}");
+        // Called from another folder: files are relative to the scenario.
+        fs::create_dir_all(folder.join("elsewhere")).unwrap();
+        let arguments = [
+            "suite",
+            "../s.toml",
+            "--out",
+            &format!("../{out}"),
+            "--quiet",
+        ];
+        done(&folder.join("elsewhere"), &arguments);
+        for file in FILES {
+            assert_eq!(
+                read(&folder.join(&out).join(file)),
+                read(&folder.join("o0").join(file))
+            );
+        }
+    }
+    assert_eq!(rows(&folder.join("o0")).len(), 3 * 2 * 2);
+
+    // The same files under other names count once.
+    let records = "['records/*.at2', 'records/../records/*.at2']";
+    let text = format!("{COLUMN}[suite]\nrecords = {records}\nscales = [1.0, 3.0]\n");
+    write(folder, "s.toml", &text);
+    done(folder, &["suite", "s.toml", "--out", "again", "--quiet"]);
+    assert_eq!(rows(&folder.join("again")), rows(&folder.join("o0")));
+}
+
+#[test]
+fn resolved_scenarios_read_back_the_same() {
+    let folder = folder();
+    let folder = folder.path();
+    // A name that is a pattern, which would match another file.
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("[x]*.at2")).unwrap();
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("x1.at2")).unwrap();
+    for text in [
+        mixed("scales = [1, 2]\nboth_signs = false"),
+        mixed("peaks_g = { from = 0.1, to = 1, count = 3, spacing = 'logarithmic' }"),
+        format!("{COLUMN}[suite]\nrecords = '[x]*.at2'\nformat = 'at2'\nscales = [2]\n"),
+    ] {
+        write(folder, "s.toml", &text);
+        let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+        write(folder, "t.toml", &scenario.to_toml());
+        assert_eq!(
+            Scenario::read(&folder.join("t.toml")),
+            Ok(scenario),
+            "{text}"
+        );
+    }
+    let text = read(&folder.join("t.toml"));
+    assert!(
+        text.contains("records = [\n    \"[x]*.at2\",\n]\nformat = \"at2\"\n"),
+        "{text}"
+    );
+}
+
+#[test]
+fn parts_make_the_same_files_where_the_records_are_not() {
+    let folder = folder();
+    let folder = folder.path();
+    write(
+        folder,
+        "s.toml",
+        &format!(
+            "title = 'parts'\n{}",
+            mixed("peaks_g = { from = 0.2, to = 2, count = 5, spacing = 'logarithmic' }")
+        ),
+    );
+    let whole = done(
+        folder,
+        &["suite", "s.toml", "--out", "whole", "--threads", "1"],
+    );
+    for shard in ["1/3", "2/3", "3/3"] {
+        done(
+            folder,
+            &[
+                "suite", "s.toml", "--out", "parts", "--shard", shard, "--quiet",
+            ],
+        );
+    }
+    // A killed program leaves a torn last line.
+    let part = folder.join("parts/suite-2-of-3.part");
+    let complete = read(&part);
+    fs::write(&part, &complete[..complete.len() - 30]).unwrap();
+    let parts: Vec<String> = (1..=3)
+        .map(|i| format!("parts/suite-{i}-of-3.part"))
+        .collect();
+    let mut merge = vec!["merge", "--out", "merged"];
+    merge.extend(parts.iter().map(String::as_str));
+    let said = refused(folder, &merge, &[]);
+    assert!(
+        said.contains("finish it with --shard 2/3 --resume"),
+        "{said}"
+    );
+    done(
+        folder,
+        &[
+            "suite", "s.toml", "--out", "parts", "--shard", "2/3", "--resume", "--quiet",
+        ],
+    );
+    fs::remove_dir_all(folder.join("records")).unwrap();
+    fs::remove_file(folder.join("s.toml")).unwrap();
+    let merged = done(folder, &merge);
+    for file in FILES {
+        assert_eq!(
+            read(&folder.join("merged").join(file)),
+            read(&folder.join("whole").join(file))
+        );
+    }
+    assert_eq!(whole.replace("whole", "merged"), merged);
+    let entries = fs::read_dir(folder.join("whole")).unwrap();
+    assert_eq!(entries.count(), FILES.len());
+
+    let damaged = read(&folder.join(&parts[0])).replace("\"mirrored\":false", "\"mirrored\":true");
+    write(folder, &parts[0], &damaged);
+    refused(folder, &merge, &["damaged"]);
+}
+
+#[test]
+fn other_records_are_not_resumed_with() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = format!("{COLUMN}[suite]\nrecords = 'records/*.at2'\nscales = [1.0, 3.0]\n");
+    write(folder, "s.toml", &text);
+    let arguments = [
+        "suite", "s.toml", "--out", "o", "--shard", "1/2", "--resume", "--quiet",
+    ];
+    done(folder, &arguments);
+    // The title of a record is not part of its samples.
+    let record = folder.join("records/wave-2.at2");
+    let original = read(&record);
+    fs::write(
+        &record,
+        original.replace("NO REAL EARTHQUAKE", "STILL NONE"),
+    )
+    .unwrap();
+    done(folder, &arguments);
+    let sample = original
+        .lines()
+        .nth(40)
+        .unwrap()
+        .split_whitespace()
+        .next()
+        .unwrap();
+    fs::write(&record, original.replace(sample, "1.234567E-02")).unwrap();
+    let said = refused(folder, &arguments, &[]);
+    assert!(
+        said.contains("other contents of records/wave-2.at2"),
+        "{said}"
+    );
+    fs::write(&record, &original).unwrap();
+    fs::copy(&record, folder.join("records/wave-3.at2")).unwrap();
+    let said = refused(folder, &arguments, &[]);
+    assert!(said.contains(": no records/wave-3.at2"), "{said}");
+}
+
+#[test]
+fn without_a_curve_the_reason_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    for (scales, reason, never, always) in [
+        ("[1.5, 2.0]", "no case overturns below", None, None),
+        (
+            "[0.1, 0.2]",
+            "none of 2 cases overturns",
+            Some("records/wave-1.at2"),
+            None,
+        ),
+        (
+            "[4, 5.5]",
+            "all 2 cases overturn",
+            None,
+            Some("records/wave-1.at2"),
+        ),
+    ] {
+        let text = format!(
+            "{COLUMN}[suite]\nrecords = 'records/wave-1.at2'\nscales = {scales}\nboth_signs = false\n"
+        );
+        write(folder, "s.toml", &text);
+        let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+        assert!(
+            said.contains(&format!("no fragility curve: {reason}")),
+            "{said}"
+        );
+        let fragility = json(&folder.join("o/fragility.json"));
+        assert!(fragility["no_fit"].as_str().unwrap().starts_with(reason));
+        for key in [
+            "median",
+            "dispersion_standard_error",
+            "median_standard_error_by_record",
+            "log_likelihood",
+        ] {
+            assert_eq!(fragility.get(key), Some(&Value::Null), "{key}");
+        }
+        let list = |name: Option<&str>| Value::from(name.into_iter().collect::<Vec<_>>());
+        assert_eq!(fragility["records_that_never_overturn"], list(never));
+        assert_eq!(fragility["records_that_always_overturn"], list(always));
+        assert_eq!(
+            said.contains("records/wave-1.at2: does not overturn up to 0.2000\n"),
+            never.is_some()
+        );
+        assert_eq!(
+            said.contains("records/wave-1.at2: overturns at 4.000 already, the smallest tried\n"),
+            always.is_some()
+        );
+        let picture = read(&folder.join("o/suite.svg"));
+        assert!(
+            picture.contains(&format!("no curve: {reason}")),
+            "{picture}"
+        );
+        assert!(!picture.contains("data-name=\"fit\""));
+        let levels = read(&folder.join("o/fragility.csv"));
+        assert!(
+            levels.lines().skip(1).all(|line| line.ends_with(",,,")),
+            "{levels}"
+        );
+    }
+}
+
+/// Results from rows given by record, level and outcome, if there is one.
+fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
+    let rows = rows.iter().map(|(record, scale, outcome)| CaseRow {
+        record: (*record).to_owned(),
+        mirrored: false,
+        scale: *scale,
+        peak_g: 0.3 * scale,
+        edge: None,
+        edge_at_most: false,
+        strength: None,
+        result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
+            outcome,
+            outcome_time_s: 1.0,
+            impacts: Some(0),
+            peak: PeakRotation::OverCritical(Some(0.5)),
+            peak_rotation_rad: 0.1,
+            energy_defect_ratio: 0.0,
+            steps: None,
+            safe_from_s: None,
+            uncertain: None,
+        }),
+    });
+    SuiteFragility::new(Measure::Scale, rows.collect())
+}
+
+/// Cases of records that overturn (`x`), survive (`.`) or are uncertain (`~`, whose own history overturned), one letter per
+/// level; a minus sign before a record means that it is mirrored.
+fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
+    let case = |(record, letters): &(&str, &str)| {
+        let mirrored = record.starts_with('-');
+        let record = record.trim_start_matches('-').to_owned();
+        let rows = letters.bytes().zip(1..).map(move |(letter, level)| {
+            let side = if mirrored { Sway::Right } else { Sway::Left };
+            let outcome = match letter {
+                b'.' => Outcome::Rest,
+                _ => Outcome::Overturned(side),
+            };
+            let uncertain = (letter == b'~').then(|| "overturns; survives so".to_owned());
+            CaseRow {
+                record: record.clone(),
+                mirrored,
+                scale: f64::from(level),
+                peak_g: 0.3 * f64::from(level),
+                edge: None,
+                edge_at_most: false,
+                strength: None,
+                result: Ok(Ending {
+                    outcome,
+                    outcome_time_s: 1.0,
+                    impacts: Some(0),
+                    peak: PeakRotation::Rad(0.5),
+                    peak_rotation_rad: 0.5,
+                    energy_defect_ratio: 0.0,
+                    steps: Some(Steps {
+                        longest_s: 1e-4,
+                        shortest_s: 1e-5,
+                    }),
+                    safe_from_s: None,
+                    uncertain: uncertain.map(String::into_boxed_str),
+                }),
+            }
+        });
+        rows.collect::<Vec<_>>()
+    };
+    records.iter().flat_map(case).collect()
+}
+
+fn free_heading() -> Heading {
+    let scenario = "[free_hinges]\n[suite]\nscales = [1.0, 2.0]\n";
+    Heading::of_resolved(scenario, Vec::new()).unwrap()
+}
+
+/// With uncertain cases counted as survived or as overturned, the results are those of suites in which they did so.
+#[test]
+fn uncertain_cases_are_taken_both_ways() {
+    let with = |letter: &str| {
+        let records = [
+            ("a", "..~xx"),
+            ("b", ".~.xx"),
+            ("c", "..xx~"),
+            ("d", ".xx.x"),
+        ];
+        let records = records.map(|(record, letters)| (record, letters.replace('~', letter)));
+        let records: Vec<_> = records.iter().map(|(a, b)| (*a, b.as_str())).collect();
+        SuiteFragility::new(Measure::Scale, levels_of(&records))
+    };
+    let (doubtful, survived, overturned) = (with("~"), with("."), with("x"));
+    assert_eq!(doubtful.fit, survived.fit);
+    assert_eq!(doubtful.fit_with_uncertain, overturned.fit);
+    assert!(doubtful.fit.as_ref().unwrap().median > overturned.fit.as_ref().unwrap().median);
+    assert_eq!(survived.fit, survived.fit_with_uncertain);
+    assert!(doubtful.has_uncertain() && !survived.has_uncertain());
+    for (level, (low, high)) in pairs(
+        &doubtful.levels,
+        &pairs(&survived.levels, &overturned.levels).collect::<Vec<_>>(),
+    ) {
+        assert_eq!(level.cases, 4);
+        assert_eq!(level.fraction(), low.fraction());
+        assert_eq!(level.fraction_with_uncertain(), high.fraction());
+        assert_eq!(level.curve, low.curve);
+        assert_eq!(level.curve_with_uncertain, high.curve);
+    }
+    assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
+    let survivals = doubtful.survivals();
+    assert_eq!(survivals[0].survival.overturns_from, Some(4.0));
+    assert_eq!(survivals[0].survival.uncertain, [[3.0, 3.0]]);
+
+    let told = told(&free_heading(), &doubtful);
+    let Table { header, rows } = Table::parse(&told["fragility.csv"]);
+    assert!(
+        header
+            .windows(2)
+            .any(|pair| *pair == ["uncertain", "fraction_with_uncertain"])
+    );
+    let counts: Vec<_> = rows
+        .iter()
+        .map(|row| [&row["overturned"], &row["uncertain"]])
+        .collect();
+    assert_eq!(
+        counts,
+        [["0", "0"], ["1", "1"], ["2", "1"], ["3", "0"], ["3", "1"]]
+    );
+    for row in &rows {
+        assert!(
+            row.number("probability") < row.number("probability_with_uncertain") || row[0] == "5.0",
+            "{row:?}"
+        );
+        assert!(row.number("fraction") <= row.number("fraction_with_uncertain"));
+    }
+    let json: Value = told["fragility.json"].parse().unwrap();
+    assert_eq!(
+        (&json["overturned"], &json["uncertain"]),
+        (&9.into(), &3.into())
+    );
+    assert_eq!(json["median"], survived.fit.as_ref().unwrap().median);
+    let with_uncertain = &json["with_uncertain_as_overturned"];
+    assert_eq!(
+        with_uncertain["median"],
+        overturned.fit.as_ref().unwrap().median
+    );
+    assert_eq!(json["uncertain_cases"].as_array().unwrap().len(), 3);
+    assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3");
+    assert_eq!(json["longest_step_s"]["max"], 1e-4);
+    // Neither the side nor impacts before overturning are given.
+    assert_eq!(told["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);
+
+    let named =
+        |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
+    let picture = &told["suite.svg"];
+    for name in ["fit", "fit-with-uncertain", "band", "between"] {
+        assert_eq!(named(picture, name), 1, "{name}");
+    }
+    assert_eq!(named(picture, "uncertain"), 3);
+    assert!(picture.contains("3 uncertain cases taken as survived"));
+    assert_eq!(named(&told["ida.svg"], "uncertain"), 3);
+    let plain = self::told(&free_heading(), &survived);
+    for name in ["fit-with-uncertain", "between", "uncertain"] {
+        assert_eq!(named(&plain["suite.svg"], name), 0, "{name}");
+    }
+}
+
+/// A mirrored record whose results are exactly mirrored adds no evidence; otherwise it does, as the same record.
+#[test]
+fn mirrored_records_count_where_they_are_not_mirror_images() {
+    let own = [("a", "..xx"), ("b", ".x.x"), ("c", ".xxx")];
+    let alone = SuiteFragility::new(Measure::Scale, levels_of(&own));
+    let images = [
+        own[0],
+        ("-a", "..xx"),
+        own[1],
+        ("-b", ".x.x"),
+        own[2],
+        ("-c", ".xxx"),
+    ];
+    let images = SuiteFragility::new(Measure::Scale, levels_of(&images));
+    assert!(!images.mirrored_count);
+    assert_eq!((&images.fit, &images.levels), (&alone.fit, &alone.levels));
+
+    let other = [
+        own[0],
+        ("-a", "..x."),
+        own[1],
+        ("-b", ".x.x"),
+        own[2],
+        ("-c", ".xxx"),
+    ];
+    let other = SuiteFragility::new(Measure::Scale, levels_of(&other));
+    assert!(other.mirrored_count);
+    assert_eq!((other.record_count(), other.levels[0].cases), (3, 6));
+    // Each sign is a case; both belong to one record, which the errors by record treat as dependent. So these errors
+    // are larger than for the same cases of six records.
+    let six = [
+        own[0],
+        ("d", "..x."),
+        own[1],
+        ("e", ".x.x"),
+        own[2],
+        ("f", ".xxx"),
+    ];
+    let six = SuiteFragility::new(Measure::Scale, levels_of(&six));
+    let (other, six) = (other.fit.unwrap(), six.fit.unwrap());
+    assert_eq!(
+        (other.median, other.independent),
+        (six.median, six.independent)
+    );
+    assert!(other.clustered.unwrap().median > six.clustered.unwrap().median);
+}
+
+/// The files of the results, by their names.
+fn told(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
+    let told = heading.tell(results.cases.clone(), Figure::SCREEN).unwrap();
+    let files = told.files.into_iter();
+    files
+        .map(|(name, contents)| (name, String::from_utf8(contents).unwrap()))
+        .collect()
+}
+
+/// The heading of a suite with linear levels.
+fn heading() -> Heading {
+    Heading::of_resolved("[suite]\nscales = [1.0, 2.0]\n", Vec::new()).unwrap()
+}
+
+const FAILED: Option<Outcome> = None;
+const OVERTURNED: Option<Outcome> = Some(Outcome::Overturned(Sway::Left));
+
+#[test]
+fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
+    let results = results(&[
+        ("a, b.at2", 1.0, FAILED),
+        ("a, b.at2", 2.0, OVERTURNED),
+        ("c.at2", 1.0, Some(Outcome::StillRocking)),
+        ("c.at2", 2.0, FAILED),
+        ("d.at2", 1.0, FAILED),
+        ("d.at2", 2.0, FAILED),
+        ("e.at2", 1.0, OVERTURNED),
+        ("e.at2", 2.0, Some(Outcome::Rest)),
+        ("e.at2", 2.0, OVERTURNED),
+    ]);
+    let counts: Vec<_> = results
+        .levels
+        .iter()
+        .map(|level| {
+            (
+                level.intensity,
+                level.cases,
+                level.overturned,
+                level.still_rocking,
+                level.failed,
+            )
+        })
+        .collect();
+    assert_eq!(counts, [(1.0, 2, 1, 1, 2), (2.0, 3, 2, 0, 2)]);
+    let json: Value = told(&heading(), &results)["fragility.json"]
+        .parse()
+        .unwrap();
+    assert_eq!(json["cases"], 5);
+    assert_eq!(json["records"], 4);
+    assert_eq!(json["failed_left_out"], 4);
+    assert_eq!(json["still_rocking_counted_as_not_overturned"], 1);
+    assert_eq!(
+        json["records_that_always_overturn"],
+        serde_json::json!(["a, b.at2"])
+    );
+    // Nothing is known of d.
+    assert_eq!(
+        json["records_that_never_overturn"],
+        serde_json::json!(["c.at2"])
+    );
+    assert_eq!(json["failures"].as_array().unwrap().len(), 4);
+    assert_eq!(
+        json["failures"][0],
+        serde_json::json!({ "case": "a, b.at2, scale 1", "reason": "it broke" })
+    );
+    // Two levels fit exactly: Phi(-ln(m)/b) = 1/2 at 1 and Phi(ln(2/m)/b) = 2/3 at 2.
+    let fit = results.fit.unwrap();
+    assert!((fit.median - 1.0).abs() < 1e-9);
+    assert!((fit.dispersion - 2.0_f64.ln() / 0.430_727_299_295_457_5).abs() < 1e-9);
+}
+
+#[test]
+fn a_level_of_which_all_failed_has_no_fraction() {
+    let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
+    let told = told(&heading(), &results);
+    let levels = &told["fragility.csv"];
+    assert!(
+        levels.contains("\n1.0,0,0,0,0,1,,,,\n2.0,1,1,0,0,0,1.0,,,\n"),
+        "{levels}"
+    );
+    let json: Value = told["fragility.json"].parse().unwrap();
+    assert!(json["no_fit"].as_str().unwrap().starts_with("all 1 cases"));
+    assert_eq!(
+        told["suite.svg"].matches("data-name=\"fraction\"").count(),
+        1
+    );
+}
+
+#[test]
+fn those_still_rocking_are_said() {
+    let folder = folder();
+    let folder = folder.path();
+    let text = format!(
+        "{}[suite]\nrecords = 'records/*.at2'\nscales = [0.9]\n",
+        COLUMN.replace("30.0", "6.0")
+    );
+    write(folder, "s.toml", &text);
+    let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+    assert!(said.contains("4 overturn, 2 are still rocking"), "{said}");
+    assert!(said.contains("those still rocking at the end count as not overturned"));
+}
+
+/// Asserts that a suite has these faults and no others: line and column within the file, and words.
+#[track_caller]
+fn assert_faults(folder: &Path, suite: &str, expected: &[(usize, usize, &[&str])]) {
+    write(folder, "s.toml", &format!("{COLUMN}[suite]\n{suite}\n"));
+    let before = COLUMN.lines().count() + 1;
+    let errors = Scenario::read(&folder.join("s.toml")).unwrap_err();
+    assert_eq!(errors.as_slice().len(), expected.len(), "{errors}");
+    for (error, (line, column, words)) in errors.as_slice().iter().zip(expected) {
+        let place = error.place.unwrap();
+        assert_eq!(
+            (place.line - before, place.column),
+            (*line, *column),
+            "{error}"
+        );
+        for word in *words {
+            assert!(error.message.contains(word), "{word:?} is not in: {error}");
+        }
+    }
+}
+
+#[test]
+fn faults_of_the_table_have_places() {
+    let folder = folder();
+    let folder = folder.path();
+    let all = "records = 'records/*.at2'";
+    assert_faults(
+        folder,
+        "recrods = 'x'\nboth_signs = 1",
+        &[
+            (0, 1, &["[suite] lacks `records`", "a string or an array"]),
+            (
+                0,
+                1,
+                &["[suite] needs exactly one of the keys scales, peaks_g"],
+            ),
+            (1, 1, &["did you mean `records`?"]),
+            (
+                2,
+                14,
+                &["`both_signs = 1` is a whole number", "true or false"],
+            ),
+        ],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [1]\npeaks_g = [1]"),
+        &[(
+            3,
+            11,
+            &["`peaks_g` cannot be combined with `scales`", "exactly one"],
+        )],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [0.0, 1.0]"),
+        &[(2, 10, &["(number 1) that is out of range", "above 0 and"])],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\npeaks_g = {{ from = -1, to = 2000, count = 3 }}"),
+        &[
+            (2, 20, &["`from = -1` is out of range", "above 0 and"]),
+            (2, 29, &["`to = 2000` is out of range", "at most 1000"]),
+        ],
+    );
+    assert_faults(
+        folder,
+        "records = []\nscales = [1]",
+        &[(1, 11, &["`records = []` is empty"])],
+    );
+    assert_faults(
+        folder,
+        "records = ['records/*.at2', 'none/*.at2', 'none.at2', 'records', '***']\nscales = [1]",
+        &[
+            (1, 29, &["`'none/*.at2'` in `records` matches no file"]),
+            (
+                1,
+                43,
+                &[
+                    "`'none.at2'` in `records` does not exist",
+                    "a file or a pattern",
+                ],
+            ),
+            (1, 55, &["is a folder", "folder/*.at2"]),
+            (1, 66, &["is not a valid file pattern"]),
+        ],
+    );
+    // Keys of tables are for tables only.
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = [1]\ntime_column = 1"),
+        &[(3, 15, &["applies to `format = \"csv\"` only"])],
+    );
+    assert_faults(
+        folder,
+        "records = '*.csv'\nscales = [1]",
+        &[(0, 1, &["[suite] lacks `unit`", "cm/s2"])],
+    );
+    assert_faults(
+        folder,
+        &format!("{all}\nscales = {{ from = 1, to = 2, count = 10000 }}\ntitle = 'x'"),
+        &[(
+            3,
+            1,
+            &[
+                "unknown key `title` in [suite]",
+                "records, format, scales, peaks_g",
+            ],
+        )],
+    );
+}
+
+#[test]
+fn a_suite_has_a_largest_size() {
+    let folder = folder();
+    let folder = folder.path();
+    // If there are too many records, none is read.
+    for index in 0..51 {
+        write(folder, &format!("{index}.at2"), "no record");
+    }
+    assert_faults(
+        folder,
+        "records = '*.at2'\nscales = { from = 1, to = 2, count = 10000 }",
+        &[(
+            0,
+            1,
+            &[
+                "[suite] has 1020000 cases, 51 records at 10000 levels",
+                "at most 1000000",
+            ],
+        )],
+    );
+}
+
+#[test]
+fn faults_of_records_name_the_file() {
+    let folder = folder();
+    let folder = folder.path();
+    let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
+    for (name, text) in [
+        ("zero.at2", format!("{head}0 0 0\n")),
+        ("short.at2", format!("{head}1 2\n")),
+        ("word.at2", format!("{head}1 2 x\n")),
+        ("tiny.at2", format!("{head}0 1e-9 0\n")),
+        ("long.at2", "A\nNPTS= 3, DT= 20 SEC\n1 2 3\n".to_owned()),
+        ("fine.rec", format!("{head}1 2 3\n")),
+    ] {
+        write(folder, name, &text);
+    }
+    // All faults are reported together, each at the pattern that names the file.
+    assert_faults(
+        folder,
+        "records = ['records/*.at2', '*.at2']\nscales = [1]",
+        &[
+            (
+                1,
+                29,
+                &["names long.at2, which lasts 40 s", "`duration_s`", "30 s"],
+            ),
+            (
+                1,
+                29,
+                &[
+                    "names short.at2, which is faulty: ",
+                    "short.at2:5: ",
+                    "ends after 2 values",
+                ],
+            ),
+            (
+                1,
+                29,
+                &["names word.at2, which is faulty: ", "word.at2:5: `x`"],
+            ),
+            (1, 29, &["names zero.at2, which is zero throughout"]),
+        ],
+    );
+    let at = |levels: &str| format!("records = 'tiny.at2'\n{levels}");
+    assert_faults(
+        folder,
+        &at("peaks_g = [0.5]"),
+        &[(
+            1,
+            11,
+            &["names tiny.at2, which has a peak of 1e-9 g", "to 0.5 g"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = 'records/wave-1.at2'\nscales = [1, 5000]",
+        &[(
+            1,
+            11,
+            &["names records/wave-1.at2, which reaches 1500 g as scaled"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = 'fine.*'\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names fine.rec, which has an extension that does not tell the format"],
+        )],
+    );
+    write(
+        folder,
+        "s.toml",
+        &format!("{COLUMN}[suite]\nrecords = 'fine.*'\nformat = 'at2'\nscales = [1]\n"),
+    );
+    assert!(Scenario::read(&folder.join("s.toml")).is_ok());
+}
+
+#[cfg(unix)]
+#[test]
+fn names_that_would_break_lines_are_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::copy(folder.join("records/wave-1.at2"), folder.join("a\nb.at2")).unwrap();
+    assert_faults(
+        folder,
+        "records = '*.at2'\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names \"a\\nb.at2\"", "without control characters"],
+        )],
+    );
+    assert_faults(
+        folder,
+        "records = \"a\\nb.at2\"\nscales = [1]",
+        &[(
+            1,
+            11,
+            &["names \"a\\nb.at2\"", "without control characters"],
+        )],
+    );
+}
+
+#[test]
+fn suites_need_a_table_and_start_from_rest() {
+    let folder = folder();
+    let folder = folder.path();
+    write(folder, "s.toml", COLUMN);
+    let said = refused(folder, &["suite", "s.toml"], &[]);
+    assert!(
+        said.contains("the scenario has no [suite]") && said.contains("records = "),
+        "{said}"
+    );
+    let text = mixed("scales = [1]");
+    write(
+        folder,
+        "s.toml",
+        &format!("{text}[initial]\nsway = 'left'\nrotation_rad = 0.1\n"),
+    );
+    let said = refused(folder, &["suite", "s.toml"], &[]);
+    assert!(said.contains("leave [initial] out"), "{said}");
+}
+
+/// Sines of one period, sampled closely: their measures of intensity have closed forms, and the spectral acceleration follows from the
+/// equation of an oscillator by the method of Runge and Kutta. Capacities are where runs begin to overturn.
+#[test]
+fn capacities_are_told_in_several_measures() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let gravity = 9.81;
+    let durations_s = [0.4, 0.8, 1.6];
+    for duration_s in durations_s {
+        let line = |sample: u32| {
+            let time_s = duration_s * f64::from(sample) / 400.0;
+            format!(
+                "{time_s:.6},{:.9}\n",
+                (2.0 * PI * time_s / duration_s).sin()
+            )
+        };
+        let table: String = (0..=400).map(line).collect();
+        write(folder, &format!("sine-{duration_s}.csv"), &table);
+    }
+    let text = format!(
+        "{COLUMN}[suite]\nrecords = 'sine-*.csv'\nunit = 'g'\nspectral_period_s = 0.5\nspectral_damping_percent = 2\n\
+         peaks_g = {{ from = 0.1, to = 6.0, count = 14, spacing = 'logarithmic' }}\n"
+    );
+    write(folder, "s.toml", &text);
+    let said = done(folder, &["suite", "s.toml", "--out", "o"]);
+    assert!(
+        said.contains("most efficient measure of intensity: "),
+        "{said}"
+    );
+    assert!(
+        said.contains("spectral acceleration at 0.5 s and 2 % "),
+        "{said}"
+    );
+    let cases = rows(&folder.join("o"));
+    let capacities = Table::read(folder.join("o/capacity.csv")).rows;
+    // Mirrored records are mirror images, and no further evidence.
+    assert_eq!(capacities.len(), 3);
+    for (capacity, duration_s) in capacities.iter().zip(durations_s) {
+        assert_eq!(capacity["record"], format!("sine-{duration_s}.csv"));
+        let peak_g = capacity.number("peak_g");
+        let close = |name: &str, known: f64, part: f64| {
+            let found = capacity.number(name);
+            assert!((found / known - 1.0).abs() < part, "{name} {found} {known}");
+        };
+        // Straight lines between 400 samples take a part of (2 pi / 400)^2 / 12 off an integral.
+        close("scale", peak_g, 1e-4);
+        close(
+            "peak_velocity_m_s",
+            peak_g * gravity * duration_s / PI,
+            1e-4,
+        );
+        close(
+            "arias_m_s",
+            0.25 * PI * gravity * peak_g * peak_g * duration_s,
+            1e-4,
+        );
+        close(
+            "spectral_acceleration_g",
+            peak_g * spectral(duration_s, 0.5, 0.02),
+            3e-3,
+        );
+        // The first level that overturns, and the one before.
+        let own = cases
+            .iter()
+            .filter(|row| row["record"] == capacity["record"] && row["sign"] == "1");
+        let own: Vec<_> = own.collect();
+        let first = own.iter().position(|row| row["outcome"] == "overturned");
+        let first = first.unwrap();
+        assert!(own[first - 1].number("peak_g") < peak_g && peak_g <= own[first].number("peak_g"));
+        for (factor, overturns) in [(1.0, true), (0.996, false)] {
+            let text = format!(
+                "{COLUMN}[ground.record]\nfile = '{}'\nunit = 'g'\npeak_g = {:?}\n",
+                capacity["record"],
+                factor * peak_g
+            );
+            write(folder, "run.toml", &text);
+            done(
+                folder,
+                &["run", "run.toml", "--out", "r", "--quiet", "--no-report"],
+            );
+            let outcome = json(&folder.join("r/summary.json"))["outcome"].clone();
+            assert_eq!(outcome == "overturned", overturns, "{capacity:?} {factor}");
+        }
+    }
+    // The table has the dispersions of these, the smallest first.
+    let measures = Table::read(folder.join("o/intensity.csv")).rows;
+    assert_eq!(measures.len(), 4);
+    let mut before = 0.0;
+    for measure in &measures {
+        let logarithms = capacities
+            .iter()
+            .map(|capacity| capacity.number(measure["measure"].as_str()).ln());
+        let mean = logarithms.clone().sum::<f64>() / 3.0;
+        let squares: f64 = logarithms.map(|value| (value - mean).powi(2)).sum();
+        let dispersion = (squares / 2.0).sqrt();
+        assert!((measure.number("dispersion") - dispersion).abs() < 1e-9);
+        let power = if measure["measure"] == "arias_m_s" {
+            2.0
+        } else {
+            1.0
+        };
+        let of_factor = measure.number("dispersion_of_factor");
+        assert!((of_factor - dispersion / power).abs() < 1e-9 && of_factor >= before);
+        before = of_factor;
+    }
+    let fragility = json(&folder.join("o/fragility.json"));
+    assert_eq!(
+        fragility["intensity_measures"][0]["measure"],
+        measures[0]["measure"]
+    );
+    // Fractiles of three peaks are the least, the middle one and the largest; what overturned is beyond.
+    let ida = Table::read(folder.join("o/ida.csv")).rows;
+    for level in &ida {
+        let peak_g = level.number("peak_g");
+        let mut peaks: Vec<f64> = cases
+            .iter()
+            .filter(|row| row["sign"] == "1" && (row.number("peak_g") / peak_g - 1.0).abs() < 1e-9)
+            .map(|row| match row["outcome"].as_str() {
+                "overturned" => f64::INFINITY,
+                _ => row.number("peak_rotation_over_critical"),
+            })
+            .collect();
+        peaks.sort_by(f64::total_cmp);
+        assert_eq!(peaks.len(), 3);
+        for (name, peak) in ["peak_16", "peak_50", "peak_84"].into_iter().zip(peaks) {
+            let found = level[name].parse().unwrap_or(f64::INFINITY);
+            assert_eq!(found, peak, "{level:?}");
+        }
+    }
+    // The distribution of all peaks ends at the share that survives.
+    let peaks = Table::read(folder.join("o/peaks.csv"));
+    let survived = cases
+        .iter()
+        .filter(|row| row["sign"] == "1" && row["outcome"] != "overturned");
+    let share = survived.count() as f64 / 42.0;
+    assert!((peaks.numbers("share").last().unwrap() - share).abs() < 1e-12);
+    assert!(peaks.numbers("peak").is_sorted());
+}
+
+/// Largest `omega^2` times displacement of an oscillator under a sine of 1 g, in g, by Runge and Kutta's method, until the sine ends.
+fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
+    let omega = 2.0 * PI / period_s;
+    let rate = |time_s: f64, [x, v]: [f64; 2]| {
+        let ground = (2.0 * PI * time_s / duration_s).sin();
+        [v, -ground - 2.0 * damping * omega * v - omega * omega * x]
+    };
+    let steps = 4000;
+    let step = duration_s / f64::from(steps);
+    let (mut state, mut peak) = ([0.0_f64; 2], 0.0_f64);
+    for index in 0..steps {
+        let time_s = step * f64::from(index);
+        let to = |[a, b]: [f64; 2], by: f64| [state[0] + by * a, state[1] + by * b];
+        let k1 = rate(time_s, state);
+        let k2 = rate(time_s + 0.5 * step, to(k1, 0.5 * step));
+        let k3 = rate(time_s + 0.5 * step, to(k2, 0.5 * step));
+        let k4 = rate(time_s + step, to(k3, step));
+        for (part, value) in state.iter_mut().enumerate() {
+            *value += step / 6.0 * (k1[part] + 2.0 * k2[part] + 2.0 * k3[part] + k4[part]);
+        }
+        peak = peak.max(state[0].abs());
+    }
+    omega * omega * peak
+}
+
+/// The probability with which a peak is at most this, of those in ascending order or not; what overturned is infinite.
+fn share(peaks: &[f64], up_to: f64) -> f64 {
+    peaks.iter().filter(|peak| **peak <= up_to).count() as f64 / peaks.len() as f64
+}
+
+/// A block rocks alike as Housner's and as a row of one block, so that the distributions of its peaks are as good as one; those of a block
+/// whose Housner restitution is halved are not. The tables of the models give the same peaks, and the distance is that of their
+/// shares.
+#[test]
+fn distributions_of_models_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
+        let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
+        write(at, &format!("{name}.csv"), &table);
+    }
+    let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
+                 both_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n[impact]\n";
+    write(at, "s.toml", suite);
+    let said = done(
+        at,
+        &["suite", "s.toml", "--hinges", "four,free", "--out", "r"],
+    );
+    assert!(
+        said.contains("distributions of the largest rotation, four links against free hinges: "),
+        "{said}"
+    );
+    let summary = json(&at.join("r/models/peaks.json"));
+    let pair = &summary["pairs"][0];
+    let table = Table::read(at.join("r/models/peaks.csv"));
+    let of = |model: &str| -> Vec<f64> {
+        let rows = table.rows.iter().filter(|row| row["model"] == *model);
+        rows.map(|row| row.number("peak_rotation_rad")).collect()
+    };
+    // Of Housner's block the critical rotation is the slenderness.
+    let slenderness_rad = (0.8_f64 / 4.0).atan();
+    let mut all = Vec::new();
+    for (name, words, column, unit_rad) in [
+        (
+            "four",
+            "four links",
+            "peak_rotation_over_critical",
+            slenderness_rad,
+        ),
+        ("free", "free hinges", "peak_rotation_rad", 1.0),
+    ] {
+        let suite = Table::read(at.join("r").join(name).join("suite.csv"));
+        let peak = |row: &Row| {
+            if row["outcome"] == "overturned" {
+                f64::INFINITY
+            } else {
+                unit_rad * row.number(column)
+            }
+        };
+        let mut peaks: Vec<f64> = suite.rows.iter().map(peak).collect();
+        peaks.sort_by(f64::total_cmp);
+        let finite = peaks.iter().filter(|peak| peak.is_finite());
+        for (told, known) in of(words).iter().zip(finite.clone()) {
+            assert!((told - known).abs() < 1e-9, "{name}: {told} {known}");
+        }
+        assert_eq!(of(words).len(), finite.count());
+        assert!((6..15).contains(&of(words).len()), "{name}");
+        all.push(peaks);
+    }
+    let finite = || all.iter().flatten().filter(|peak| peak.is_finite());
+    let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
+    let distance = pair["kolmogorov_distance"].as_f64().unwrap();
+    assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
+    // Peaks that differ by the steps of the row change places, one in fifteen at a time.
+    assert!(distance < 0.14, "{pair}");
+    for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
+        assert!(at.join("r").join(name).exists(), "{name}");
+    }
+
+    // The same of the samples of a run, with a model that is not alike.
+    let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
+        + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
+           [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";
+    write(at, "run.toml", &run);
+    let options = [
+        "run",
+        "run.toml",
+        "--hinges",
+        "four,free",
+        "--no-report",
+        "--no-repeat",
+        "--out",
+        "u",
+    ];
+    let said = String::from_utf8(crate::common::program::archrock(at, &options).stdout).unwrap();
+    assert!(said.contains("four links against free hinges: "), "{said}");
+    let table = Table::read(at.join("u/models/peaks.csv"));
+    for (name, words) in [("four", "four links"), ("free", "free hinges")] {
+        let samples = Table::read(at.join("u").join(name).join("uncertain/samples.csv"));
+        let survived = samples.rows[1..]
+            .iter()
+            .filter(|row| row["outcome"] != "overturned");
+        let rows = table.rows.iter().filter(|row| row["model"] == *words);
+        assert_eq!(survived.count(), rows.count(), "{name}");
+    }
+}

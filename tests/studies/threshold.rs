@@ -1,0 +1,737 @@
+//! Thresholds: edges compared with closed forms and published numbers, bands and gaps with plain histories, and the
+//! command as users see it.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use crate::common::program::{archrock, printed, refused, stderr, stdout};
+use crate::common::pulse;
+use crate::common::results::{Row, Table};
+use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
+use archrock::dynamics::history::Cost;
+use archrock::dynamics::model::Repetition;
+use archrock::internals::hybrid::engine::EngineError;
+use archrock::output::Figure;
+use archrock::studies::ending::Verdict;
+use archrock::studies::runner::{Progress, Runner, RunnerError};
+use archrock::studies::threshold::outcome;
+use archrock::studies::threshold::picture::draw;
+use archrock::studies::threshold::{
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, ThresholdError, thresholds,
+};
+use archrock::{
+    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
+    Scenario, SimulationError, Summary, Sway, WaveTrain,
+};
+use nalgebra::Vector2;
+use serde_json::Value;
+
+fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors) -> Threshold {
+    let models = [("model", model)];
+    let go_on = |_| ControlFlow::Continue(());
+    let mut found = thresholds(
+        &models,
+        ground,
+        &request(end_s),
+        factors,
+        &Runner::default(),
+        go_on,
+    )
+    .unwrap();
+    assert_eq!(found.len(), 1);
+    found.remove(0)
+}
+
+fn factors(from: f64, to: f64, stride: f64) -> Factors {
+    Factors::new(from, to, stride).unwrap()
+}
+
+/// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved
+/// for `x`. Finite slenderness changes that by a small multiple of its square, 1e-4 here.
+#[test]
+fn rectangular_pulses_overturn_slender_columns_from_housners_amplitude_on() {
+    let alpha: f64 = 0.01;
+    let column = Column::new(4.0, 4.0 * alpha.tan()).unwrap();
+    let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+    let p = (0.75 * GRAVITY / (2.0 / alpha.cos())).sqrt();
+    for p_t in [0.3, 1.0, 2.5_f64] {
+        let x = 0.5 + (0.25 + 0.5 / (p_t.cosh() - 1.0)).sqrt();
+        // The factor is `x` itself.
+        let ground = pulse(Pulse::Rectangular, alpha.tan(), p_t / p);
+        let threshold = found(&column, &ground, 60.0, &factors(0.5, 12.0, 0.05));
+        let lowest = threshold.lowest_factor().unwrap();
+        assert!(
+            (lowest / x - 1.0).abs() < 2.0 * EDGE_WIDTH,
+            "{p_t}: {lowest} {x}"
+        );
+        assert_eq!((threshold.bands().len(), threshold.gaps().len()), (1, 0));
+        assert_eq!(threshold.bands()[0].to_end, RangeEnd::Sampled);
+        assert_eq!(threshold.bands()[0].to, 12.0);
+    }
+}
+
+/// Amplitudes in g from which a step pair overturns within the first half cycle, by an independent integration.
+/// There may be lower bands, which overturn after impacts.
+#[test]
+fn step_pairs_overturn_seven_voussoirs_without_impact_from_the_known_amplitudes_on() {
+    let arch = seven_voussoirs();
+    for (duration_s, without_impact_g, bands) in [(0.2, 3.066, 1), (0.5, 0.820, 2), (1.0, 0.465, 2)]
+    {
+        let ground = pulse(Pulse::StepPair, 1.0, duration_s);
+        let threshold = found(&arch, &ground, 10.0, &factors(0.3, 10.0, 0.02));
+        assert_eq!(threshold.bands().len(), bands, "{duration_s}");
+        let last = threshold.bands()[bands - 1];
+        // The numbers have three decimals.
+        assert!(
+            (last.from - without_impact_g).abs() < 5e-4 + EDGE_WIDTH,
+            "{last:?}"
+        );
+        assert_eq!(
+            (last.from_end, last.to_end),
+            (RangeEnd::Edge, RangeEnd::Sampled)
+        );
+        for sample in &threshold.samples {
+            let history = sample.result.as_ref().unwrap();
+            let below = sample.factor < last.from && sample.verdict() == Some(Verdict::Overturns);
+            assert!(!below || history.impacts > Some(0), "{}", sample.factor);
+            assert!(sample.factor < last.from || history.impacts == Some(0));
+        }
+    }
+}
+
+fn overturns(model: &dyn Model, ground: &GroundMotion, end_s: f64, factor: f64) -> bool {
+    let ground = ground.scaled(factor).unwrap();
+    let summary = model.simulate(&ground, &request(end_s), None).unwrap();
+    matches!(summary.outcome, Outcome::Overturned(_))
+}
+
+/// Strong cosine pulses throw the arch the other way before it can fall: a safe island between bands.
+/// Plain histories at its ends, just beyond them and in its middle agree.
+#[test]
+fn safe_islands_of_cosine_pulses_are_gaps_between_bands() {
+    let arch = semicircle();
+    for duration_s in [0.7, 0.9, 1.2] {
+        let ground = pulse(Pulse::OneCosine, 1.0, duration_s);
+        let threshold = found(&arch, &ground, 10.0, &factors(0.1, 10.0, 0.02));
+        assert_eq!((threshold.bands().len(), threshold.gaps().len()), (2, 1));
+        let ([low, high], gap) = (
+            [threshold.bands()[0], threshold.bands()[1]],
+            threshold.gaps()[0],
+        );
+        assert!(low.to < gap.from && gap.from <= low.to * (1.0 + 2.0 * EDGE_WIDTH));
+        assert!(gap.to < high.from && high.from <= gap.to * (1.0 + 2.0 * EDGE_WIDTH));
+        assert_eq!((gap.from_end, gap.to_end), (RangeEnd::Edge, RangeEnd::Edge));
+        let overturns = |factor| overturns(&arch, &ground, 10.0, factor);
+        for (range, expected) in [(low, true), (gap, false), (high, true)] {
+            let FactorRange { from, to, .. } = range;
+            for factor in [from, 0.5 * (from + to), to] {
+                assert_eq!(overturns(factor), expected, "{duration_s} {factor}");
+            }
+        }
+        assert!(!overturns(low.from * (1.0 - 1.01 * EDGE_WIDTH)));
+        assert_eq!(threshold.lowest_factor(), Some(low.from));
+    }
+}
+
+/// Half the amplitude and twice the factors give the same motion, exactly, because they are powers of two.
+#[test]
+fn factor_times_amplitude_counts() {
+    let arch = semicircle();
+    let whole = pulse(Pulse::OneCosine, 1.0, 0.9);
+    let half = pulse(Pulse::OneCosine, 0.5, 0.9);
+    let a = found(&arch, &whole, 10.0, &factors(0.2, 2.0, 0.1));
+    let b = found(&arch, &half, 10.0, &factors(0.4, 4.0, 0.1));
+    for (a, b) in pairs(&a.samples, &b.samples) {
+        assert!(2.0 * a.factor == b.factor && a.result == b.result);
+    }
+    let doubled = |range: &FactorRange| FactorRange {
+        from: 2.0 * range.from,
+        to: 2.0 * range.to,
+        ..*range
+    };
+    assert!(!a.bands().is_empty());
+    assert_eq!(a.bands().iter().map(doubled).collect::<Vec<_>>(), b.bands());
+    assert_eq!(a.gaps().iter().map(doubled).collect::<Vec<_>>(), b.gaps());
+}
+
+/// If vertical motion is so strong that nothing presses the column on the ground, there is no history; the known
+/// range ends there.
+#[test]
+fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
+    let column = Column::new(4.0, 0.8).unwrap();
+    let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+    let amplitude = Vector2::new(0.3, 0.2) * GRAVITY;
+    let train = WaveTrain::default();
+    let ground = GroundMotion::pulse_along(Pulse::OneSine, amplitude, 1.2, 0.0, train).unwrap();
+    let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
+    for sample in &threshold.samples {
+        assert_eq!(
+            outcome(sample) == "ground_falls",
+            sample.factor >= 5.0,
+            "{}",
+            sample.factor
+        );
+    }
+    let band = threshold.bands()[threshold.bands().len() - 1];
+    assert_eq!(band.to_end, RangeEnd::Unknown);
+    assert!(band.to < 5.0 && band.to > 4.5);
+}
+
+/// Overturns or not as a function of the peak ground acceleration, in m/s2; or fails.
+#[derive(Debug)]
+struct Rule(fn(f64) -> Option<bool>);
+
+impl Rule {
+    fn new(rule: fn(f64) -> Option<bool>) -> Self {
+        Self(rule)
+    }
+}
+
+impl Model for Rule {
+    fn bodies(&self) -> Vec<String> {
+        vec![String::new()]
+    }
+
+    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
+        None
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        _: &Request,
+        _: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        let overturns = (self.0)(ground.peaks_m_s2(f64::INFINITY).x);
+        let failure = EngineError::TooManyTransitions {
+            time_s: 1.0,
+            max_transitions: 1,
+        };
+        let outcome = match overturns.ok_or(failure)? {
+            true => Outcome::Overturned(Sway::Left),
+            false => Outcome::Rest,
+        };
+        Ok(Summary {
+            outcome,
+            outcome_time_s: 1.0,
+            end_s: 1.0,
+            impacts: 0,
+            peak_rotations_rad: vec![0.0],
+            peak_over_critical: None,
+            peak_potential_over_barrier: None,
+            energy_defect_ratio: 0.0,
+            thrust: None,
+            cost: Cost::default(),
+            row: None,
+        })
+    }
+}
+
+/// A rule, and another one for its repetition.
+#[derive(Debug)]
+struct Doubtful {
+    own: fn(f64) -> Option<bool>,
+    repeated: fn(f64) -> Option<bool>,
+}
+
+impl Model for Doubtful {
+    fn bodies(&self) -> Vec<String> {
+        vec![String::new()]
+    }
+
+    fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
+        None
+    }
+
+    fn repetitions(&self) -> Vec<Repetition> {
+        let model = Box::new(Rule::new(self.repeated));
+        let name = "another rule";
+        vec![Repetition { name, model }]
+    }
+
+    fn simulate(
+        &self,
+        ground: &GroundMotion,
+        request: &Request,
+        recorder: Option<&mut dyn Recorder>,
+    ) -> Result<Summary, SimulationError> {
+        Rule::new(self.own).simulate(ground, request, recorder)
+    }
+}
+
+/// Where the repetition disagrees or fails, the factor is neither overturned nor survived. The edges of these ranges are found like
+/// others, even if neighbouring samples lie on both sides of the range.
+#[test]
+fn uncertain_factors_are_ranges_of_their_own() {
+    let doubtful = Doubtful {
+        own: |x| Some((2.0..3.0).contains(&x) || x >= 4.0),
+        // Overturns a little earlier, and later; and fails in one range.
+        repeated: |x| {
+            let fails = (6.0..6.5).contains(&x);
+            (!fails).then_some((1.99..3.0).contains(&x) || x >= 4.4)
+        },
+    };
+    let threshold = found(&doubtful, &unit_pulse(), 1.0, &factors(1.0, 8.0, 0.1));
+    let expected = [
+        (Verdict::Survives, 1.0, 1.99),
+        (Verdict::Uncertain, 1.99, 2.0),
+        (Verdict::Overturns, 2.0, 3.0),
+        (Verdict::Survives, 3.0, 4.0),
+        (Verdict::Uncertain, 4.0, 4.4),
+        (Verdict::Overturns, 4.4, 6.0),
+        (Verdict::Uncertain, 6.0, 6.5),
+        (Verdict::Overturns, 6.5, 8.0),
+    ];
+    assert_eq!(threshold.ranges.len(), expected.len());
+    for ((verdict, range), (other, from, to)) in pairs(&threshold.ranges, &expected) {
+        assert_eq!(verdict, other);
+        assert!((range.from / from - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+        assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+    }
+    assert_eq!((threshold.bands().len(), threshold.gaps().len()), (3, 1));
+    // No sample of the strides lies between 1.99 and 2: the search met one.
+    let strides = factors(1.0, 8.0, 0.1).values();
+    let met: Vec<_> = threshold
+        .samples
+        .iter()
+        .filter(|sample| !strides.contains(&sample.factor))
+        .collect();
+    assert_eq!(met.len(), 1);
+    assert_eq!(met[0].verdict(), Some(Verdict::Uncertain));
+    let reasons: BTreeSet<_> = threshold
+        .samples
+        .iter()
+        .filter_map(|sample| sample.result.as_ref().unwrap().uncertain.clone())
+        .collect();
+    let failed = "overturns; failed with another rule: more than 1 transitions by 1.0 s";
+    assert_eq!(reasons.len(), 3);
+    assert!(reasons.contains("survives; overturns with another rule"));
+    assert!(reasons.contains("overturns; survives with another rule"));
+    assert!(
+        reasons.iter().any(|reason| reason.starts_with(failed)),
+        "{reasons:?}"
+    );
+    assert_eq!(threshold.lowest_factor(), Some(threshold.bands()[0].from));
+
+    let picture = draw(
+        Figure::SCREEN,
+        "Title",
+        0.1,
+        &factors(1.0, 8.0, 0.1),
+        &[threshold],
+    );
+    assert_eq!(picture.matches("data-name=\"model uncertain\"").count(), 3);
+    assert!(picture.contains("uncertain whether it overturns"));
+}
+
+fn unit_pulse() -> GroundMotion {
+    GroundMotion::pulse(Pulse::Rectangular, 1.0, 1.0, 0.0).unwrap()
+}
+
+#[test]
+fn bands_and_gaps_of_any_models_side_by_side() {
+    let islands = Rule::new(|x| Some((2.0..3.0).contains(&x) || x >= 4.0));
+    let always = Rule::new(|_| Some(true));
+    let never = Rule::new(|_| Some(false));
+    let models: [(&str, &dyn Model); 3] = [
+        ("islands", &islands),
+        ("always", &always),
+        ("never", &never),
+    ];
+    let all = factors(1.0, 8.0, 0.1);
+    let mut last = None;
+    let runner = Runner::default();
+    let found = thresholds(
+        &models,
+        &unit_pulse(),
+        &request(1.0),
+        &all,
+        &runner,
+        |progress| {
+            last = Some((progress.done, progress.all));
+            ControlFlow::Continue(())
+        },
+    )
+    .unwrap();
+    let cases = 3 * all.values().len() + 3;
+    assert_eq!(last, Some((cases, cases)));
+    let names: Vec<_> = found
+        .iter()
+        .map(|threshold| threshold.model.as_str())
+        .collect();
+    assert_eq!(names, ["islands", "always", "never"]);
+    let near = |range: FactorRange, from: f64, to: f64| {
+        (range.from / from - 1.0).abs() < EDGE_WIDTH && (range.to / to - 1.0).abs() < EDGE_WIDTH
+    };
+    let islands = &found[0];
+    assert_eq!((islands.bands().len(), islands.gaps().len()), (2, 1));
+    assert!(near(islands.bands()[0], 2.0, 3.0) && near(islands.bands()[1], 4.0, 8.0));
+    assert!(near(islands.gaps()[0], 3.0, 4.0));
+    // Each end has the outcome of its range.
+    assert!(islands.bands()[0].from >= 2.0 && islands.bands()[0].to < 3.0);
+    assert!(islands.gaps()[0].from >= 3.0 && islands.gaps()[0].to < 4.0);
+    let whole = FactorRange {
+        from: 1.0,
+        to: 8.0,
+        from_end: RangeEnd::Sampled,
+        to_end: RangeEnd::Sampled,
+    };
+    assert_eq!(found[1].bands(), [whole]);
+    assert!(
+        found[1].gaps().is_empty() && found[2].gaps().is_empty() && found[2].bands().is_empty()
+    );
+    assert_eq!(found[2].lowest_factor(), None);
+}
+
+#[test]
+fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
+    // One failure among the samples, and one only in the search for the edge near 4.05.
+    let rule = Rule::new(|x| match x {
+        _ if (2.9..3.1).contains(&x) => None,
+        _ if (4.04..4.06).contains(&x) => None,
+        _ => Some((2.0..4.05).contains(&x)),
+    });
+    let threshold = found(&rule, &unit_pulse(), 1.0, &factors(1.0, 8.0, 0.03));
+    let failed: Vec<_> = threshold
+        .samples
+        .iter()
+        .filter(|sample| sample.result.is_err())
+        .collect();
+    assert!(failed.iter().all(|sample| outcome(sample) == "failed"));
+    assert!(
+        failed[0]
+            .result
+            .as_ref()
+            .unwrap_err()
+            .to_string()
+            .contains("transitions")
+    );
+    assert!(
+        failed
+            .iter()
+            .any(|sample| (4.04..4.06).contains(&sample.factor))
+    );
+    assert!(threshold.samples.is_sorted_by(|a, b| a.factor < b.factor));
+    let ends: Vec<_> = threshold
+        .bands()
+        .iter()
+        .map(|band| (band.from_end, band.to_end))
+        .collect();
+    assert_eq!(
+        ends,
+        [
+            (RangeEnd::Edge, RangeEnd::Unknown),
+            (RangeEnd::Unknown, RangeEnd::Unknown)
+        ]
+    );
+    assert!(threshold.bands()[0].to < 2.9 && threshold.bands()[1].from >= 3.1);
+    // An unknown range is not safe.
+    assert!(threshold.gaps().is_empty());
+}
+
+#[test]
+fn the_study_can_be_cancelled_and_refuses_what_is_not_possible() {
+    let rule = Rule::new(|_| {
+        thread::sleep(Duration::from_millis(1));
+        Some(false)
+    });
+    let models: [(&str, &dyn Model); 1] = [("rule", &rule)];
+    let all = factors(1.0, 8.0, 0.001);
+    let runner = Runner::default();
+    let stop = |_: Progress| ControlFlow::Break(());
+    let error = thresholds(&models, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
+    let ThresholdError::Runner(RunnerError::Cancelled(progress)) = error else {
+        panic!("{error}");
+    };
+    assert!(progress.done < 1000 && progress.all == all.values().len());
+    let error = thresholds(
+        &models,
+        &unit_pulse(),
+        &request(f64::NAN),
+        &all,
+        &runner,
+        stop,
+    )
+    .unwrap_err();
+    assert!(matches!(error, ThresholdError::Argument(error) if error.argument == "end_s"));
+}
+
+const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
+                        [ground.one_cosine]\namplitude_g = 0.5\nduration_s = 0.9\n";
+
+fn file(folder: &Path, text: &str) {
+    fs::write(folder.join("s.toml"), text).unwrap();
+}
+
+#[test]
+fn files_agree_and_threads_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, SCENARIO);
+    let said = printed(folder, &["threshold", "s.toml", "--threads", "1"]);
+    // The semicircle overturns from 0.266 to 0.990 g and from 1.26 g on.
+    assert!(
+        said.contains("overturns from factor 0.5325 (0.2662 g) to 1.98"),
+        "{said}"
+    );
+    assert!(said.contains("survives again up to 2.52"), "{said}");
+    assert!(said.contains("in strides of 2 %"), "{said}");
+    let json = [
+        "--out",
+        "r",
+        "--threads",
+        "3",
+        "--format",
+        "json",
+        "--quiet",
+    ];
+    let result = printed(folder, &[&["threshold", "s.toml"][..], &json].concat());
+    let read = |folder_name: &str, name: &str| {
+        fs::read_to_string(folder.join(folder_name).join(name)).unwrap()
+    };
+    for name in ["threshold.json", "threshold.csv", "threshold.svg"] {
+        assert!(read("results/s", name) == read("r", name), "{name}");
+    }
+    assert_eq!(result, read("r", "threshold.json"));
+
+    let json: Value = serde_json::from_str(&result).unwrap();
+    assert_eq!(
+        (&json["program"], &json["models"][0]["model"]),
+        (&"archrock".into(), &"four_links".into())
+    );
+    assert_eq!(json["peak_acceleration_g"], 0.5);
+    let model = &json["models"][0];
+    let (bands, gaps) = (
+        model["bands"].as_array().unwrap(),
+        model["gaps"].as_array().unwrap(),
+    );
+    assert_eq!((bands.len(), gaps.len()), (2, 1));
+    assert_eq!(model["lowest_factor"], bands[0]["from"]);
+    let rows = Table::read(folder.join("r/threshold.csv")).rows;
+    let samples = model["samples"].as_array().unwrap();
+    assert_eq!((rows.len(), samples.len()), (234, 234));
+    for (row, sample) in pairs(&rows, samples) {
+        assert_eq!(&row[0], "four_links");
+        assert_eq!(
+            row[1].parse::<f64>().unwrap(),
+            sample["factor"].as_f64().unwrap()
+        );
+        assert_eq!(&row[2], sample["outcome"].as_str().unwrap());
+        assert_eq!(
+            &row[3],
+            sample["overturning_sway"].as_str().unwrap_or_default()
+        );
+        assert_eq!(
+            row[4].parse::<u64>().unwrap(),
+            sample["impacts"].as_u64().unwrap()
+        );
+        let peak = sample["peak_rotation_over_critical"].as_f64().unwrap();
+        assert_eq!(row[6].parse::<f64>().unwrap(), peak);
+    }
+
+    let svg = read("r", "threshold.svg");
+    let document = roxmltree::Document::parse(&svg).unwrap();
+    let named = |start: &str| {
+        let nodes = document.descendants();
+        let names = nodes.filter_map(|node| node.attribute("data-name"));
+        names.filter(|name| name.starts_with(start)).count()
+    };
+    // A curve for each stretch of factors that it survives.
+    let overturns = |row: &Row| row[2] == *"overturned";
+    let stretches = rows.chunk_by(|a, b| overturns(a) == overturns(b));
+    let survived = stretches.filter(|stretch| !overturns(&stretch[0]) && stretch.len() > 1);
+    assert_eq!(named("four_links peak"), survived.count());
+    let runs = rows.chunk_by(|a, b| {
+        let kind = |row: &Row| {
+            (
+                row[2].to_owned(),
+                row[2] == *"overturned",
+                row[4].to_owned(),
+            )
+        };
+        let (a, b) = (kind(a), kind(b));
+        a.0 == b.0
+            && (!a.1
+                || a.2 == b.2
+                || [a.2, b.2]
+                    .iter()
+                    .all(|count| count.parse::<u32>().unwrap() > 2))
+    });
+    let bands = named("four_links ") - named("four_links peak");
+    assert_eq!(bands, runs.count());
+    for edge in ["0.5325", "factor on the ground motion (1: 0.5000 g)"] {
+        assert!(svg.contains(&format!(">{edge}<")), "{edge}");
+    }
+}
+
+#[test]
+fn strides_and_ends_can_be_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    file(folder, SCENARIO);
+    let arguments = "threshold s.toml --from 1 --to 2 --stride 0.25 --out r";
+    let said = printed(folder, &arguments.split(' ').collect::<Vec<_>>());
+    assert!(
+        said.contains("overturns at the smallest factor already"),
+        "{said}"
+    );
+    assert!(said.contains("survives from there on"), "{said}");
+    let factors = Table::read(folder.join("r/threshold.csv")).numbers("factor");
+    assert_eq!(factors, [1.0, 1.25, 1.5625, 1.953125, 2.0]);
+    let said = printed(
+        folder,
+        &["threshold", "s.toml", "--to", "0.4", "--out", "r"],
+    );
+    assert!(
+        said.contains("does not overturn up to factor 0.4000 (0.2000 g)"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_has_no_threshold_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";
+    let initial = format!("{SCENARIO}[initial]\nsway = \"left\"\nrotation_rad = 0.01\n");
+    let falling = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = 0.3\n\
+                   vertical_amplitude_g = 0.5\nduration_s = 1.0\n";
+    for (text, more, words) in [
+        (arch, "", "needs a ground motion"),
+        (&initial, "", "leave [initial] out"),
+        (falling, "--from 3", "falls as fast as a free body"),
+        (SCENARIO, "--from 3 --to 2", "`to = 2.0` is not allowed"),
+        (SCENARIO, "--stride 0", "`stride = 0.0` is not allowed"),
+        (SCENARIO, "--from nan", "`from = NaN` is not allowed"),
+        (SCENARIO, "--threads 0", "--threads"),
+    ] {
+        file(folder, text);
+        let arguments = format!("threshold s.toml {more}");
+        refused(
+            folder,
+            &arguments.split_whitespace().collect::<Vec<_>>(),
+            &[words],
+        );
+        assert!(!folder.join("results").exists());
+    }
+    file(folder, falling);
+    let said = printed(folder, &["threshold", "s.toml", "--from", "1"]);
+    assert!(
+        said.contains("the ground falls as fast as a free body"),
+        "{said}"
+    );
+}
+
+/// The result of `threshold` for each model, by the name of the model.
+fn models(folder: &Path, arguments: &str) -> Vec<(String, Value)> {
+    models_and_remarks(folder, arguments).0
+}
+
+fn models_and_remarks(folder: &Path, arguments: &str) -> (Vec<(String, Value)>, String) {
+    let all = format!("threshold s.toml --from 0.5 --to 8 --stride 1 --format json {arguments}");
+    let output = archrock(folder, &all.split_whitespace().collect::<Vec<_>>());
+    let json: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let models = json["models"].as_array().unwrap().iter();
+    let models = models
+        .map(|model| (model["model"].as_str().unwrap().to_owned(), model.clone()))
+        .collect();
+    (models, stderr(&output))
+}
+
+fn names(models: &[(String, Value)]) -> Vec<&str> {
+    models.iter().map(|(name, _)| name.as_str()).collect()
+}
+
+/// With both models, each has the scenario from which it was computed, and the same results as alone.
+#[test]
+fn both_models_have_their_own_scenario() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path();
+    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 12.0\n";
+    file(
+        folder,
+        &SCENARIO.replace("[ground", &format!("voussoirs = 7\n{impact}[ground")),
+    );
+    let (both, said_of_both) = models_and_remarks(folder, "--hinges both --out both");
+    assert_eq!(names(&both), ["four_links", "free_hinges"]);
+    let [(_, four), (_, free)] = &both[..] else {
+        panic!("two models")
+    };
+    assert_eq!(four["scenario"]["impact"]["model"], "same_sections");
+    assert_eq!(four["scenario"].get("free_hinges"), None);
+    assert!(free["scenario"]["free_hinges"].is_object());
+    assert_eq!(free["scenario"].get("impact"), None);
+    assert_ne!(four["samples"], free["samples"]);
+    let (four, said_of_four) = models_and_remarks(folder, "--hinges four --out four");
+    let (free, said_of_free) = models_and_remarks(folder, "--hinges free --out free");
+    assert_eq!([&four[..], &free[..]], [&both[..1], &both[1..]]);
+    assert_eq!(models(folder, "--out default"), both[..1]);
+    let table = fs::read_to_string(folder.join("both/threshold.csv")).unwrap();
+    let of = |model: &str| table.lines().filter(|line| line.starts_with(model)).count();
+    assert_eq!((of("four_links,"), of("free_hinges,")), (5, 5));
+    // The remark that the scenario's impact model is ignored appears if blocks decide impacts, and only then.
+    for (said, ignored) in [
+        (said_of_four, false),
+        (said_of_free, true),
+        (said_of_both, true),
+    ] {
+        assert_eq!(
+            said.contains("[impact] is ignored: with free hinges"),
+            ignored,
+            "{said}"
+        );
+    }
+}
+
+/// Drums are blocks with free hinges. Housner's column has no drums, so `four` and `both` are not available.
+#[test]
+fn a_column_of_drums_has_a_threshold_with_free_hinges() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = root.path();
+    let drums = |free_hinges: &str| {
+        format!(
+            "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n{free_hinges}[ground.one_sine]\n\
+             amplitude_g = 0.3\nduration_s = 0.8\n[simulation]\nduration_s = 4.0\n"
+        )
+    };
+    file(folder, &drums(""));
+    let chosen = models(folder, "--hinges free --out free");
+    assert_eq!(names(&chosen), ["free_hinges"]);
+    let (_, drummed) = &chosen[0];
+    let heights_m = drummed["scenario"]["column"]["drum_heights_m"].as_array();
+    assert_eq!(heights_m.map(Vec::len), Some(3));
+    let words = "`drums = 3` needs a table [free_hinges]";
+    for more in [&[][..], &["--hinges", "four"], &["--hinges", "both"]] {
+        refused(folder, &[&["threshold", "s.toml"], more].concat(), &[words]);
+    }
+    file(folder, &drums("[free_hinges]\n"));
+    assert_eq!(models(folder, "--out default"), chosen);
+    for hinges in ["four", "both"] {
+        refused(
+            folder,
+            &["threshold", "s.toml", "--hinges", hinges],
+            &["`drums = 3`"],
+        );
+    }
+    // Its samples equal plain histories.
+    let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
+    let model = scenario.model().unwrap();
+    let samples = drummed["samples"].as_array().unwrap();
+    assert_eq!(samples.len(), 5);
+    for sample in samples {
+        let factor = sample["factor"].as_f64().unwrap();
+        let ground = scenario.ground_motion().scaled(factor).unwrap();
+        let summary = model.simulate(&ground, &scenario.request(), None).unwrap();
+        assert_eq!(sample["outcome"], summary.outcome.name());
+        assert_eq!(sample["peak_rotation_rad"], summary.largest_rotation_rad());
+    }
+    let outcomes: Vec<_> = samples.iter().map(|sample| &sample["outcome"]).collect();
+    assert!(
+        outcomes.contains(&&"overturned".into()) && outcomes[0] != "overturned",
+        "{outcomes:?}"
+    );
+}

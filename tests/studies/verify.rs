@@ -1,0 +1,873 @@
+//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the
+//! ground and at a height; spectra from files; what cannot be checked, and why.
+
+use crate::common::browser;
+use crate::common::parsed;
+use crate::common::program::{archrock, printed as print_of, refused, scenarios};
+use crate::common::{ARCH, COLUMN};
+use archrock::scenario::LimitState;
+use archrock::studies::verify::{
+    ByDisplacement, Check, Method, NoCheck, SideCheck, page, to_json, words,
+};
+use archrock::{Scenario, Sway};
+use serde_json::Value;
+
+const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n\
+    [demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
+    [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n\
+    [demand.slc]\nag_g = 0.32\nf0 = 2.45\ntc_star_s = 0.36\n";
+const HEIGHT: &str = "[demand.height]\nmodes = [{ gamma = 1.2857142857142858, psi = 0.75, \
+    sld = { t_s = 0.30, damping_percent = 5 }, slv = { t_s = 0.45, damping_percent = 10 }, \
+    slc = { t_s = 0.60, damping_percent = 15 } }]\n";
+
+fn on_piers() -> String {
+    std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
+}
+
+fn check(text: &str) -> Check {
+    Check::new(&parsed(text)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn side(check: &Check, state: LimitState, sway: Sway) -> &SideCheck {
+    let one = check.states.iter().find(|one| one.state == state).unwrap();
+    one.sides.iter().find(|side| side.sway == sway).unwrap()
+}
+
+fn displacement(check: &Check, state: LimitState, sway: Sway) -> ByDisplacement {
+    side(check, state, sway).displacement.unwrap()
+}
+
+/// Asserts a number to its last printed digit: half a unit, plus a millionth for the straight lines between a hundred points of
+/// the curve.
+#[track_caller]
+fn printed(value: f64, expected: &str) {
+    let digits = expected.split_once('.').map_or(0, |(_, after)| after.len());
+    let unit = 0.1_f64.powi(i32::try_from(digits).unwrap());
+    let known: f64 = expected.parse().unwrap();
+    let allowed = 0.5 * unit + 5e-6 * known;
+    assert!((value - known).abs() < allowed, "{value:?} {expected}");
+}
+
+/// The structures, each with a side.
+fn cases() -> [(String, Sway); 4] {
+    [
+        (COLUMN.to_owned(), Sway::Right),
+        (ARCH.to_owned(), Sway::Right),
+        (on_piers(), Sway::Right),
+        (on_piers(), Sway::Left),
+    ]
+}
+
+#[test]
+fn c8_7_1_2_1_5_and_7_activation_and_its_multiple() {
+    let expected = [
+        ["0.14815", "0.12346", "0.05308", "0.98765", "0.42465"],
+        ["0.12192", "0.10160", "0.04368", "0.81283", "0.34948"],
+        ["0.22241", "0.18534", "0.07969", "1.48272", "0.63750"],
+        ["0.12906", "0.10755", "0.04624", "0.86037", "0.36992"],
+    ];
+    for ((structure, sway), [a0, ground, height, zeta, zeta_height]) in cases().iter().zip(expected)
+    {
+        let at_ground = check(&format!("{structure}{DEMAND}"));
+        let at_height = check(&format!("{structure}{DEMAND}{HEIGHT}"));
+        printed(
+            at_ground.activation_g(at_ground.mechanism(*sway).unwrap()),
+            a0,
+        );
+        for (check, ag_g, zeta_e) in [(at_ground, ground, zeta), (at_height, height, zeta_height)] {
+            let sld = side(&check, LimitState::Sld, *sway).activation.unwrap();
+            printed(sld.margin.ag_capacity_g.unwrap(), ag_g);
+            let slv = side(&check, LimitState::Slv, *sway).simplified.unwrap();
+            printed(slv.margin.zeta_e, zeta_e);
+            assert!(side(&check, LimitState::Slc, *sway).simplified.is_none());
+        }
+    }
+}
+
+#[test]
+fn c8_7_1_2_1_8_displacements_on_the_ground_and_at_a_height() {
+    // d, a, T; on the ground: demand, a_g capacity, zeta_E, a_g with varying shape; at the height: demand, a_g capacity, zeta_E.
+    let expected = [
+        [
+            "0.16000", "0.087773", "2.27513", "0.16391", "0.24404", "0.97616", "0.24254",
+            "0.20832", "0.19201", "0.76805",
+        ],
+        [
+            "0.24000", "0.058288", "3.17509", "0.24177", "0.31766", "0.99269", "0.31798",
+            "0.37680", "0.20382", "0.63694",
+        ],
+        [
+            "0.04981", "0.070051", "1.42097", "0.10237", "0.12165", "0.48659", "0.11759",
+            "0.15994", "0.07786", "0.31144",
+        ],
+        [
+            "0.07472", "0.045812", "1.99832", "0.16775", "0.14253", "0.44541", "0.12904",
+            "0.27681", "0.08638", "0.26992",
+        ],
+        [
+            "0.17597", "0.128656", "1.97073", "0.14198", "0.30985", "1.23940", "0.33258",
+            "0.19117", "0.23012", "0.92049",
+        ],
+        [
+            "0.26395", "0.085181", "2.75443", "0.23123", "0.36529", "1.14153", "0.38986",
+            "0.34212", "0.24688", "0.77152",
+        ],
+        [
+            "0.05457", "0.073256", "1.45435", "0.10478", "0.13020", "0.52080", "0.12586",
+            "0.16183", "0.08430", "0.33718",
+        ],
+        [
+            "0.08185", "0.047724", "2.04921", "0.17202", "0.15226", "0.47581", "0.13785",
+            "0.28136", "0.09309", "0.29091",
+        ],
+    ];
+    let mut rows = expected.iter();
+    for (structure, sway) in cases() {
+        let ground = check(&format!("{structure}{DEMAND}"));
+        let height = check(&format!("{structure}{DEMAND}{HEIGHT}"));
+        for state in [LimitState::Slv, LimitState::Slc] {
+            let [d, a, t, demand, ag, zeta, following, demand_h, ag_h, zeta_h] =
+                rows.next().unwrap();
+            let own = displacement(&ground, state, sway);
+            printed(own.capacity_m, d);
+            printed(own.acceleration_g, a);
+            printed(own.period_s, t);
+            printed(own.demand_m, demand);
+            printed(own.displacement.ag_capacity_g.unwrap(), ag);
+            printed(own.margin.zeta_e, zeta);
+            printed(own.ag_following_g.unwrap(), following);
+            let above = displacement(&height, state, sway);
+            assert_eq!(
+                (above.capacity_m, above.period_s),
+                (own.capacity_m, own.period_s)
+            );
+            printed(above.demand_m, demand_h);
+            printed(above.displacement.ag_capacity_g.unwrap(), ag_h);
+            printed(above.margin.zeta_e, zeta_h);
+            assert_eq!(above.ag_following_g, None);
+        }
+    }
+}
+
+#[test]
+fn c8_7_1_2_1_the_control_point_at_the_crown() {
+    let d0 = ["0.39612", "0.13007", "0.48103", "0.14566"];
+    let zeta_e = ["0.97332", "0.49300", "1.27654", "0.53135"];
+    for (((structure, sway), d0), zeta_e) in cases().iter().zip(d0).zip(zeta_e) {
+        let check = check(&format!("{structure}{DEMAND}"));
+        let way = check.mechanism(*sway).unwrap().way.as_ref().unwrap();
+        let crown = way.crown.as_ref().unwrap();
+        printed(crown.end().oscillator_displacement_m, d0);
+        let own = displacement(&check, LimitState::Slv, *sway);
+        printed(own.zeta_e_crown.unwrap(), zeta_e);
+        // The displacement of the crown itself does not depend on the grouping of masses.
+        let scenario = parsed(&format!("{structure}{DEMAND}"));
+        let grouped = archrock::studies::capacity::capacity(&scenario, None).unwrap();
+        let grouped = grouped.to(*sway);
+        let ratio = grouped.end().displacement_m / crown.end().displacement_m;
+        assert!((ratio - 1.0).abs() < 1e-12);
+    }
+}
+
+/// The worse side counts; if a wall holds the other side, only one does.
+#[test]
+fn the_worse_side_counts_unless_one_is_held() {
+    let text = format!("{}{DEMAND}", on_piers());
+    let both = check(&text);
+    let slv = both
+        .states
+        .iter()
+        .find(|one| one.state == LimitState::Slv)
+        .unwrap();
+    let (sway, method, margin) = slv.governing().unwrap();
+    assert_eq!((sway, method), (Sway::Left, Method::Displacement));
+    printed(margin.zeta_e, "0.52080");
+    printed(both.zeta_e(), "0.47581");
+    let right = check(&format!("{text}[verify]\nsides = 'right'\n"));
+    assert_eq!(right.mechanisms.len(), 1);
+    printed(right.zeta_e(), "1.14153");
+    assert!(words(&right).contains("SLV  passed: zeta_E 1.23940 to the right, by displacement"));
+}
+
+/// T_0 of C8.7.1.7, the acceleration demanded at that period, and the end of the elastic branch. The check by displacement, which
+/// is far beyond that branch, is that of a column held by walls.
+#[test]
+fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
+    let text = format!("{COLUMN}{DEMAND}");
+    let given =
+        "[verify.free_standing]\nkappa = 6.2\nlength_m = 4\nthickness_m = 0.8\nmodulus_gpa = 1.5\n";
+    let free = check(&format!("{text}{given}"));
+    printed(free.t0_s.unwrap(), "0.14318");
+    let sld = side(&free, LimitState::Sld, Sway::Right)
+        .activation
+        .unwrap();
+    printed(sld.demand_g, "0.288");
+    printed(sld.margin.ag_capacity_g.unwrap(), "0.05144");
+    let way = free.mechanisms[0].way.as_ref().unwrap();
+    let (d_y_m, a_y_g) = free.yielding(way).unwrap();
+    printed(d_y_m, "0.000753");
+    let circular = free.t0_s.unwrap() / (2.0 * std::f64::consts::PI);
+    assert!((d_y_m / (circular * circular * 9.81) / a_y_g - 1.0).abs() < 1e-9);
+    let held = check(&text);
+    let slv = |check: &Check| {
+        displacement(check, LimitState::Slv, Sway::Left)
+            .margin
+            .zeta_e
+    };
+    assert_eq!(slv(&free), slv(&held));
+    let known = check(&format!(
+        "{text}[verify]\nfree_standing = {{ t0_s = 0.14318 }}\n"
+    ));
+    let ag_g = |check: &Check| {
+        side(check, LimitState::Sld, Sway::Left)
+            .activation
+            .unwrap()
+            .margin
+            .ag_capacity_g
+            .unwrap()
+    };
+    assert!((ag_g(&known) / ag_g(&free) - 1.0).abs() < 1e-9);
+}
+
+/// A stout column has a displacement capacity that it reaches before motion starts: then the onset counts.
+#[test]
+fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
+    let text = format!("[column]\nheight_m = 0.3\nwidth_m = 0.12\n{DEMAND}");
+    let check = check(&text);
+    let slv = displacement(&check, LimitState::Slv, Sway::Right);
+    let start_g = slv.activation_ag_g.unwrap();
+    assert!(start_g > slv.displacement.ag_capacity_g.unwrap());
+    assert!((slv.margin.zeta_e - start_g / 0.25).abs() < 1e-12);
+    let said = words(&check);
+    assert!(said.contains("the activation counts"), "{said}");
+    assert!(said.contains("to either side, by activation"), "{said}");
+    let json = to_json(&parsed(&text), &check).unwrap();
+    assert_eq!(json["states"]["slv"]["method"], "activation");
+    assert_eq!(json["states"]["slv"]["side"], "either");
+    // The row of the page has the accelerations that are compared, not the displacements.
+    let html = page(&parsed(&text), &check, "2025-01-31");
+    let row = html
+        .split("<tr class=\"counts\">")
+        .find(|row| row.contains(">SLV<"));
+    let row = row.unwrap().split("</tr>").next().unwrap();
+    assert!(
+        row.contains(&format!("{:.4}</data> g</td>", start_g)),
+        "{row}"
+    );
+    assert!(
+        row.contains("0.2500</data> g</td>") && !row.contains(" m</td>"),
+        "{row}"
+    );
+}
+
+/// The table of the file; the code's own numbers for it are FC 1.35, 0.4 d0, 1.68, 8 %.
+const POINTS: &str =
+    "period_s,acceleration_g\n0,0.29\n0.15,0.70\n0.5,0.70\n1,0.35\n2,0.20\n2.6,0.08\n4,0.03\n";
+
+fn in_folder(structure: &str, demand: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("slv.csv"), POINTS).unwrap();
+    std::fs::write(folder.path().join("a.toml"), format!("{structure}{demand}")).unwrap();
+    folder
+}
+
+#[test]
+fn a_spectrum_of_points_names_no_clause() {
+    let demand = "[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n";
+    let folder = in_folder(COLUMN, demand);
+    let path = folder.path().join("a.toml");
+    let scenario = Scenario::read(&path).unwrap();
+    let check = Check::new(&scenario).unwrap();
+    let slv = displacement(&check, LimitState::Slv, Sway::Right);
+    printed(slv.demand_m, "0.17435");
+    printed(slv.displacement.zeta_e, "0.91768");
+    let sld = side(&check, LimitState::Sld, Sway::Right)
+        .activation
+        .unwrap();
+    assert!(
+        (
+            sld.demand_g,
+            side(&check, LimitState::Slv, Sway::Left).simplified
+        ) == (0.29, None)
+    );
+    let json = to_json(&scenario, &check).unwrap();
+    assert_eq!(json["formulas"], Value::Null);
+    assert!(words(&check).contains("no clause is named"));
+    // The resolved scenario reads back the same, in its folder.
+    let resolved = folder.path().join("b.toml");
+    std::fs::write(&resolved, scenario.to_toml()).unwrap();
+    assert_eq!(Scenario::read(&resolved).unwrap(), scenario);
+    // Other rules: a without FC, T by 1.6 pi, d divided.
+    let rule = "state = { part_of_d0 = 0.4, period_factor = 1.6, damping_percent = 5, divide_acceleration = 1, \
+                divide_displacement = 1.55 }\n";
+    let folder = in_folder(
+        COLUMN,
+        &format!("[demand.slv]\nspectrum = 'slv.csv'\n{rule}"),
+    );
+    let check = Check::new(&Scenario::read(&folder.path().join("a.toml")).unwrap()).unwrap();
+    let other = displacement(&check, LimitState::Slv, Sway::Right);
+    assert!((other.capacity_m * 1.55 / slv.capacity_m - 1.0).abs() < 1e-12);
+    let period_s = slv.period_s / 1.68 * 1.6 / 1.35_f64.sqrt();
+    assert!((other.period_s / period_s - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn spectra_of_points_are_refused_where_they_end() {
+    let short = POINTS.replace("2.6,0.08\n4,0.03\n", "");
+    let early = POINTS.replace("0,0.29\n0.15", "0.15");
+    for (points, demand, words) in [
+        (
+            &*short,
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["[demand.slv]", "from 0.0 to 2.0 s", "add rows"][..],
+        ),
+        (
+            &*early,
+            "[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n",
+            &["[demand.sld]", "needed at 0.0 s"],
+        ),
+        (
+            "period_s,acceleration_g\n0,0.3\n",
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:12", "fewer than two rows"],
+        ),
+        (
+            "period_s,acceleration_g\n0,0.3\n1,0.2\n1,0.1\n",
+            "[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:12", "slv.csv:4", "not above the one before"],
+        ),
+        (
+            POINTS,
+            "[demand]\nsoil = 'B'\n[demand.slv]\nspectrum = 'slv.csv'\n",
+            &["a.toml:5:8", "`soil = 'B'` goes with ag_g"],
+        ),
+        (
+            POINTS,
+            "[demand.sld]\nspectrum = 'slv.csv'\n",
+            &["nothing to check beyond damage"],
+        ),
+        (
+            POINTS,
+            "[demand.slv]\nspectrum = 'other.csv'\n",
+            &["a.toml:5:12", "cannot be read"],
+        ),
+    ] {
+        let folder = in_folder(COLUMN, demand);
+        std::fs::write(folder.path().join("slv.csv"), points).unwrap();
+        refused(folder.path(), &["verify", "a.toml"], words);
+    }
+}
+
+/// Each error has its place, clause and range.
+#[test]
+fn what_is_out_of_the_range_of_the_code_is_refused() {
+    for (from, to, words) in [
+        (
+            "f0 = 2.40",
+            "f0 = 2.1",
+            &["a.toml:9:6", "2.2 (NTC 2018, § 3.2.1)"][..],
+        ),
+        (
+            "ag_g = 0.25",
+            "ag_g = 0.9",
+            &["a.toml:12:8", "at most 0.85 on soil B", "§ 3.2.3.2"],
+        ),
+        (
+            "ag_g = 0.25",
+            "ag_g = 25",
+            &["a.toml:12:8", "out of range", "at most 0.85", "§ 3.2.3.2"],
+        ),
+        (
+            "ag_g = 0.25",
+            "ag_g = 0",
+            &["a.toml:12:8", "above 0 (NTC 2018, § 3.2)"],
+        ),
+        (
+            "f0 = 2.40",
+            "f0 = 12",
+            &["a.toml:9:6", "2.2 (NTC 2018, § 3.2.1) to 10"],
+        ),
+        (
+            "tc_star_s = 0.35",
+            "tc_star_s = 3.5",
+            &["a.toml:14:13", "Tab. 3.2.IV"],
+        ),
+        (
+            "soil = 'B'",
+            "soil = 'S1'",
+            &["a.toml:5:8", "one of \"A\", \"B\", \"C\", \"D\", \"E\""],
+        ),
+        (
+            "topography = 'T1'",
+            "topographic_factor = 0.5",
+            &["a.toml:6:22", "from 1 to 2 (NTC 2018, Tab. 3.2.V"],
+        ),
+        ("topography = 'T1'", "", &["topography, topographic_factor"]),
+        (
+            "tc_star_s = 0.35",
+            "tc_star = 0.35",
+            &["did you mean `tc_star_s`", "lacks `tc_star_s`"],
+        ),
+        (
+            "slv = { t_s = 0.45, damping_percent = 10 }, ",
+            "",
+            &["lacks `slv`", "damping_percent"],
+        ),
+        (
+            "damping_percent = 15",
+            "damping_percent = 50",
+            &["out of range", "at most 30"],
+        ),
+        ("modes", "modi", &["lacks `modes`"]),
+    ] {
+        let text = format!("{COLUMN}{DEMAND}{HEIGHT}");
+        assert!(text.contains(from), "{from}");
+        let folder = in_folder(&text.replacen(from, to, 1), "");
+        refused(folder.path(), &["verify", "a.toml"], words);
+    }
+    let folder = in_folder(COLUMN, "");
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml: the scenario has no [demand]", "[demand.slv]"],
+    );
+    let folder = in_folder(
+        COLUMN,
+        &format!("{DEMAND}[verify]\nconfidence_factor = 0.9\n"),
+    );
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml:20:21", "from 1 to 2", "Tab. C8.5.IV"],
+    );
+    let folder = in_folder(
+        COLUMN,
+        &format!("{DEMAND}[verify]\nbehaviour_factor = 0.9\n"),
+    );
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["a.toml:20:20", "from 1 to 5", "C8.7.1.2.1.7"],
+    );
+}
+
+/// Locks before its multiplier reaches zero.
+const LOCKS: &str = "[pointed_arch]\nspan_m = 2.02\nrise_m = 1.46\nthickness_m = 0.6\nvoussoirs = 6\n\
+    [piers]\nheight_m = 2.62\nwidth_m = 2.09\nblocks = 2\n";
+const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
+
+/// A linkage that locks: only the damage limit state and its multiple can be checked.
+#[test]
+fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
+    for (structure, why) in [(LOCKS, "comes to the end of its way")] {
+        let check = check(&format!("{structure}{DEMAND}"));
+        for mechanism in &check.mechanisms {
+            assert!(mechanism.way.as_ref().unwrap_err().contains(why));
+            // The virtual work of the bodies reproduces the push of limit analysis.
+            let model = parsed(structure).model().unwrap();
+            let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
+            assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
+        }
+        let slv = check
+            .states
+            .iter()
+            .find(|one| one.state == LimitState::Slv)
+            .unwrap();
+        assert_eq!(slv.governing().unwrap().1, Method::Simplified);
+        let slc = check
+            .states
+            .iter()
+            .find(|one| one.state == LimitState::Slc)
+            .unwrap();
+        assert_eq!(slc.governing(), None);
+        let said = words(&check);
+        assert!(
+            said.contains("SLC  not checked: there is no capacity curve"),
+            "{said}"
+        );
+        // Its joints would slide first, which the page does not deny.
+        assert!(
+            said.contains("warning: To the right joints slide at 0.4288 g"),
+            "{said}"
+        );
+        let only = DEMAND.split_once("[demand.slc]").unwrap().1;
+        let only =
+            format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
+        let error = Check::new(&parsed(&only)).unwrap_err();
+        assert!(matches!(error, NoCheck::NoCurve(_)));
+        assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
+    }
+}
+
+/// A column that is cut into drums, given as blocks or tapered turns about its toe as one block. Its curve is that of the block: with the
+/// centre of mass at the height `h` and the distance `b` from the toe, `alpha0 = b / h` and `d0 = b`, and `alpha` falls as the tangent of an
+/// angle.
+#[test]
+fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
+    let column = check(&format!("{COLUMN}{DEMAND}"));
+    let drums = check(&format!("{DRUMS}{DEMAND}"));
+    for state in [LimitState::Sld, LimitState::Slv, LimitState::Slc] {
+        for sway in [Sway::Right, Sway::Left] {
+            let [own, block] = [&drums, &column].map(|check| side(check, state, sway).governing());
+            let ((method, own), (same, block)) = (own.unwrap(), block.unwrap());
+            assert_eq!(method, same);
+            assert!((own.zeta_e / block.zeta_e - 1.0).abs() < 1e-9);
+        }
+    }
+    let (own, block) = (&drums.mechanisms[0], &column.mechanisms[0]);
+    assert_eq!(own.bodies.len(), 1);
+    assert!((own.bodies[0].displacement - block.bodies[0].displacement).norm() < 1e-9);
+    let crowns = [own, block].map(|one| {
+        let way = one.way.as_ref().unwrap();
+        assert!((way.friction_up_to(0.6) - 0.2).abs() < 1e-9);
+        way.crown.as_ref().unwrap().end().displacement_m
+    });
+    assert!((crowns[0] / crowns[1] - 1.0).abs() < 1e-9);
+
+    // A parallelogram of 3 m by 0.8 m that leans 0.2 m to the left, and a taper from 1 m to 0.6 m.
+    let folder = in_folder("[blocks]\njoints = 'lean.csv'\nsupports = 'left'\n", DEMAND);
+    std::fs::write(
+        folder.path().join("lean.csv"),
+        "-0.3,0,0.5,0\n-0.5,3,0.3,3\n",
+    )
+    .unwrap();
+    let leaning = Check::new(&Scenario::read(&folder.path().join("a.toml")).unwrap()).unwrap();
+    let taper = "[column]\nheight_m = 3\nwidth_m = 1\ntop_width_m = 0.6\n[free_hinges]\n";
+    let taper = check(&format!("{taper}{DEMAND}"));
+    let taper_centre_m = 3.0 * (1.0 + 2.0 * 0.6) / (3.0 * (1.0 + 0.6));
+    for (check, sway, b_m, h_m) in [
+        (&leaning, Sway::Right, 0.5, 1.5),
+        (&leaning, Sway::Left, 0.3, 1.5),
+        (&taper, Sway::Right, 0.5, taper_centre_m),
+        (&taper, Sway::Left, 0.5, taper_centre_m),
+    ] {
+        let mechanism = check.mechanism(sway).unwrap();
+        let way = mechanism.way.as_ref().unwrap();
+        let (alpha0, slenderness) = (b_m / h_m, f64::atan2(b_m, h_m));
+        assert!((mechanism.alpha0 / alpha0 - 1.0).abs() < 1e-9);
+        assert!((way.centre.end().oscillator_displacement_m / b_m - 1.0).abs() < 1e-9);
+        assert!((way.friction_up_to(1.0) / alpha0 - 1.0).abs() < 1e-9);
+        for point in &way.centre.curve {
+            let alpha = (slenderness - point.q_rad).tan();
+            assert!((point.oscillator_acceleration_g - alpha).abs() < 1e-9);
+            let radius_m = f64::hypot(b_m, h_m);
+            let d_m = b_m - radius_m * (slenderness - point.q_rad).sin();
+            assert!((point.oscillator_displacement_m - d_m).abs() < 1e-9);
+        }
+    }
+    let said = words(&leaning);
+    assert!(
+        said.contains("SLV  not passed: zeta_E 0.84538 to the left"),
+        "{said}"
+    );
+    assert!(words(&taper).contains("to either side, by displacement"));
+}
+
+/// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
+/// that needs more friction than the Circolare gives is checked, with a warning.
+#[test]
+fn c8_7_1_1_what_slides_before_is_no_mechanism() {
+    let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
+    let folder = in_folder(lintel, DEMAND);
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["friction coefficient of 0.577", "to the right"],
+    );
+    let squat = COLUMN.replace("width_m = 0.8", "width_m = 2.8");
+    let said = words(&check(&format!("{squat}{DEMAND}")));
+    assert!(
+        said.contains("warning: To the right the mechanism needs a friction coefficient of 0.700"),
+        "{said}"
+    );
+    assert!(!words(&check(&format!("{COLUMN}{DEMAND}"))).contains("warning"));
+}
+
+/// Friction is compared with the smaller of 0.577 and the coefficient of the scenario. If joints of that coefficient slide first, there is
+/// no check.
+#[test]
+fn c8_7_1_1_the_friction_of_the_scenario_counts() {
+    let squat = COLUMN.replace("width_m = 0.8", "width_m = 2");
+    let with = |coefficient: f64| {
+        format!("{squat}[free_hinges]\nfriction_coefficient = {coefficient}\n{DEMAND}")
+    };
+    let error = Check::new(&parsed(&with(0.3))).unwrap_err();
+    assert!(
+        matches!(error, NoCheck::Slides { coefficient, at_g, .. } if coefficient == 0.3 && (at_g - 0.3).abs() < 1e-9),
+        "{error}"
+    );
+    let enough = parsed(&with(0.52));
+    let check_enough = Check::new(&enough).unwrap();
+    assert_eq!(check_enough.warnings, Vec::<String>::new());
+    let json = to_json(&enough, &check_enough).unwrap();
+    assert_eq!(json["allowed_friction"], 0.52);
+    assert!(page(&enough, &check_enough, "").contains("the scenario has 0.52"));
+    assert_eq!(check(&with(0.8)).allowed_friction, 0.577);
+    // The mechanism needs 0.590, and it does not slide first at 0.588.
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\nvoussoirs = 20\n";
+    let slides = format!("{arch}[free_hinges]\nfriction_coefficient = 0.42\n{DEMAND}");
+    let error = Check::new(&parsed(&slides)).unwrap_err();
+    assert!(
+        error.to_string().contains("0.42 joints slide at 0.1204 g"),
+        "{error}"
+    );
+    let warned = check(&format!("{arch}{DEMAND}")).warnings;
+    assert!(
+        warned[0].contains(
+            "needs a friction coefficient of 0.590, and the Circolare has 0.577 for walls"
+        ),
+        "{warned:?}"
+    );
+}
+
+/// Sides with a number that differs are printed one by one: a tie that holds one side, a leaning stack, a demand that only words of the
+/// mechanism hide.
+#[test]
+fn sides_that_differ_are_both_on_the_page() {
+    let tied = "[[tie]]\nfrom_m = [0.0, 3.5]\nto_m = [-4.0, 3.5]\nstiffness_n_m = 1e6\nprestress_n = 5000\nto_block = 0\n";
+    let arch_tie = "[[tie]]\nfrom_m = [-4.2, 2.5]\nto_m = [-7.0, 0.0]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 1000\n";
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 36\n";
+    for (structure, sides) in [
+        (format!("{COLUMN}{tied}"), 2),
+        (format!("{arch}{arch_tie}"), 2),
+        (COLUMN.to_owned(), 1),
+        (arch.to_owned(), 1),
+        (DRUMS.to_owned(), 1),
+    ] {
+        let scenario = parsed(&format!("{structure}{DEMAND}"));
+        let check = Check::new(&scenario).unwrap();
+        let html = page(&scenario, &check, "2025-01-31");
+        assert_eq!(html.contains("mirror image"), sides == 1, "{structure}");
+        assert_eq!(html.contains("either side"), sides == 1, "{structure}");
+        for sway in ["right", "left"] {
+            assert_eq!(
+                html.matches(&format!("<h3>To the {sway}</h3>")).count(),
+                2 * (sides - 1)
+            );
+        }
+        if sides == 2 {
+            let worse = check.states[0].sides[1].activation.unwrap().margin.zeta_e;
+            assert!(html.contains(&format!("{worse:?}")), "{structure}");
+        }
+    }
+}
+
+/// Input that is unlikely or ignored is a warning in words, on the page and in the JSON; the building of the page is named by the hashes of
+/// its files.
+#[test]
+fn unlikely_and_ignored_input_is_warned_of() {
+    let floor = HEIGHT
+        .replace("damping_percent = 10", "damping_percent = 0.1")
+        .replace("gamma = 1.2857142857142858", "gamma = -1.2857142857142858");
+    let text = format!(
+        "{COLUMN}[simulation]\nduration_s = 1\ngravity_m_s2 = 9.8\n{DEMAND}{floor}[uncertain]\nsamples = 10\n'column.width_m' = {{ from = 0.7, to = 0.9 }}\n"
+    );
+    let scenario = parsed(&text);
+    let check = Check::new(&scenario).unwrap();
+    let html = page(&scenario, &check, "");
+    for words in ["0.1 %", "9.8 m/s2", "[uncertain] is ignored"] {
+        let mut given = check.warnings.iter();
+        assert!(
+            given.any(|one| one.contains(words)),
+            "{words}: {:?}",
+            check.warnings
+        );
+        assert!(html.contains(words), "{words}");
+    }
+    assert_eq!(check.warnings.len(), 3);
+    assert_eq!(check.top, "top");
+    assert!(html.contains("With the top as control point") && !html.contains("crown"));
+
+    let folder = in_folder("[blocks]\njoints = 'j.csv'\nsupports = 'left'\n", DEMAND);
+    let joints = "-0.4,0,0.4,0\n-0.4,4,0.4,4\n";
+    std::fs::write(folder.path().join("j.csv"), joints).unwrap();
+    let read = || {
+        print_of(folder.path(), &["verify", "a.toml", "--out", "out"]);
+        let json = std::fs::read_to_string(folder.path().join("out/verify.json")).unwrap();
+        let json: Value = serde_json::from_str(&json).unwrap();
+        let html = std::fs::read_to_string(folder.path().join("out/verify.html")).unwrap();
+        for file in json["files"].as_array().unwrap() {
+            assert!(html.contains(file["sha256"].as_str().unwrap()));
+        }
+        json["files"].clone()
+    };
+    let before = read();
+    let sha256 = |bytes: &[u8]| {
+        use sha2::{Digest as _, Sha256};
+        let digest = Sha256::digest(bytes);
+        digest
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect::<String>()
+    };
+    assert_eq!(before[0]["file"], "a.toml");
+    assert_eq!(
+        before[0]["sha256"],
+        sha256(&std::fs::read(folder.path().join("a.toml")).unwrap())
+    );
+    assert_eq!(before[1]["file"], "j.csv");
+    assert_eq!(before[1]["sha256"], sha256(joints.as_bytes()));
+    // The same joints in another file are another file.
+    std::fs::write(
+        folder.path().join("j.csv"),
+        joints.replace("4,0.4,4", "4.0,0.4,4"),
+    )
+    .unwrap();
+    let after = read();
+    assert_eq!(after[0], before[0]);
+    assert_ne!(after[1], before[1]);
+}
+
+#[test]
+fn what_does_not_stand_is_refused() {
+    let thin = ARCH.replace("0.15", "0.08");
+    let folder = in_folder(&thin, DEMAND);
+    refused(
+        folder.path(),
+        &["verify", "a.toml"],
+        &["cannot carry its own weight"],
+    );
+}
+
+/// The command: words, JSON with the same numbers, files; a negative verdict is not a failure of the program.
+#[test]
+fn the_command_says_and_writes_the_check() {
+    let folder = in_folder(ARCH, DEMAND);
+    let said = print_of(folder.path(), &["verify", "a.toml"]);
+    assert!(
+        said.starts_with("The structure does not pass SLV (zeta_E 0.48659) or SLC (zeta_E 0.44541); it passes SLD (zeta_E 1.01604).\n")
+            && said.contains("SLV  not passed: zeta_E 0.48659 to either side, by displacement"),
+        "{said}"
+    );
+    let output = archrock(folder.path(), &["verify", "a.toml", "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let file = std::fs::read(folder.path().join("results/a/verify.json")).unwrap();
+    assert_eq!(file, output.stdout);
+    assert_eq!(json["verdict"]["slv"], "not_passed");
+    assert_eq!(json["verdict"]["sld"], "passed");
+    let scenario = Scenario::read(&folder.path().join("a.toml")).unwrap();
+    let check = Check::new(&scenario).unwrap();
+    assert_eq!(json["zeta_e"], check.zeta_e());
+    let own = displacement(&check, LimitState::Slv, Sway::Right);
+    assert_eq!(
+        json["states"]["slv"]["right"]["displacement"]["demand_m"],
+        own.demand_m
+    );
+    assert_eq!(json["states"]["slv"]["demand"]["s_s"], 1.16);
+    // The hash is that of the output of `check`.
+    let resolved = print_of(folder.path(), &["check", "a.toml"]);
+    assert_eq!(resolved, scenario.to_resolved_toml());
+    assert_eq!(json["scenario_sha256"].as_str().unwrap().len(), 64);
+    // alpha0 by hand, from the table of the bodies.
+    let bodies = json["mechanisms"]["right"]["bodies"].as_array().unwrap();
+    let sum = |key: &str| -> f64 {
+        let each = bodies
+            .iter()
+            .map(|body| body["weight_kn"].as_f64().unwrap() * body[key].as_f64().unwrap());
+        each.sum()
+    };
+    let alpha0 = json["mechanisms"]["right"]["alpha0"].as_f64().unwrap();
+    assert!((sum("delta_y") / sum("delta_x") / alpha0 - 1.0).abs() < 1e-12);
+    assert!(!said.contains("complian") && !json.to_string().contains("complian"));
+    // Resolved scenarios read back the same.
+    for text in [
+        DEMAND.to_owned(),
+        format!("{DEMAND}{HEIGHT}[verify]\nsides = 'left'\nfree_standing = {{ t0_s = 0.1 }}\n"),
+    ] {
+        let own = parsed(&format!("{COLUMN}{text}"));
+        assert_eq!(parsed(&own.to_toml()), own);
+    }
+}
+
+/// Every number of the page is a number of the JSON, rounded as shown, and the important ones are in their places. The
+/// page needs no network and claims nothing that the Circolare does not say.
+#[test]
+fn page_and_json_agree() {
+    let free = "[verify]\nsides = 'right'\nfree_standing = { t0_s = 0.15 }\n";
+    for text in [
+        format!("title = 'A <title> & more'\n{ARCH}{DEMAND}"),
+        format!("{}{DEMAND}{HEIGHT}", on_piers()),
+        format!("{COLUMN}{DEMAND}{free}"),
+        format!("{LOCKS}{DEMAND}"),
+        format!("{DRUMS}{DEMAND}"),
+        format!("{COLUMN}[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n"),
+    ] {
+        let folder = in_folder(&text, "");
+        print_of(folder.path(), &["verify", "a.toml", "--out", "out"]);
+        let json = std::fs::read_to_string(folder.path().join("out/verify.json")).unwrap();
+        let page = folder.path().join("out/verify.html");
+        let html = std::fs::read_to_string(&page).unwrap();
+        for foreign in ["src=", "@import", "<link", "url(", "omplian", "NaN", "inf<"] {
+            assert!(!html.contains(foreign), "{foreign}");
+        }
+        let script = "
+const known = new Set();
+const walk = (value) => {
+  if (typeof value === 'number') known.add(value);
+  else if (value && typeof value === 'object') Object.values(value).forEach(walk);
+};
+walk(data);
+document.querySelectorAll('data').forEach((element) => {
+  const value = Number(element.value);
+  const text = element.textContent;
+  verify(known.has(value), `${element.value} is not in the JSON`);
+  const decimals = (text.split('.')[1] ?? '').length;
+  verify(Math.abs(Number(text) - value) <= 0.5000001 * 10 ** -decimals, `${text} ${element.value}`);
+});
+const result = document.getElementById('result').textContent;
+verify(result.includes(`= ${data.zeta_e.toFixed(3)}.`), 'zeta_e');
+for (const [state, verdict] of Object.entries(data.verdict)) {
+  const rows = [...document.querySelectorAll('#result tbody tr')].filter((row) => row.textContent.startsWith(state.toUpperCase()));
+  const counts = rows.find((row) => row.className === 'counts');
+  const words = { passed: 'passed', not_passed: 'not passed', not_checked: undefined };
+  verify(counts?.lastElementChild.textContent === words[verdict], `${state} ${verdict}`);
+  if (counts) verify(counts.textContent.includes(data.states[state].zeta_e.toFixed(3)), state);
+}
+verify(document.querySelectorAll('svg').length >= 1, 'pictures');
+verify(document.title === (data.title ?? 'Check of local mechanisms'), document.title);
+verify(document.body.textContent.includes(data.scenario_sha256), 'hash');
+data.decisions.forEach((one) => verify([...document.querySelectorAll('dt')].some((dt) => dt.textContent === one.name), one.name));
+";
+        browser::assert_checked(&page, script, &json, &[], 60);
+    }
+}
+
+/// The page draws a tapered column as it is, whole or in drums.
+#[test]
+fn a_tapered_column_is_drawn_with_its_outline() {
+    for (drums, count) in [("", 1), ("drums = 3\n", 3)] {
+        let text = format!(
+            "[column]\nheight_m = 3\nwidth_m = 1.0\ntop_width_m = 0.6\n{drums}[free_hinges]\n\
+             [demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slv]\nag_g = 0.25\nf0 = 2.4\ntc_star_s = 0.35\n"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("s.toml"), text).unwrap();
+        crate::common::program::printed(folder.path(), &["verify", "s.toml", "--out", "o"]);
+        let page = std::fs::read_to_string(folder.path().join("o/verify.html")).unwrap();
+        let bodies = page.split("data-name=\"body 1\" d=\"M").skip(1);
+        let bodies = bodies.map(|rest| rest.split_once("Z\"").unwrap().0);
+        let corners: Vec<[f64; 2]> = bodies
+            .flat_map(|path| path.split('L'))
+            .flat_map(|part| {
+                let numbers = part
+                    .split_whitespace()
+                    .map(|number| number.parse().unwrap());
+                let numbers: Vec<f64> = numbers.collect();
+                let points = numbers.chunks(2).map(|point| [point[0], point[1]]);
+                points.collect::<Vec<_>>()
+            })
+            .collect();
+        assert_eq!(corners.len(), 4 * count);
+        let width_at = |end: fn(f64, f64) -> f64| {
+            let y = corners.iter().map(|corner| corner[1]).reduce(end).unwrap();
+            let level = corners.iter().filter(|corner| (corner[1] - y).abs() < 0.02);
+            let x: Vec<f64> = level.map(|corner| corner[0]).collect();
+            (x[0] - x[1]).abs()
+        };
+        let ratio = width_at(f64::min) / width_at(f64::max);
+        assert!((ratio - 0.6).abs() < 1e-3, "{drums}{ratio}");
+    }
+}
