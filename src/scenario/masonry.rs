@@ -23,8 +23,8 @@ use crate::argument::ArgumentError;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
 use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
 use crate::mechanics::masonry::{
-    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
-    Material, Pier, Piers, PlacedLoad, PointedArch, Remedy, Shape,
+    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError, Material, Pier,
+    Piers, PlacedLoad, Remedy, Shape,
 };
 use crate::mechanics::stability::falls;
 
@@ -48,14 +48,14 @@ pub(super) fn read_shapes(
             "pointed_arch",
             table.table("pointed_arch", |table| {
                 let dimensions = read_dimensions(table)?;
-                Ok(Shape::PointedArch(PointedArch { dimensions }))
+                Ok(Shape::PointedArch(dimensions))
             }),
         ),
         (
             "elliptic_arch",
             table.table("elliptic_arch", |table| {
                 let dimensions = read_dimensions(table)?;
-                Ok(Shape::EllipticArch(EllipticArch { dimensions }))
+                Ok(Shape::EllipticArch(dimensions))
             }),
         ),
         (

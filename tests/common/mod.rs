@@ -11,8 +11,8 @@ use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
-    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, Masonry, Material, Pier,
-    Piers, PlacedLoad, PointedArch, Shape,
+    BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, Material, Pier, Piers,
+    PlacedLoad, Shape,
 };
 use archrock::mechanics::stability::falls;
 use archrock::{
@@ -325,12 +325,8 @@ pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
         material: Material::default(),
     };
     let shape = match random.pick(4) {
-        0 => Shape::PointedArch(PointedArch {
-            dimensions: dimensions(random.within(5.0, 9.0)),
-        }),
-        1 => Shape::EllipticArch(EllipticArch {
-            dimensions: dimensions(random.within(3.0, 7.0)),
-        }),
+        0 => Shape::PointedArch(dimensions(random.within(5.0, 9.0))),
+        1 => Shape::EllipticArch(dimensions(random.within(3.0, 7.0))),
         2 => Shape::BasketArch(BasketArch {
             dimensions: dimensions(random.within(3.2, 5.0)),
             crown_deg: random.within(40.0, 75.0),

@@ -7,9 +7,7 @@ use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::certificate::project;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::masonry::{
-    Dimensions, Masonry, Material, Piers, PlacedLoad, PointedArch, Shape,
-};
+use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, PlacedLoad, Shape};
 use archrock::mechanics::stability::{falls, onset};
 use archrock::{
     Arch, FourLinkError, FourLinks, GroundMotion, ImpactLaw, ImpactModel, Initial, Model as _,
@@ -259,7 +257,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
         x_m: 1.5,
         width_m: 0.0,
     };
-    let shape = Shape::PointedArch(PointedArch { dimensions });
+    let shape = Shape::PointedArch(dimensions);
     let masonry = Masonry::new(shape, Piers::default(), None, vec![load]).unwrap();
     let model = rocking(masonry.row());
     for first in SIDES {

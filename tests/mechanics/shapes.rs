@@ -6,8 +6,8 @@ use std::path::Path;
 
 use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::masonry::{
-    BasketArch, CircularArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry,
-    MasonryError, Material, Pier, Piers, PlacedLoad, PointedArch, Shape,
+    BasketArch, CircularArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
+    Material, Pier, Piers, PlacedLoad, Shape,
 };
 use archrock::mechanics::stability::onset;
 use archrock::scenario::{Scenario, Structure};
@@ -60,8 +60,8 @@ fn shapes_with_a_rise_of_half_the_span_are_a_semicircle() {
         let dimensions = dimensions(5.0, voussoirs);
         for shape in [
             circular(voussoirs),
-            Shape::PointedArch(PointedArch { dimensions }),
-            Shape::EllipticArch(EllipticArch { dimensions }),
+            Shape::PointedArch(dimensions),
+            Shape::EllipticArch(dimensions),
             Shape::BasketArch(BasketArch {
                 dimensions,
                 crown_deg: 60.0,
@@ -81,9 +81,7 @@ fn masses_are_those_of_the_middle_line() {
         (0..n).map(|i| (at(i + 1) - at(i)).norm()).sum::<f64>()
     };
     let ellipse = |u: f64| Vector2::new(5.0 * (PI * u).cos(), 3.0 * (PI * u).sin());
-    let elliptic = alone(Shape::EllipticArch(EllipticArch {
-        dimensions: dimensions(3.0, 9),
-    }));
+    let elliptic = alone(Shape::EllipticArch(dimensions(3.0, 9)));
     let mass_kg = 2000.0 * 0.75 * middle(&ellipse);
     assert!((elliptic.row().mass_kg() / mass_kg - 1.0).abs() < 1e-9);
 
@@ -106,9 +104,7 @@ fn masses_are_those_of_the_middle_line() {
 fn an_equilateral_arch() {
     let rise_m = 10.0 * 0.75_f64.sqrt();
     for voussoirs in [12, 13] {
-        let arch = alone(Shape::PointedArch(PointedArch {
-            dimensions: dimensions(rise_m, voussoirs),
-        }));
+        let arch = alone(Shape::PointedArch(dimensions(rise_m, voussoirs)));
         // Half of the area between the arcs of radius 10.375 and 9.625 about (5, 0), left of the middle.
         let under = |radius: f64| {
             let primitive = |x: f64| {

@@ -17,8 +17,7 @@ use archrock::mechanics::column::Column;
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
-    BasketArch, Dimensions, EllipticArch, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier,
-    Piers, PointedArch, Shape,
+    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, Shape,
 };
 use archrock::mechanics::stability;
 use archrock::mechanics::sway::Sway;
@@ -473,7 +472,7 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
             left: pier,
             right: pier,
         };
-        let shape = Shape::PointedArch(PointedArch { dimensions });
+        let shape = Shape::PointedArch(dimensions);
         let masonry = Masonry::new(shape, piers, None, Vec::new()).unwrap();
         assert_eq!(masonry.row().supports_go_on(), [!pedestal; 2]);
         let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.5, 0.0).unwrap();
@@ -888,7 +887,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
             crown_deg: BasketArch::CROWN_DEG,
         })
     };
-    let elliptic = |dimensions| Shape::EllipticArch(EllipticArch { dimensions });
+    let elliptic = |dimensions| Shape::EllipticArch(dimensions);
     let (low, high) = (FillLevel::AboveSpringing(0.1), FillLevel::AboveCrown(4.0));
     for (shape, level, density_kg_m3, excess, amplitude_g, duration_s, end_s) in [
         (

@@ -11,9 +11,7 @@ use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::friction::{least_coefficient, stands};
 use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::masonry::{
-    Dimensions, EllipticArch, Masonry, Material, Piers, PointedArch, Shape,
-};
+use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, Shape};
 use archrock::mechanics::stability::{falls, onset};
 use archrock::{Arch, Outcome, Sway, Until};
 use std::f64::consts::PI;
@@ -128,9 +126,9 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
                 material: Material::default(),
             };
             let shape = if rise > 1.0 {
-                Shape::PointedArch(PointedArch { dimensions })
+                Shape::PointedArch(dimensions)
             } else {
-                Shape::EllipticArch(EllipticArch { dimensions })
+                Shape::EllipticArch(dimensions)
             };
             let masonry = Masonry::new(shape, Piers::default(), None, Vec::new());
             masonry.is_ok_and(|masonry| masonry.stands().unwrap())

@@ -188,8 +188,8 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
         Some(MeasuredAt::Mean) | None => joint.middle_m(),
     });
     let rise_m = match masonry.shape() {
-        Shape::PointedArch(arch) => arch.dimensions.rise_m,
-        Shape::EllipticArch(arch) => arch.dimensions.rise_m,
+        Shape::PointedArch(dimensions) => dimensions.rise_m,
+        Shape::EllipticArch(dimensions) => dimensions.rise_m,
         Shape::BasketArch(arch) => arch.dimensions.rise_m,
         Shape::Circular(circular) => {
             let [_, rise_m] = circular

@@ -19,21 +19,13 @@ pub(super) struct Place {
 /// The edges of an arch from left to right, and where its joints cut them.
 #[derive(Clone, Debug)]
 pub(super) struct CutArch {
-    intrados: Vec<Curve>,
-    extrados: Vec<Curve>,
+    pub intrados: Vec<Curve>,
+    pub extrados: Vec<Curve>,
     /// On the intrados and on the extrados, springings included.
-    joints: Vec<[Place; 2]>,
+    pub joints: Vec<[Place; 2]>,
 }
 
 impl CutArch {
-    pub fn new(intrados: Vec<Curve>, extrados: Vec<Curve>, joints: Vec<[Place; 2]>) -> Self {
-        Self {
-            intrados,
-            extrados,
-            joints,
-        }
-    }
-
     /// Number of voussoirs.
     pub fn voussoirs(&self) -> usize {
         self.joints.len() - 1

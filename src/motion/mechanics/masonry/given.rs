@@ -181,24 +181,18 @@ impl GivenBlocks {
         };
         let last = self.joints.len() - 1;
         let place = |joint: usize| {
-            let place = if joint < last {
-                Place {
-                    piece: joint,
-                    part: 0.0,
-                }
+            let (piece, part) = if joint < last {
+                (joint, 0.0)
             } else {
-                Place {
-                    piece: joint - 1,
-                    part: 1.0,
-                }
+                (joint - 1, 1.0)
             };
-            [place; 2]
+            [Place { piece, part }; 2]
         };
-        CutArch::new(
-            edge(|joint| joint.intrados_m),
-            edge(|joint| joint.extrados_m),
-            (0..=last).map(place).collect(),
-        )
+        CutArch {
+            intrados: edge(|joint| joint.intrados_m),
+            extrados: edge(|joint| joint.extrados_m),
+            joints: (0..=last).map(place).collect(),
+        }
     }
 
     /// Whether the faces on the left and the right support stand on ground that extends beyond them: they are level, and nothing

@@ -51,19 +51,28 @@ impl PlacedLoad {
                         continue;
                     }
                     let loaded = piece.between(part(from_x), part(to_x));
-                    spread(&loaded.integral(|point, derivative| {
+                    let moments = loaded.integral(|point, derivative| {
                         let mass = self.mass_kg / self.width_m * derivative.x;
                         MassMoments {
                             mass,
                             first: point * mass,
                             polar: point.norm_squared() * mass,
                         }
-                    }))
+                    });
+                    Block {
+                        mass_kg: moments.mass,
+                        centre_m: moments.centroid(),
+                        inertia_kg_m2: moments.central_polar().max(0.0),
+                    }
                 } else {
                     if !(start..=end).contains(&self.x_m) || placed_kg > 0.0 {
                         continue;
                     }
-                    at_point(self.mass_kg, piece.point(part(self.x_m)))
+                    Block {
+                        mass_kg: self.mass_kg,
+                        centre_m: piece.point(part(self.x_m)),
+                        inertia_kg_m2: 0.0,
+                    }
                 };
                 placed_kg += own.mass_kg;
                 *extra = Some(extra.map_or(own, |known| known.with(&own)));
@@ -87,9 +96,7 @@ impl PlacedLoad {
             ),
         })
     }
-}
 
-impl PlacedLoad {
     /// The voussoir under its middle, and where it stands there.
     pub(super) fn place_m(&self, arch: &CutArch) -> Option<(usize, Vector2<f64>)> {
         (0..arch.voussoirs()).find_map(|voussoir| {
@@ -100,21 +107,5 @@ impl PlacedLoad {
                 within.then(|| (voussoir, piece.point(part)))
             })
         })
-    }
-}
-
-fn at_point(mass_kg: f64, centre_m: Vector2<f64>) -> Block {
-    Block {
-        mass_kg,
-        centre_m,
-        inertia_kg_m2: 0.0,
-    }
-}
-
-fn spread(moments: &MassMoments) -> Block {
-    Block {
-        mass_kg: moments.mass,
-        centre_m: moments.centroid(),
-        inertia_kg_m2: moments.central_polar().max(0.0),
     }
 }

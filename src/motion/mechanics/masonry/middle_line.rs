@@ -14,32 +14,15 @@ use crate::mechanics::geometry::curve::Curve;
 /// Cuts what lies within half a thickness of a middle line, from left to right, at the given lengths of that line.
 fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
     let edge = |offset_m: f64| {
-        let moved = |piece: &Curve| match *piece {
-            Curve::Arc {
-                centre,
-                radius,
-                from_rad,
-                to_rad,
-            } => Curve::Arc {
-                centre,
-                radius: radius + offset_m,
-                from_rad,
-                to_rad,
-            },
-            Curve::Ellipse {
-                semi_axes,
-                offset,
-                from_rad,
-                to_rad,
-            } => Curve::Ellipse {
-                semi_axes,
-                offset: offset + offset_m,
-                from_rad,
-                to_rad,
-            },
-            line @ Curve::Line { .. } => line,
-        };
-        middle.iter().map(moved).collect()
+        let mut edge = middle.to_vec();
+        for piece in &mut edge {
+            match piece {
+                Curve::Arc { radius, .. } => *radius += offset_m,
+                Curve::Ellipse { offset, .. } => *offset += offset_m,
+                Curve::Line { .. } => {}
+            }
+        }
+        edge
     };
     let lengths: Vec<f64> = middle.iter().map(Curve::length).collect();
     let place = |at_m: &f64| {
@@ -55,11 +38,11 @@ fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
         };
         [Place { piece, part }; 2]
     };
-    CutArch::new(
-        edge(-0.5 * thickness_m),
-        edge(0.5 * thickness_m),
-        at_m.iter().map(place).collect(),
-    )
+    CutArch {
+        intrados: edge(-0.5 * thickness_m),
+        extrados: edge(0.5 * thickness_m),
+        joints: at_m.iter().map(place).collect(),
+    }
 }
 
 /// Cuts at equal lengths of the middle line.
@@ -139,7 +122,7 @@ impl CircularArch {
         }
     }
 
-    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
+    pub(super) fn cut(&self) -> CutArch {
         let (radius, embrace_rad) = (
             self.arch.mean_radius_m(),
             self.arch.embrace_deg().to_radians(),
@@ -161,33 +144,23 @@ impl CircularArch {
                 (0..=voussoirs).map(at).collect::<Vec<_>>()
             }
         };
-        Ok(cut(&[middle], self.arch.thickness_ratio() * radius, &at_m))
+        cut(&[middle], self.arch.thickness_ratio() * radius, &at_m)
     }
 }
 
-/// An arch whose middle line is half an ellipse, with voussoirs of equal length along that.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct EllipticArch {
-    /// Its dimensions.
-    #[serde(flatten)]
-    pub dimensions: Dimensions,
-}
-
-impl EllipticArch {
-    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
-        let dimensions = &self.dimensions;
-        dimensions.check()?;
-        let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
-        let (longer_m, shorter_m) = (half_m.max(rise_m), half_m.min(rise_m));
-        dimensions.check_curvature(shorter_m * shorter_m / longer_m)?;
-        let middle = Curve::Ellipse {
-            semi_axes: Vector2::new(half_m, rise_m),
-            offset: 0.0,
-            from_rad: PI,
-            to_rad: 0.0,
-        };
-        Ok(cut_equally(&[middle], dimensions))
-    }
+/// Cuts an arch whose middle line is half an ellipse into voussoirs of equal length along that.
+pub(super) fn cut_elliptic(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
+    dimensions.check()?;
+    let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
+    let (longer_m, shorter_m) = (half_m.max(rise_m), half_m.min(rise_m));
+    dimensions.check_curvature(shorter_m * shorter_m / longer_m)?;
+    let middle = Curve::Ellipse {
+        semi_axes: Vector2::new(half_m, rise_m),
+        offset: 0.0,
+        from_rad: PI,
+        to_rad: 0.0,
+    };
+    Ok(cut_equally(&[middle], dimensions))
 }
 
 /// An arch whose middle line consists of three arcs that join smoothly (a basket handle): the outer ones rise

@@ -28,9 +28,10 @@ use cut::CutArch;
 pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};
 pub use load::PlacedLoad;
-pub use middle_line::{BasketArch, CircularArch, EllipticArch};
+use middle_line::cut_elliptic;
+pub use middle_line::{BasketArch, CircularArch};
 pub use pier::{Pier, Piers};
-pub use pointed::PointedArch;
+use pointed::cut_pointed;
 pub use remedy::Remedy;
 
 /// Depth out of plane and density of a structure.
@@ -116,9 +117,9 @@ pub enum Shape {
     #[serde(rename = "arch")]
     Circular(CircularArch),
     /// Two arcs that meet at an angle.
-    PointedArch(PointedArch),
+    PointedArch(Dimensions),
     /// Half an ellipse.
-    EllipticArch(EllipticArch),
+    EllipticArch(Dimensions),
     /// Three arcs.
     BasketArch(BasketArch),
     /// Blocks by their joints.
@@ -143,25 +144,21 @@ impl Shape {
     pub fn material(&self) -> Material {
         match self {
             Self::Circular(arch) => arch.material(),
-            Self::PointedArch(arch) => arch.dimensions.material,
-            Self::EllipticArch(arch) => arch.dimensions.material,
-            Self::BasketArch(arch) => arch.dimensions.material,
+            Self::PointedArch(dimensions)
+            | Self::EllipticArch(dimensions)
+            | Self::BasketArch(BasketArch { dimensions, .. }) => dimensions.material,
             Self::Blocks(blocks) => Material {
                 depth_m: blocks.depth_m,
-                density_kg_m3: blocks
-                    .density_kg_m3
-                    .first()
-                    .copied()
-                    .unwrap_or(DENSITY_KG_M3),
+                density_kg_m3: *blocks.density_kg_m3.first().unwrap_or(&DENSITY_KG_M3),
             },
         }
     }
 
     fn cut(&self) -> Result<CutArch, MasonryError> {
         Ok(match self {
-            Self::Circular(arch) => arch.cut()?,
-            Self::PointedArch(arch) => arch.cut()?,
-            Self::EllipticArch(arch) => arch.cut()?,
+            Self::Circular(arch) => arch.cut(),
+            Self::PointedArch(dimensions) => cut_pointed(dimensions)?,
+            Self::EllipticArch(dimensions) => cut_elliptic(dimensions)?,
             Self::BasketArch(arch) => arch.cut()?,
             Self::Blocks(blocks) => {
                 blocks.check()?;
@@ -178,9 +175,9 @@ impl Shape {
     fn size_m(&self) -> f64 {
         match self {
             Self::Circular(arch) => arch.arch.mean_radius_m(),
-            Self::PointedArch(arch) => 0.5 * arch.dimensions.span_m,
-            Self::EllipticArch(arch) => 0.5 * arch.dimensions.span_m,
-            Self::BasketArch(arch) => 0.5 * arch.dimensions.span_m,
+            Self::PointedArch(dimensions)
+            | Self::EllipticArch(dimensions)
+            | Self::BasketArch(BasketArch { dimensions, .. }) => 0.5 * dimensions.span_m,
             Self::Blocks(blocks) => blocks.size_m(),
         }
     }
@@ -374,16 +371,11 @@ impl Masonry {
         &self.row
     }
 
-    /// The joints at the springings of the arch; none of blocks, whose arch may begin anywhere.
+    /// The joints at the springings of the arch; `None` of blocks, whose arch may begin anywhere.
     #[must_use]
     pub fn springings(&self) -> Option<[Joint; 2]> {
-        if matches!(self.shape, Shape::Blocks(_)) {
-            return None;
-        }
-        let courses = |pier: &Option<Pier>| pier.map_or(0, |pier| pier.blocks);
-        let joints = self.row.joints();
-        let last = joints.len().checked_sub(1 + courses(&self.piers.right))?;
-        Some([joints[courses(&self.piers.left)], joints[last]])
+        let joints = self.springing_joints()?;
+        Some(joints.map(|joint| self.row.joints()[joint]))
     }
 
     /// Whether it stands under its own weight.
@@ -416,18 +408,5 @@ impl Masonry {
     ) -> Result<Self, (usize, TieError)> {
         self.row = self.row.with_ties(ties, gravity_m_s2)?;
         Ok(self)
-    }
-
-    /// The same masonry on rigid abutments, without ties.
-    ///
-    /// # Errors
-    /// Those of [`Masonry::new`].
-    pub fn without_piers(&self) -> Result<Self, MasonryError> {
-        Self::new(
-            self.shape.clone(),
-            Piers::default(),
-            self.fill,
-            self.loads.clone(),
-        )
     }
 }

@@ -3,7 +3,6 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector2;
-use serde::Serialize;
 
 use super::Dimensions;
 use super::cut::{CutArch, Place};
@@ -11,71 +10,61 @@ use super::middle_line::part;
 use crate::argument::ArgumentError;
 use crate::mechanics::geometry::curve::Curve;
 
-/// A pointed arch. Its joints point at the centres and divide the intrados into equal lengths; an even number
+/// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths; an even number
 /// of voussoirs has a vertical joint at the crown, an odd one a keystone.
 ///
 /// The radius of the middle line is `r = rise^2 / span + span / 4`; with a rise of half the span it is a
 /// semicircle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PointedArch {
-    /// Its dimensions.
-    #[serde(flatten)]
-    pub dimensions: Dimensions,
-}
-
-impl PointedArch {
-    pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
-        let dimensions = &self.dimensions;
-        dimensions.check()?;
-        let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
-        if rise_m < 0.5 * span_m {
-            return Err(ArgumentError {
-                argument: "rise_m",
-                value: rise_m,
-                allowed: format!(
-                    "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
-                    0.5 * span_m
-                ),
-            });
-        }
-        let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
-        // The centre of the left arc lies to the right of the middle.
-        let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
-        let inner_m = radius_m - 0.5 * dimensions.thickness_m;
-        if inner_m <= centre.x {
-            return Err(ArgumentError {
-                argument: "thickness_m",
-                value: dimensions.thickness_m,
-                allowed: format!("below the span of {span_m:?}"),
-            });
-        }
-        let arc = |radius: f64| Curve::Arc {
-            centre,
-            radius,
-            from_rad: PI,
-            // Where it reaches the middle.
-            to_rad: (-centre.x / radius).acos(),
-        };
-        let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
-        let outer_m = inner_m + dimensions.thickness_m;
-        // Fraction of the extrados that lies opposite the intrados; the rest reaches on to the crown.
-        let angle = |radius: f64| PI - (-centre.x / radius).acos();
-        let shorter = angle(inner_m) / angle(outer_m);
-        let joint = |joint: usize| {
-            // Twice the part of the way, so that the crown is at 1.
-            let way = 2.0 * part(joint, dimensions.voussoirs);
-            let (piece, part) = if way <= 1.0 { (0, way) } else { (1, way - 1.0) };
-            let outer = match piece {
-                _ if way == 1.0 => 1.0,
-                0 => part * shorter,
-                _ => 1.0 - (1.0 - part) * shorter,
-            };
-            [Place { piece, part }, Place { piece, part: outer }]
-        };
-        Ok(CutArch::new(
-            halves(inner_m),
-            halves(outer_m),
-            (0..=dimensions.voussoirs).map(joint).collect(),
-        ))
+pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
+    dimensions.check()?;
+    let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
+    if rise_m < 0.5 * span_m {
+        return Err(ArgumentError {
+            argument: "rise_m",
+            value: rise_m,
+            allowed: format!(
+                "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
+                0.5 * span_m
+            ),
+        });
     }
+    let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
+    // The centre of the left arc lies to the right of the middle.
+    let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
+    let inner_m = radius_m - 0.5 * dimensions.thickness_m;
+    if inner_m <= centre.x {
+        return Err(ArgumentError {
+            argument: "thickness_m",
+            value: dimensions.thickness_m,
+            allowed: format!("below the span of {span_m:?}"),
+        });
+    }
+    let arc = |radius: f64| Curve::Arc {
+        centre,
+        radius,
+        from_rad: PI,
+        // Where it reaches the middle.
+        to_rad: (-centre.x / radius).acos(),
+    };
+    let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
+    let outer_m = inner_m + dimensions.thickness_m;
+    // Fraction of the extrados that lies opposite the intrados; the rest reaches on to the crown.
+    let angle = |radius: f64| PI - (-centre.x / radius).acos();
+    let shorter = angle(inner_m) / angle(outer_m);
+    let joint = |joint: usize| {
+        // Twice the part of the way, so that the crown is at 1.
+        let way = 2.0 * part(joint, dimensions.voussoirs);
+        let (piece, part) = if way <= 1.0 { (0, way) } else { (1, way - 1.0) };
+        let outer = match piece {
+            _ if way == 1.0 => 1.0,
+            0 => part * shorter,
+            _ => 1.0 - (1.0 - part) * shorter,
+        };
+        [Place { piece, part }, Place { piece, part: outer }]
+    };
+    Ok(CutArch {
+        intrados: halves(inner_m),
+        extrados: halves(outer_m),
+        joints: (0..=dimensions.voussoirs).map(joint).collect(),
+    })
 }

@@ -1,6 +1,6 @@
 //! Changes that would hold an arch that falls under its own weight.
 
-use super::{BasketArch, Dimensions, EllipticArch, Masonry, Pier, Piers, PointedArch, Shape};
+use super::{BasketArch, CircularArch, Masonry, Pier, Piers, Shape};
 use crate::bisection::{Width, try_bisect};
 
 /// What to change in masonry that falls, and by which factor: the least one, rounded up to four decimals; none if a factor of
@@ -17,11 +17,8 @@ impl Masonry {
     /// The change that would hold masonry that falls under its own weight.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
-        let arch_stands = || {
-            let arch = self.without_piers();
-            arch.is_ok_and(|arch| arch.stands().unwrap_or(false))
-        };
-        if !self.piers.are_none() && arch_stands() {
+        let arch_stands = || self.stands_as(self.shape.clone(), Piers::default());
+        if !self.piers.are_none() && arch_stands() == Some(true) {
             return Remedy::WiderPiers(least_factor(|factor| {
                 self.stands_as(self.shape.clone(), self.piers.widened(factor))
             }));
@@ -53,29 +50,18 @@ impl Piers {
 impl Shape {
     /// `None` for blocks, whose thickness is given.
     fn thickened(&self, factor: f64) -> Option<Self> {
-        let scaled = |dimensions: Dimensions| Dimensions {
-            thickness_m: dimensions.thickness_m * factor,
-            ..dimensions
-        };
-        Some(match self {
-            Self::PointedArch(arch) => Self::PointedArch(PointedArch {
-                dimensions: scaled(arch.dimensions),
-            }),
-            Self::EllipticArch(arch) => Self::EllipticArch(EllipticArch {
-                dimensions: scaled(arch.dimensions),
-            }),
-            Self::BasketArch(arch) => Self::BasketArch(BasketArch {
-                dimensions: scaled(arch.dimensions),
-                ..*arch
-            }),
-            Self::Circular(circular) => {
-                let mut thicker = circular.clone();
-                let ratio = circular.arch.thickness_ratio() * factor;
-                thicker.arch = circular.arch.clone().with_thickness_ratio(ratio).ok()?;
-                Self::Circular(thicker)
+        let mut thicker = self.clone();
+        match &mut thicker {
+            Self::PointedArch(dimensions)
+            | Self::EllipticArch(dimensions)
+            | Self::BasketArch(BasketArch { dimensions, .. }) => dimensions.thickness_m *= factor,
+            Self::Circular(CircularArch { arch, .. }) => {
+                let ratio = arch.thickness_ratio() * factor;
+                *arch = arch.clone().with_thickness_ratio(ratio).ok()?;
             }
             Self::Blocks(_) => return None,
-        })
+        }
+        Some(thicker)
     }
 }
 
