@@ -63,7 +63,7 @@ pub(super) fn check(
     let Ok(mut follower) = Follower::new(&row) else {
         return Ok(());
     };
-    match follower.move_supports(|part| movements.times(part), 0.0, 1.0) {
+    match follower.move_supports(|part| *movements * part, 0.0, 1.0) {
         Ok(Reached::Falls(part)) => wrong(format!(
             "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
              `archrock spread` tells how far they may go",

@@ -672,7 +672,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let row = scenario.structure().row().unwrap();
     let movements = scenario.motion().supports().unwrap();
     let mut follower = Follower::new(&row).unwrap();
-    let way = |part: f64| movements.times(part);
+    let way = |part: f64| movements * part;
     follower.move_supports(way, 0.0, 1.0).unwrap();
     let hinges = &follower.hinges().unwrap().hinges;
     assert_eq!(hinges.len(), 4);
@@ -862,7 +862,7 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
             right: movement(far + off),
         };
         let mut follower = Follower::new(&row).unwrap();
-        let way = |part: f64| along.times(part);
+        let way = |part: f64| along * part;
         assert_eq!(follower.move_supports(way, 0.0, 1.0).unwrap(), Reached::End);
         let built = Follower::new(&row).unwrap();
         for sway in [Sway::Right, Sway::Left] {
@@ -946,7 +946,7 @@ fn an_arch_that_turns_as_a_whole_leans() {
         let mut follower = Follower::new(&row).unwrap();
         let movements = turned(angle);
         let reached = follower
-            .move_supports(|part| movements.times(part), 0.0, 1.0)
+            .move_supports(|part| movements * part, 0.0, 1.0)
             .unwrap();
         assert_eq!(reached == Reached::End, stands, "{angle}");
         if !stands {
@@ -1425,7 +1425,7 @@ fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
     let movements = spread_out(0.15);
     let mut follower = Follower::new(&row).unwrap();
     follower
-        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .move_supports(|part| movements * part, 0.0, 1.0)
         .unwrap();
     let model = ElasticJoints::new(row.clone(), elastic(10.0)).unwrap();
     let settled = model.clone().on_supports(movements).unwrap();

@@ -113,7 +113,7 @@ fn a_settled_arch_stays_where_it_is() {
         (tied(30.0, 0.03), right(0.0, 0.12)),
     ] {
         let mut follower = Follower::new(&row).unwrap();
-        let way = |part: f64| movements.times(part);
+        let way = |part: f64| movements * part;
         follower.move_supports(way, 0.0, 1.0).unwrap();
         let model = settled(&row, &movements);
         for model in [model.clone(), slipping(model, 0.7)] {
@@ -181,7 +181,7 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
     let movements = right(0.06, 0.0);
     let mut follower = Follower::new(&row).unwrap();
     follower
-        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .move_supports(|part| movements * part, 0.0, 1.0)
         .unwrap();
     // As good as glue.
     let onset = friction::onset_at(&row, &follower.stance, 20.0, Sway::Right).unwrap();
@@ -228,7 +228,7 @@ fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
     let row = tied(0.2, 0.05);
     let mut follower = Follower::new(&row).unwrap();
     follower
-        .move_supports(|part| movements.times(part), 0.0, 1.0)
+        .move_supports(|part| movements * part, 0.0, 1.0)
         .unwrap();
     let stretch_m = follower.stance.ties[0].stretch_m.0[0];
     let on_supports = |bears: f64| {

@@ -508,7 +508,7 @@ fn a_slow_foot_goes_as_far_as_the_supports_may() {
     let model = FreeHinges::new(row.clone()).unwrap();
     for (way_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {
         let mut follower = Follower::new(&row).unwrap();
-        let slowly = |part: f64| gone(way_m).times(part);
+        let slowly = |part: f64| gone(way_m) * part;
         let Reached::Falls(falls) = follower.move_supports(slowly, 0.0, 1.0).unwrap() else {
             panic!("it falls");
         };

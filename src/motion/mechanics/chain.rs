@@ -117,16 +117,9 @@ pub enum Hinge {
 }
 
 impl<M: Mechanism> Link<M> {
-    /// The link of a mechanism with its limit, and with the impact that leads to it.
+    /// The link of a mechanism with its unstable equilibrium and its limit, and with the impact that leads to it.
     #[must_use]
-    pub fn new(mechanism: M, limit_rad: f64, rate_ratio: f64, restitution: f64) -> Self {
-        let critical_rad = critical_rad(&mechanism, limit_rad);
-        Self::with_critical_rad(mechanism, critical_rad, limit_rad, rate_ratio, restitution)
-    }
-
-    /// The same link, of a mechanism whose unstable equilibrium is known in closed form.
-    #[must_use]
-    pub fn with_critical_rad(
+    pub fn new(
         mechanism: M,
         critical_rad: f64,
         limit_rad: f64,

@@ -386,7 +386,7 @@ impl RockingColumn {
         };
         let slenderness_rad = column.slenderness_rad();
         let link = |rate_ratio, restitution| {
-            Link::with_critical_rad(tilting, slenderness_rad, FRAC_PI_2, rate_ratio, restitution)
+            Link::new(tilting, slenderness_rad, FRAC_PI_2, rate_ratio, restitution)
         };
         let rate_ratio = match model {
             ImpactModel::Prescribed { restitution } => restitution.sqrt(),

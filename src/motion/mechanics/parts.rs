@@ -3,8 +3,9 @@
 use nalgebra::Vector2;
 
 use super::arch::Arch;
-use super::blocks::{Row, Supports};
+use super::blocks::{Block, Row, Supports};
 use super::column::Column;
+use super::geometry::curve::{distance, sides};
 use super::geometry::ring::{Edge, Ring};
 
 /// Number of equal parts that stand for a continuous ring: the participating mass errs by the square of their size, 1e-6.
@@ -201,12 +202,12 @@ impl Column {
 impl Parts for Row {
     fn parts(&self) -> Vec<Part> {
         let blocks = self.blocks().iter().enumerate();
-        let parts = blocks.map(|(index, block)| Part {
+        let part = |(index, block): (usize, &Block)| Part {
             place: middle_of(index),
             mass_kg: block.mass_kg,
             centre_m: block.centre_m,
-        });
-        parts.collect()
+        };
+        blocks.map(part).collect()
     }
 
     fn outline(&self) -> Outline {
@@ -287,12 +288,7 @@ impl Row {
         if contains(outline, at_m) {
             return 0.0;
         }
-        let next = outline.iter().cycle().skip(1);
-        let distances = outline.iter().zip(next).map(|(from, to)| {
-            let (along, arm) = (to - from, at_m - from);
-            let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-            (arm - along * part).norm()
-        });
+        let distances = sides(outline).map(|side| distance(side, at_m));
         distances.fold(f64::INFINITY, f64::min)
     }
 }
@@ -303,13 +299,10 @@ fn middle_of(block: usize) -> f64 {
 
 /// Whether a point is in a polygon or on its edge.
 fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
-    let next = outline.iter().cycle().skip(1);
     let mut inside = false;
-    for (from, to) in outline.iter().zip(next) {
+    for [from, to] in sides(outline) {
         let along = to - from;
-        let arm = point - from;
-        let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        if (arm - along * part).norm() <= 1e-9 * along.norm() {
+        if distance([from, to], point) <= 1e-9 * along.norm() {
             return true;
         }
         if (from.y > point.y) != (to.y > point.y)

@@ -26,6 +26,7 @@ pub use self::pins::{Hinge, Pins, State};
 use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
+use super::geometry::rigid::linear;
 use super::joints::Placement;
 use super::stability::{StabilityError, falls_at, onset_at};
 use super::stance::Stance;
@@ -60,27 +61,13 @@ pub struct Movement {
     pub rotation_rad: f64,
 }
 
+linear!(Movement {
+    spread_m,
+    settlement_m,
+    rotation_rad
+});
+
 impl Movement {
-    /// This part of it.
-    #[must_use]
-    pub fn times(&self, part: f64) -> Self {
-        Self {
-            spread_m: part * self.spread_m,
-            settlement_m: part * self.settlement_m,
-            rotation_rad: part * self.rotation_rad,
-        }
-    }
-
-    /// Both, one after the other.
-    #[must_use]
-    pub fn and(&self, other: &Self) -> Self {
-        Self {
-            spread_m: self.spread_m + other.spread_m,
-            settlement_m: self.settlement_m + other.settlement_m,
-            rotation_rad: self.rotation_rad + other.rotation_rad,
-        }
-    }
-
     /// Its size over that of the row, or in radians.
     fn extent(&self, size_m: f64) -> f64 {
         self.spread_m.hypot(self.settlement_m) / size_m + self.rotation_rad.abs()
@@ -96,25 +83,9 @@ pub struct Movements {
     pub right: Movement,
 }
 
+linear!(Movements { left, right });
+
 impl Movements {
-    /// This part of them.
-    #[must_use]
-    pub fn times(&self, part: f64) -> Self {
-        Self {
-            left: self.left.times(part),
-            right: self.right.times(part),
-        }
-    }
-
-    /// Both, one after the other.
-    #[must_use]
-    pub fn and(&self, other: &Self) -> Self {
-        Self {
-            left: self.left.and(&other.left),
-            right: self.right.and(&other.right),
-        }
-    }
-
     /// Whether nothing has moved.
     #[must_use]
     pub fn is_none(&self) -> bool {
@@ -323,7 +294,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Reached, SettlingError> {
         let (row, force_g) = (self.row, self.condition.force_g);
         let (first, last) = (movements(from), movements(to));
-        let extent = last.and(&first.times(-1.0)).extent(row.size_m());
+        let extent = (last - first).extent(row.size_m());
         if extent == 0.0 {
             return Ok(Reached::End);
         }

@@ -43,19 +43,12 @@ pub struct Tie {
     pub breaks_at_strain: f64,
 }
 
-/// Why a tie is none. Blocks count from 1 in words.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
+/// Why a tie is not possible. Blocks count from 1 in words.
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum TieError {
     /// A number is out of range.
-    #[error("`{key} = {value:?}` of a tie must be {allowed}")]
-    Value {
-        /// Which number.
-        key: &'static str,
-        /// The number.
-        value: f64,
-        /// What it may be.
-        allowed: &'static str,
-    },
+    #[error("{0}")]
+    Value(String),
     /// It holds on to a block that is not there.
     #[error("there is no block {number}", number = .0 + 1)]
     NoBlock(usize),
@@ -68,39 +61,6 @@ pub enum TieError {
     /// Both ends are on supports.
     #[error("both ends are on supports, which move as they are told: such a tie does nothing")]
     OnSupports,
-    /// It would be nothing without its prestress.
-    #[error(
-        "a prestress of {prestress_n:?} N stretches it by {stretched_m:?} m, and it is only {length_m:?} m long: give less, or a \
-         stiffer tie"
-    )]
-    Stretched {
-        /// Its prestress.
-        prestress_n: f64,
-        /// What that stretches it.
-        stretched_m: f64,
-        /// Its length under that.
-        length_m: f64,
-    },
-    /// It yields before anything moves.
-    #[error(
-        "a prestress of {prestress_n:?} N is above the force at which it yields, {yield_force_n:?} N"
-    )]
-    YieldsAtRest {
-        /// Its prestress.
-        prestress_n: f64,
-        /// The force at which it yields.
-        yield_force_n: f64,
-    },
-    /// It breaks before anything moves.
-    #[error(
-        "it breaks at a strain of {breaks_at_strain:?}, and its prestress alone strains it by {strain:?}"
-    )]
-    BreaksAtRest {
-        /// The strain at which it breaks.
-        breaks_at_strain: f64,
-        /// Its strain at rest.
-        strain: f64,
-    },
 }
 
 impl Tie {
@@ -108,90 +68,81 @@ impl Tie {
     /// structure.
     ///
     /// # Errors
-    /// With what is wrong.
+    /// When a number is out of range, or its ends are on one body.
     pub fn check(&self, blocks: usize, size_m: f64) -> Result<(), TieError> {
+        let [from, to] = &self.ends;
+        let (stiffness_n_m, prestress_n) = (self.stiffness_n_m, self.prestress_n);
+        let (yield_force_n, breaks_at_strain) = (self.yield_force_n, self.breaks_at_strain);
         let positive = "a positive number";
         let not_negative = "a number that is not negative: a tie does not push";
-        for (key, value, allowed, holds) in [
+        let value = |message: String| Err(TieError::Value(message));
+        for (key, number, allowed, holds) in [
             (
                 "stiffness_n_m",
-                self.stiffness_n_m,
+                stiffness_n_m,
                 positive,
-                self.stiffness_n_m > 0.0 && self.stiffness_n_m.is_finite(),
+                stiffness_n_m > 0.0 && stiffness_n_m.is_finite(),
             ),
             (
                 "prestress_n",
-                self.prestress_n,
+                prestress_n,
                 not_negative,
-                self.prestress_n >= 0.0 && self.prestress_n.is_finite(),
+                prestress_n >= 0.0 && prestress_n.is_finite(),
             ),
             (
                 "yield_force_n",
-                self.yield_force_n,
+                yield_force_n,
                 positive,
-                self.yield_force_n > 0.0,
+                yield_force_n > 0.0,
             ),
             (
                 "breaks_at_strain",
-                self.breaks_at_strain,
+                breaks_at_strain,
                 positive,
-                self.breaks_at_strain > 0.0,
+                breaks_at_strain > 0.0,
             ),
         ] {
             if !holds {
-                return Err(TieError::Value {
-                    key,
-                    value,
-                    allowed,
-                });
+                return value(format!("`{key} = {number:?}` of a tie must be {allowed}"));
             }
         }
-        for anchor in &self.ends {
-            if let Some(block) = anchor.block.filter(|block| *block >= blocks) {
-                return Err(TieError::NoBlock(block));
-            }
-            if let Some(value) = anchor.at_m.iter().find(|part| !part.is_finite()) {
-                let (key, allowed) = ("point", "finite");
-                return Err(TieError::Value {
-                    key,
-                    value: *value,
-                    allowed,
-                });
-            }
+        if let Some(number) = from
+            .at_m
+            .iter()
+            .chain(&to.at_m)
+            .find(|part| !part.is_finite())
+        {
+            return value(format!("`point = {number:?}` of a tie must be finite"));
         }
-        match self.ends.map(|anchor| anchor.block) {
+        let mut named = [from.block, to.block].into_iter().flatten();
+        if let Some(block) = named.find(|block| *block >= blocks) {
+            return Err(TieError::NoBlock(block));
+        }
+        match [from.block, to.block] {
             [Some(one), Some(other)] if one == other => return Err(TieError::OneBlock(one)),
             [None, None] => return Err(TieError::OnSupports),
             _ => {}
         }
-        let (length_m, stretched_m) = (self.length_m(), self.prestress_n / self.stiffness_n_m);
-        let prestress_n = self.prestress_n;
+        let (length_m, stretched_m) = (self.length_m(), prestress_n / stiffness_n_m);
+        let strain = stretched_m / (length_m - stretched_m);
         if length_m <= LEAST_LENGTH_RATIO * size_m {
             return Err(TieError::NoLength);
         }
         if stretched_m >= length_m {
-            return Err(TieError::Stretched {
-                prestress_n,
-                stretched_m,
-                length_m,
-            });
+            return value(format!(
+                "a prestress of {prestress_n:?} N stretches it by {stretched_m:?} m, and it is only {length_m:?} m long: give less, or \
+                 a stiffer tie"
+            ));
         }
-        if prestress_n > self.yield_force_n {
-            let yield_force_n = self.yield_force_n;
-            return Err(TieError::YieldsAtRest {
-                prestress_n,
-                yield_force_n,
-            });
+        if prestress_n > yield_force_n {
+            return value(format!(
+                "a prestress of {prestress_n:?} N is above the force at which it yields, {yield_force_n:?} N"
+            ));
         }
-        let (strain, breaks_at_strain) = (
-            stretched_m / (length_m - stretched_m),
-            self.breaks_at_strain,
-        );
         if strain >= breaks_at_strain {
-            return Err(TieError::BreaksAtRest {
-                breaks_at_strain,
-                strain,
-            });
+            return value(format!(
+                "it breaks at a strain of {breaks_at_strain:?}, and its prestress alone strains it by {strain:?}"
+            ));
         }
         Ok(())
     }

@@ -24,7 +24,7 @@ pub(super) fn limit(
 ) -> Result<Answer, NoLimit> {
     let mut follower = Follower::new(row)?;
     // That it follows them was seen when the scenario was read.
-    follower.move_supports(|part| movements.times(part), 0.0, 1.0)?;
+    follower.move_supports(|part| *movements * part, 0.0, 1.0)?;
     let stance = &follower.stance;
     let starts = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
     let starts_g = [starts(Sway::Right)?, starts(Sway::Left)?];

@@ -192,10 +192,10 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread
 
 /// First how far it goes, then the stages on the way there.
 fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
-    let movements = |movement_m: f64| settled.and(&way.movements(movement_m));
+    let movements = |movement_m: f64| settled + way.movements(movement_m);
     let mut start = Follower::new(row)?;
     // That it stands there was seen when the scenario was read.
-    start.move_supports(|part| settled.times(part), 0.0, 1.0)?;
+    start.move_supports(|part| settled * part, 0.0, 1.0)?;
     let before = start.snaps.len();
     let mut scout = start.clone();
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {

@@ -167,7 +167,7 @@ impl RigidRow {
         movements: &Movements,
     ) -> Result<Self, SettledError> {
         let mut follower = Follower::new(&self.row)?;
-        let way = |part: f64| movements.times(part);
+        let way = |part: f64| *movements * part;
         if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
             return Err(SettledError::Falls(part));
         }

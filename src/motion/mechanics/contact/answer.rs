@@ -8,8 +8,6 @@ use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Closure;
 
-const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
-
 /// Motion of a body, given by the velocity of its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
@@ -150,7 +148,7 @@ impl Answer {
     ) {
         if let Some(Press { pin, edge, impulse }) = press {
             let frame = &factor.row.frames[factor.pins[pin].joint];
-            let (corner, impulse) = (frame.corner_m(EDGES[edge]), frame.normal * impulse);
+            let (corner, impulse) = (frame.corner_m(Edge::ALL[edge]), frame.normal * impulse);
             self.motions[pin].push(&factor.bodies[pin], corner, -impulse);
             self.motions[pin + 1].push(&factor.bodies[pin + 1], corner, impulse);
         }
@@ -262,7 +260,7 @@ impl Answer {
         let mut resultant = Momentum::applied_at(pin.point, impulse);
         if let Some(press) = press.filter(|press| press.pin == index) {
             let frame = &row.frames[pin.joint];
-            let corner = frame.corner_m(EDGES[press.edge]);
+            let corner = frame.corner_m(Edge::ALL[press.edge]);
             resultant = resultant + Momentum::applied_at(corner, frame.normal * press.impulse);
         }
         resultant + row.change(&twist, pin.joint, loaded)

@@ -1,19 +1,11 @@
 //! A row in its present position and its load, as sums over its blocks from the left: the sum over any run of blocks is a
 //! difference of two.
 
-use nalgebra::Vector2;
-
 use super::{Load, higher};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::geometry::field::{Momentum, Twist};
 use crate::mechanics::geometry::ring::MassMoments;
 use crate::mechanics::joints::{Frame, Placement};
-
-const NO_MASS: MassMoments = MassMoments {
-    mass: 0.0,
-    first: Vector2::new(0.0, 0.0),
-    polar: 0.0,
-};
 
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
@@ -43,8 +35,8 @@ impl Placed {
                 .map(|b| (b.mass_kg, b.inertia_kg_m2))
                 .collect(),
             frames: Vec::with_capacity(joints),
-            own: vec![NO_MASS; blocks],
-            moments: vec![NO_MASS; blocks + 1],
+            own: vec![MassMoments::NONE; blocks],
+            moments: vec![MassMoments::NONE; blocks + 1],
             momenta: vec![Momentum::ZERO; blocks + 1],
             datum: vec![Twist::ZERO; blocks + 1],
         }
@@ -54,7 +46,7 @@ impl Placed {
     pub fn place(&mut self, placement: &Placement) {
         self.frames.clear();
         self.frames.extend_from_slice(&placement.frames);
-        let mut moments = NO_MASS;
+        let mut moments = MassMoments::NONE;
         for (block, centre) in placement.centres_m.iter().enumerate() {
             let (mass, inertia) = self.masses[block];
             let own = MassMoments {

@@ -11,7 +11,7 @@ use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
-use crate::mechanics::chain::Link;
+use crate::mechanics::chain::{Link, critical_rad};
 use crate::mechanics::geometry::profile::Profile;
 
 /// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
@@ -38,10 +38,11 @@ impl ArchLink {
     fn new(profile: &dyn Profile, impact: Impact, law: ImpactLaw) -> Self {
         let linkage = Linkage::new(profile, &impact.mechanism);
         let limit_rad = linkage.limit_rad();
+        let critical_rad = critical_rad(&linkage, limit_rad);
         let (rate_ratio, restitution) = law.measured(impact.rate_ratio, impact.restitution);
         Self {
             mechanism: impact.mechanism,
-            link: Link::new(linkage, limit_rad, rate_ratio, restitution),
+            link: Link::new(linkage, critical_rad, limit_rad, rate_ratio, restitution),
             // The momentum theorems hold only for the restitution that they give.
             impulse_line: impact.impulse_line.filter(|_| law.is_theory()),
         }

@@ -5,7 +5,7 @@
 
 use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
+use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
 use crate::mechanics::geometry::profile::Profile;
@@ -306,7 +306,7 @@ impl ProductTable {
     /// Twice the kinetic energy that the mechanism keeps.
     fn retained(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
         let size = self.with_before.len();
-        let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + edge_index(EDGES[i]));
+        let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + EDGES[i] as usize);
         let (mut shared, mut own) = (0.0, 0.0);
         for i in 0..4 {
             shared += rotations[i] * self.with_before[index[i]];

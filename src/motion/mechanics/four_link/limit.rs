@@ -5,7 +5,7 @@ use thiserror::Error;
 
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
-use super::search::{Lattice, Objective, Quadruple, best_mechanism, edge_index};
+use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use super::self_weight::carries_its_weight;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::field::{Field, Side, Twist, turned};
@@ -126,7 +126,7 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
         let mut power = Vector2::zeros();
         for i in 0..4 {
-            power -= moments[quadruple[i]][edge_index(EDGES[i])] * rotations[i];
+            power -= moments[quadruple[i]][EDGES[i] as usize] * rotations[i];
         }
         if power.x > 0.0 && power.y > 0.0 {
             -power.y / power.x

@@ -15,7 +15,7 @@ use super::mechanism::FourLink;
 use super::thrust::{Load, Part, ThrustLine};
 use crate::mechanics::chain::{Coefficients, Mechanism, Motion};
 use crate::mechanics::geometry::field::{Momentum, turned};
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::pose::{Pose, product};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::MassMoments;
 
@@ -51,7 +51,7 @@ impl Body {
 
     /// First mass moment when the bar is `bar`.
     fn first(&self, bar: Vector2<f64>) -> Vector2<f64> {
-        complex_product(bar, self.first_per_bar)
+        product(bar, self.first_per_bar)
     }
 }
 
@@ -82,10 +82,6 @@ struct Bars {
     per_cross: f64,
 }
 
-fn complex_product(a: Vector2<f64>, b: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
-}
-
 /// The unit complex number that turns `from` into `to`, vectors of equal length.
 fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
@@ -93,7 +89,7 @@ fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
 
 /// Undoes the rotation by the angle of the unit complex number `turn`.
 fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
-    complex_product(Vector2::new(turn.x, -turn.y), v)
+    product(Vector2::new(turn.x, -turn.y), v)
 }
 
 /// The angle by which `from` is turned to point like `to`.
@@ -124,7 +120,7 @@ impl Linkage {
     /// NaN where the bars B-C and C-D do not reach each other.
     fn bars(&self, q_rad: f64) -> Bars {
         let (sin, cos) = q_rad.sin_cos();
-        let left = complex_product(self.left.bar, Vector2::new(cos, -sin));
+        let left = product(self.left.bar, Vector2::new(cos, -sin));
         // C is where the circles about B and D meet, on the left of the line from B to D.
         let line = self.ground - left;
         let square = line.norm_squared();
@@ -207,9 +203,9 @@ impl Linkage {
         let force_c = (bars.right * on_middle.about(point_b)
             + bars.middle * on_right.about(point_d))
             * bars.per_cross;
-        let force_b = force_c - complex_product(turn_middle, on_middle.linear);
-        let force_a = force_b - complex_product(turn_left, on_left.linear);
-        let force_d = force_c + complex_product(turn_right, on_right.linear);
+        let force_b = force_c - product(turn_middle, on_middle.linear);
+        let force_a = force_b - product(turn_left, on_left.linear);
+        let force_d = force_c + product(turn_right, on_right.linear);
 
         let still = Load::uniform(body_force);
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {

@@ -26,18 +26,10 @@ const EXHAUSTIVE_VOUSSOIRS: usize = 48;
 pub(crate) struct Lattice {
     /// Sections in radians, ascending, springings included.
     pub sections_rad: Vec<f64>,
-    /// Edge points: `points[section][edge]`, edges as in [`edge_index`].
+    /// Edge points: `points[section][edge]`, in the order of their definition.
     points: Vec<[Vector2<f64>; 2]>,
     /// Neighbouring lattice sections are this many joints apart (1: all joints).
     stride: usize,
-}
-
-/// Index of an edge in tables.
-pub(crate) const fn edge_index(edge: Edge) -> usize {
-    match edge {
-        Edge::Intrados => 0,
-        Edge::Extrados => 1,
-    }
 }
 
 /// Lattice indices of the hinges A, B, C, D.
@@ -68,7 +60,7 @@ impl Lattice {
     }
 
     fn hinge_points(&self, quadruple: &Quadruple) -> [Vector2<f64>; 4] {
-        std::array::from_fn(|i| self.points[quadruple[i]][edge_index(EDGES[i])])
+        std::array::from_fn(|i| self.points[quadruple[i]][EDGES[i] as usize])
     }
 
     /// Local maxima of `score` (of opening rotations and lattice indices), best first.

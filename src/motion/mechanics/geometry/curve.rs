@@ -228,11 +228,20 @@ impl Curve {
 
 /// Straight lines from corner to corner and back to the first.
 pub fn polygon(corners: &[Vector2<f64>]) -> impl Iterator<Item = Curve> {
+    sides(corners).map(|[from, to]| Curve::Line { from, to })
+}
+
+/// The sides of a polygon, the last one back to the first corner.
+pub(crate) fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = [Vector2<f64>; 2]> {
     let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(from, to)| Curve::Line {
-        from: *from,
-        to: *to,
-    })
+    corners.iter().zip(next).map(|(from, to)| [*from, *to])
+}
+
+/// Distance of a point from a side.
+pub(crate) fn distance([from, to]: [Vector2<f64>; 2], point: Vector2<f64>) -> f64 {
+    let (along, arm) = (to - from, point - from);
+    let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+    (arm - along * part).norm()
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ macro_rules! linear {
         }
     };
 }
+pub(crate) use linear;
 
 /// `k x v`: `v` turned by a right angle anticlockwise.
 pub fn turned(v: Vector2<f64>) -> Vector2<f64> {

@@ -8,51 +8,15 @@ use super::cut::{CutArch, Place};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
-use crate::mechanics::geometry::curve::Curve;
+use crate::mechanics::geometry::curve::{Curve, distance, sides};
 
 /// Corners that differ in height by less than this fraction of the size are at one level.
 const LEVEL_RATIO: f64 = 1e-9;
 
-/// Why the outline of a block is not valid. Blocks count from 0 here, and from 1 in messages.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum OutlineError {
-    /// There is no such block.
-    #[error("there is no block {number}", number = .block + 1)]
-    NoBlock {
-        /// Which one.
-        block: usize,
-    },
-    /// Too few corners.
-    #[error("block {number} has {count} corners; give at least three", number = .block + 1)]
-    Corners {
-        /// Of which block.
-        block: usize,
-        /// How many it has.
-        count: usize,
-    },
-    /// Two sides cross.
-    #[error(
-        "the outline of block {number} crosses itself (sides {one} and {two}): give its corners in order around it",
-        number = .block + 1, one = .sides.0 + 1, two = .sides.1 + 1
-    )]
-    Crossing {
-        /// Of which block.
-        block: usize,
-        /// From 0 on.
-        sides: (usize, usize),
-    },
-    /// It misses a corner of a joint.
-    #[error(
-        "the outline of block {number} does not pass through the corner ({x:?}, {y:?}) of its joint",
-        number = .block + 1, x = .corner_m.x, y = .corner_m.y
-    )]
-    Misses {
-        /// Of which block.
-        block: usize,
-        /// The corner, in metres.
-        corner_m: Vector2<f64>,
-    },
-}
+/// Why the outline of a block is not valid, in words. Blocks count from 1.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{0}")]
+pub struct OutlineError(String);
 
 /// Blocks between joints, from left to right (of a stack: from the base up).
 ///
@@ -119,27 +83,31 @@ impl GivenBlocks {
         block: usize,
         corners: &[Vector2<f64>],
     ) -> Result<(), OutlineError> {
-        let Some([before, after]) = self
-            .joints
-            .get(block..)
-            .and_then(|joints| joints.first_chunk())
-        else {
-            return Err(OutlineError::NoBlock { block });
+        let number = block + 1;
+        let refused = |message: String| Err(OutlineError(message));
+        let joints = self.joints.get(block..);
+        let Some([before, after]) = joints.and_then(|joints| joints.first_chunk()) else {
+            return refused(format!("there is no block {number}"));
         };
         if corners.len() < 3 {
             let count = corners.len();
-            return Err(OutlineError::Corners { block, count });
+            return refused(format!(
+                "block {number} has {count} corners; give at least three"
+            ));
         }
-        if let Some(sides) = crossing_sides(corners) {
-            return Err(OutlineError::Crossing { block, sides });
+        if let Some((one, two)) = crossing_sides(corners) {
+            return refused(format!(
+                "the outline of block {number} crosses itself (sides {} and {}): give its corners in order around it",
+                one + 1,
+                two + 1
+            ));
         }
-        for corner_m in [before, after]
-            .into_iter()
-            .flat_map(|joint| [joint.intrados_m, joint.extrados_m])
-        {
-            if !is_on(corners, corner_m) {
-                return Err(OutlineError::Misses { block, corner_m });
-            }
+        let mut corners_m = before.outline_m(after).into_iter();
+        if let Some(corner_m) = corners_m.find(|corner_m| !is_on(corners, *corner_m)) {
+            return refused(format!(
+                "the outline of block {number} does not pass through the corner ({:?}, {:?}) of its joint",
+                corner_m.x, corner_m.y
+            ));
         }
         Ok(())
     }
@@ -235,26 +203,16 @@ impl GivenBlocks {
     }
 }
 
-type Line = [Vector2<f64>; 2];
-
-fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = Line> {
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(|(from, to)| [*from, *to])
-}
-
 fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
-    sides(corners).any(|[from, to]| {
-        let along = to - from;
-        let part = ((point - from).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        (from + along * part - point).norm() <= 1e-6 * along.norm()
-    })
+    sides(corners).any(|side| distance(side, point) <= 1e-6 * (side[1] - side[0]).norm())
 }
 
 /// Two sides of a polygon that cross, by their indices.
 fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
-    let sides: Vec<Line> = sides(corners).collect();
-    let turns = |[from, to]: Line, point: Vector2<f64>| (to - from).perp(&(point - from));
-    let crosses = |one: Line, two: Line| {
+    let sides: Vec<_> = sides(corners).collect();
+    let turns =
+        |[from, to]: [Vector2<f64>; 2], point: Vector2<f64>| (to - from).perp(&(point - from));
+    let crosses = |one: [Vector2<f64>; 2], two: [Vector2<f64>; 2]| {
         turns(one, two[0]) * turns(one, two[1]) < 0.0
             && turns(two, one[0]) * turns(two, one[1]) < 0.0
     };

@@ -28,8 +28,6 @@ const STIFFER: f64 = 1e6;
 /// A tie lengthens as its first end goes back, and as its second one goes on.
 const ENDS: [f64; 2] = [-1.0, 1.0];
 
-const EDGES: [Edge; 2] = [Edge::Intrados, Edge::Extrados];
-
 /// A joint that turns about one of its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hinge {
@@ -107,10 +105,10 @@ impl State {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
             let hinge = self.hinges.iter().find(|hinge| hinge.joint == joint);
-            EDGES
-                .into_iter()
+            Edge::ALL
+                .iter()
                 .zip(*forces)
-                .filter_map(move |(edge, force)| {
+                .filter_map(move |(&edge, force)| {
                     let there = hinge.is_none_or(|hinge| hinge.edge == edge);
                     there.then_some((Hinge { joint, edge }, force))
                 })
@@ -721,7 +719,7 @@ mod tests {
             tie([foot, end(3)], 0.5),
         ];
         let row = row.with_ties(ties, 9.81).unwrap();
-        let hinges = EDGES.into_iter().cycle().zip([0, 2, 4, 6, 8]);
+        let hinges = Edge::ALL.iter().copied().cycle().zip([0, 2, 4, 6, 8]);
         let hinges = hinges.map(|(edge, joint)| Hinge { joint, edge });
         let pins = Pins::new(&row, hinges.collect());
         let condition = Condition {
