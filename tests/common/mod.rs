@@ -4,6 +4,7 @@ pub mod browser;
 pub mod momentum;
 pub mod motions;
 pub mod program;
+pub mod prose;
 pub mod results;
 
 use archrock::dynamics::ground::Pulse;

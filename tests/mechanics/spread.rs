@@ -21,6 +21,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use crate::common::parsed;
 use crate::common::program::{printed, refused};
+use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named, points};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
@@ -689,11 +690,8 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
         .iter()
         .map(|hinge| serde_json::json!({ "joint": hinge.joint, "edge": hinge.edge.name() }));
     assert_eq!(told["hinges"], listed.collect::<serde_json::Value>());
-    let holds = format!(
-        "its tie pulls with {:.6} kN, and it holds it there: it is a mechanism without\n",
-        force_n / 1e3
-    );
-    assert!(words.contains(&holds), "{words}");
+    shows(&words, &[force_n / 1e3]);
+    golden("limit-held-by-tie", &words);
     for sway in [Sway::Right, Sway::Left] {
         let side = sway.name();
         let [first_g, falls_g] = follower.pushes_g(sway).unwrap().unwrap();
@@ -701,10 +699,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
         assert_eq!(told["incipient_acceleration_g"][side], first_g);
         assert_eq!(told["capacity_g"][side], falls_g);
         assert_eq!(told["mechanism"][side], serde_json::json!([]));
-        let pushes = format!(
-            "any push to the {side} moves it\ncapacity to the {side}, where it falls: {falls_g:.8} g\n"
-        );
-        assert!(words.contains(&pushes), "{words}");
+        shows(&words, &[falls_g]);
     }
 
     let angles_deg = [90.0, 0.0];
@@ -1152,15 +1147,11 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
     let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
-    assert!(
-        words.contains(
-            "right springing outwards: falls at 0.558231 m, 0.06035 of the clear span of 9.250 m"
-        ),
-        "{words}"
-    );
     let told = json(&folder.path().join("results/arch/spread.json"));
     let path = &told["paths"][0];
-    assert!((path["falls_at_m"].as_f64().unwrap() - 0.558_230_9).abs() < 1e-6);
+    let falls_at_m = path["falls_at_m"].as_f64().unwrap();
+    assert!((falls_at_m - 0.558_230_9).abs() < 1e-6);
+    shows(&words, &[falls_at_m, falls_at_m / 9.25, 9.25]);
     let undeformed = &path["stages"][0]["capacity_g"]["right"];
     assert!((undeformed.as_f64().unwrap() - 0.144_799_62).abs() < 1e-8);
     assert!(path["stages"][0]["thrust_n"].is_null());
@@ -1294,12 +1285,11 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
             "0",
         ],
     );
-    assert!(
-        words.contains("at 67 degrees: falls at 0.358811 m"),
-        "{words}"
-    );
-    assert!(words.contains("outwards: falls at"), "{words}");
+    golden("spread", &words);
     let told = json(&folder.path().join("results/flat/spread.json"));
+    let falls_at_m = [0, 1].map(|path: usize| told["paths"][path]["falls_at_m"].as_f64().unwrap());
+    assert!((falls_at_m[0] - 0.358_811).abs() < 5e-7);
+    shows(&words, &falls_at_m);
     let stages = told["paths"][0]["stages"].as_array().unwrap();
     let mut missing = 0;
     for stage in stages {
@@ -1311,8 +1301,7 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
             if let Some(reason) = reason {
                 missing += 1;
                 assert_eq!(reason["push"], "capacity");
-                let text = reason["reason"].as_str().unwrap();
-                assert!(text.contains("parts: blocks that do not touch"), "{text}");
+                assert!(!reason["reason"].as_str().unwrap().is_empty());
                 // One side alone is not the weaker one.
                 let row = format!("  {:<11.6}", stage["movement_m"].as_f64().unwrap());
                 let mut shown = words.lines().filter(|line| line.starts_with(&row));
@@ -1321,8 +1310,6 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
         }
     }
     assert!(missing > 0);
-    assert!(words.contains("capacity to the"), "{words}");
-    assert!(words.contains("stages, first at"), "{words}");
 }
 
 #[test]

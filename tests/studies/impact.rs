@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::program::{printed, refused};
+use crate::common::prose::golden;
 use crate::common::results::{self, Table};
 use archrock::internals::contact::{Load, Program};
 use archrock::mechanics::blocks::Row;
@@ -362,16 +363,7 @@ fn a_row_is_told_in_words() {
         folder.path(),
         &[&["impact", "own.toml"], &options[..]].concat(),
     );
-    for words in [
-        "impacts after a first sway to the right",
-        "impacts after a first sway to the left",
-        "impact models compared, impact 1 after a first sway to the left",
-        "certificate of impact 1 after a first sway to the left",
-        "(any number of hinges; 15 joints)",
-        "opens at joints, counted from the left",
-    ] {
-        assert!(text.contains(words), "{words:?} is not in: {text}");
-    }
+    golden("impact", &text);
     for words in ["deg", "ring"] {
         let of_ring = text
             .lines()
@@ -422,6 +414,13 @@ fn what_does_not_go_with_a_structure_is_refused() {
     }
     assert!(!folder.join("p.svg").exists());
     // A column sways alike to both sides.
-    let text = printed(folder, &["impact", "column.toml", "--first", "left"]);
-    assert!(text.contains("after a first sway to the left"));
+    let [left, right] =
+        ["left", "right"].map(|side| printed(folder, &["impact", "column.toml", "--first", side]));
+    let words =
+        |text: &str| -> Vec<String> { text.split_whitespace().map(str::to_owned).collect() };
+    let other_way = right
+        .replace("right", "-")
+        .replace("left", "right")
+        .replace('-', "left");
+    assert_eq!(words(&left), words(&other_way));
 }

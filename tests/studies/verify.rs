@@ -4,10 +4,11 @@
 use crate::common::browser;
 use crate::common::parsed;
 use crate::common::program::{archrock, printed as print_of, refused, scenarios};
+use crate::common::prose::{golden, shows};
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
-    ByDisplacement, Check, Method, NoCheck, SideCheck, page, to_json, words,
+    ByDisplacement, Check, Margin, Method, NoCheck, SideCheck, page, to_json, words,
 };
 use archrock::{Scenario, Sway};
 use serde_json::Value;
@@ -31,6 +32,11 @@ fn check(text: &str) -> Check {
 fn side(check: &Check, state: LimitState, sway: Sway) -> &SideCheck {
     let one = check.states.iter().find(|one| one.state == state).unwrap();
     one.sides.iter().find(|side| side.sway == sway).unwrap()
+}
+
+fn governing(check: &Check, state: LimitState) -> Option<(Sway, Method, Margin)> {
+    let one = check.states.iter().find(|one| one.state == state).unwrap();
+    one.governing()
 }
 
 fn displacement(check: &Check, state: LimitState, sway: Sway) -> ByDisplacement {
@@ -174,19 +180,17 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
 fn the_worse_side_counts_unless_one_is_held() {
     let text = format!("{}{DEMAND}", on_piers());
     let both = check(&text);
-    let slv = both
-        .states
-        .iter()
-        .find(|one| one.state == LimitState::Slv)
-        .unwrap();
-    let (sway, method, margin) = slv.governing().unwrap();
+    let (sway, method, margin) = governing(&both, LimitState::Slv).unwrap();
     assert_eq!((sway, method), (Sway::Left, Method::Displacement));
     printed(margin.zeta_e, "0.52080");
     printed(both.zeta_e(), "0.47581");
     let right = check(&format!("{text}[verify]\nsides = 'right'\n"));
     assert_eq!(right.mechanisms.len(), 1);
     printed(right.zeta_e(), "1.14153");
-    assert!(words(&right).contains("SLV  passed: zeta_E 1.23940 to the right, by displacement"));
+    let (sway, method, margin) = governing(&right, LimitState::Slv).unwrap();
+    assert_eq!((sway, method), (Sway::Right, Method::Displacement));
+    printed(margin.zeta_e, "1.23940");
+    shows(&words(&right), &[margin.zeta_e]);
 }
 
 /// T_0 of C8.7.1.7, the acceleration demanded at that period, and the end of the elastic branch. The check by displacement, which
@@ -238,9 +242,7 @@ fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
     let start_g = slv.activation_ag_g.unwrap();
     assert!(start_g > slv.displacement.ag_capacity_g.unwrap());
     assert!((slv.margin.zeta_e - start_g / 0.25).abs() < 1e-12);
-    let said = words(&check);
-    assert!(said.contains("the activation counts"), "{said}");
-    assert!(said.contains("to either side, by activation"), "{said}");
+    shows(&words(&check), &[slv.margin.zeta_e]);
     let json = to_json(&parsed(&text), &check).unwrap();
     assert_eq!(json["states"]["slv"]["method"], "activation");
     assert_eq!(json["states"]["slv"]["side"], "either");
@@ -292,7 +294,7 @@ fn a_spectrum_of_points_names_no_clause() {
     );
     let json = to_json(&scenario, &check).unwrap();
     assert_eq!(json["formulas"], Value::Null);
-    assert!(words(&check).contains("no clause is named"));
+    assert!(!words(&check).contains("C8.7"));
     // The resolved scenario reads back the same, in its folder.
     let resolved = folder.path().join("b.toml");
     std::fs::write(&resolved, scenario.to_toml()).unwrap();
@@ -459,37 +461,21 @@ const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hin
 /// A linkage that locks: only the damage limit state and its multiple can be checked.
 #[test]
 fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
-    for (structure, why) in [(LOCKS, "comes to the end of its way")] {
+    for structure in [LOCKS] {
         let check = check(&format!("{structure}{DEMAND}"));
         for mechanism in &check.mechanisms {
-            assert!(mechanism.way.as_ref().unwrap_err().contains(why));
+            assert!(mechanism.way.is_err());
             // The virtual work of the bodies reproduces the push of limit analysis.
             let model = parsed(structure).model().unwrap();
             let incipient_g = model.incipient_acceleration_g(mechanism.sway).unwrap();
             assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
         }
-        let slv = check
-            .states
-            .iter()
-            .find(|one| one.state == LimitState::Slv)
-            .unwrap();
-        assert_eq!(slv.governing().unwrap().1, Method::Simplified);
-        let slc = check
-            .states
-            .iter()
-            .find(|one| one.state == LimitState::Slc)
-            .unwrap();
-        assert_eq!(slc.governing(), None);
-        let said = words(&check);
-        assert!(
-            said.contains("SLC  not checked: there is no capacity curve"),
-            "{said}"
-        );
+        let (_, method, _) = governing(&check, LimitState::Slv).unwrap();
+        assert_eq!(method, Method::Simplified);
+        assert_eq!(governing(&check, LimitState::Slc), None);
         // Its joints would slide first, which the page does not deny.
-        assert!(
-            said.contains("warning: To the right joints slide at 0.4288 g"),
-            "{said}"
-        );
+        shows(&check.warnings.join("\n"), &[0.4288]);
+        golden("verify-without-curve", &words(&check));
         let only = DEMAND.split_once("[demand.slc]").unwrap().1;
         let only =
             format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
@@ -555,12 +541,12 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
             assert!((point.oscillator_displacement_m - d_m).abs() < 1e-9);
         }
     }
-    let said = words(&leaning);
-    assert!(
-        said.contains("SLV  not passed: zeta_E 0.84538 to the left"),
-        "{said}"
-    );
-    assert!(words(&taper).contains("to either side, by displacement"));
+    let (sway, _, margin) = governing(&leaning, LimitState::Slv).unwrap();
+    assert_eq!(sway, Sway::Left);
+    printed(margin.zeta_e, "0.84538");
+    shows(&words(&leaning), &[margin.zeta_e]);
+    let (_, method, _) = governing(&taper, LimitState::Slv).unwrap();
+    assert_eq!(method, Method::Displacement);
 }
 
 /// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
@@ -575,12 +561,12 @@ fn c8_7_1_1_what_slides_before_is_no_mechanism() {
         &["friction coefficient of 0.577", "to the right"],
     );
     let squat = COLUMN.replace("width_m = 0.8", "width_m = 2.8");
-    let said = words(&check(&format!("{squat}{DEMAND}")));
-    assert!(
-        said.contains("warning: To the right the mechanism needs a friction coefficient of 0.700"),
-        "{said}"
+    shows(
+        &check(&format!("{squat}{DEMAND}")).warnings.join("\n"),
+        &[0.7, 0.577],
     );
-    assert!(!words(&check(&format!("{COLUMN}{DEMAND}"))).contains("warning"));
+    let slender = check(&format!("{COLUMN}{DEMAND}"));
+    assert_eq!(slender.warnings, Vec::<String>::new());
 }
 
 /// Friction is compared with the smaller of 0.577 and the coefficient of the scenario. If joints of that coefficient slide first, there is
@@ -601,7 +587,7 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     assert_eq!(check_enough.warnings, Vec::<String>::new());
     let json = to_json(&enough, &check_enough).unwrap();
     assert_eq!(json["allowed_friction"], 0.52);
-    assert!(page(&enough, &check_enough, "").contains("the scenario has 0.52"));
+    assert!(page(&enough, &check_enough, "").contains("0.52"));
     assert_eq!(check(&with(0.8)).allowed_friction, 0.577);
     // The mechanism needs 0.590, and it does not slide first at 0.588.
     let arch =
@@ -609,16 +595,11 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     let slides = format!("{arch}[free_hinges]\nfriction_coefficient = 0.42\n{DEMAND}");
     let error = Check::new(&parsed(&slides)).unwrap_err();
     assert!(
-        error.to_string().contains("0.42 joints slide at 0.1204 g"),
+        matches!(error, NoCheck::Slides { coefficient, at_g, .. } if coefficient == 0.42 && (at_g - 0.1204).abs() < 5e-5),
         "{error}"
     );
     let warned = check(&format!("{arch}{DEMAND}")).warnings;
-    assert!(
-        warned[0].contains(
-            "needs a friction coefficient of 0.590, and the Circolare has 0.577 for walls"
-        ),
-        "{warned:?}"
-    );
+    shows(&warned[0], &[0.590, 0.577]);
 }
 
 /// Sides with a number that differs are printed one by one: a tie that holds one side, a leaning stack, a demand that only words of the
@@ -667,7 +648,7 @@ fn unlikely_and_ignored_input_is_warned_of() {
     let scenario = parsed(&text);
     let check = Check::new(&scenario).unwrap();
     let html = page(&scenario, &check, "");
-    for words in ["0.1 %", "9.8 m/s2", "[uncertain] is ignored"] {
+    for words in ["0.1 %", "9.8 m/s2", "[uncertain]"] {
         let mut given = check.warnings.iter();
         assert!(
             given.any(|one| one.contains(words)),
@@ -736,11 +717,7 @@ fn what_does_not_stand_is_refused() {
 fn the_command_says_and_writes_the_check() {
     let folder = in_folder(ARCH, DEMAND);
     let said = print_of(folder.path(), &["verify", "a.toml"]);
-    assert!(
-        said.starts_with("The structure does not pass SLV (zeta_E 0.48659) or SLC (zeta_E 0.44541); it passes SLD (zeta_E 1.01604).\n")
-            && said.contains("SLV  not passed: zeta_E 0.48659 to either side, by displacement"),
-        "{said}"
-    );
+    golden("verify", &said);
     let output = archrock(folder.path(), &["verify", "a.toml", "--format", "json"]);
     assert_eq!(output.status.code(), Some(0));
     let json: Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -748,6 +725,13 @@ fn the_command_says_and_writes_the_check() {
     assert_eq!(file, output.stdout);
     assert_eq!(json["verdict"]["slv"], "not_passed");
     assert_eq!(json["verdict"]["sld"], "passed");
+    for (state, known) in [("sld", "1.01604"), ("slv", "0.48659"), ("slc", "0.44541")] {
+        let zeta_e = json["states"][state]["zeta_e"].as_f64().unwrap();
+        printed(zeta_e, known);
+        shows(&said, &[zeta_e]);
+    }
+    assert_eq!(json["states"]["slv"]["method"], "displacement");
+    assert_eq!(json["states"]["slv"]["side"], "either");
     let scenario = Scenario::read(&folder.path().join("a.toml")).unwrap();
     let check = Check::new(&scenario).unwrap();
     assert_eq!(json["zeta_e"], check.zeta_e());

@@ -1,0 +1,85 @@
+//! Printed sentences: their numbers are compared with results, and one text of each study as a whole with `tests/golden`.
+//!
+//! A better sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test golden` writes them all anew.
+
+use std::fs;
+use std::path::Path;
+
+/// The text with `#` in place of every number, and the numbers as printed, in order.
+pub fn skeleton(text: &str) -> (String, Vec<&str>) {
+    let (mut shape, mut numbers) = (String::new(), Vec::new());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let within_word = rest[..start].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let length = rest[start..]
+            .find(|c: char| !(c.is_ascii_digit() || c == '.'))
+            .unwrap_or(rest.len() - start);
+        // A full stop ends the sentence.
+        let length = rest[start..start + length].trim_end_matches('.').len();
+        let minus = rest[..start]
+            .strip_suffix(['-', '\u{2212}', '+'])
+            .map_or(0, |before| {
+                let is_sign = before.is_empty() || before.ends_with([' ', '(', '[', ',']);
+                if is_sign { start - before.len() } else { 0 }
+            });
+        let (before, number) = (start - minus, &rest[start - minus..start + length]);
+        shape += &rest[..before];
+        if within_word {
+            shape += number;
+        } else {
+            shape.push('#');
+            numbers.push(number);
+        }
+        rest = &rest[start + length..];
+    }
+    (shape + rest, numbers)
+}
+
+/// Whether a printed number is this one, rounded to the digits shown; it must show three of them.
+fn is_shown(printed: &str, value: f64) -> bool {
+    let printed = printed.replace('\u{2212}', "-");
+    let printed = printed.trim_start_matches('+');
+    let digits = printed.split_once('.').map_or(0, |(_, after)| after.len());
+    let significant = printed.trim_start_matches(['-', '0', '.']);
+    let whole = value.fract() == 0.0 && digits == 0;
+    (whole || significant.len() >= 3) && format!("{value:.digits$}") == printed
+}
+
+/// Asserts that a text shows these numbers, each rounded to the digits shown.
+#[track_caller]
+pub fn shows(text: &str, numbers: &[f64]) {
+    let (_, printed) = skeleton(text);
+    for &number in numbers {
+        assert!(
+            printed.iter().any(|printed| is_shown(printed, number)),
+            "{number} is not in: {text}"
+        );
+    }
+}
+
+/// Compares a text with `tests/golden/NAME.txt`, or writes it there if `ARCHROCK_GOLDEN` is `write`.
+#[track_caller]
+pub fn golden(name: &str, text: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden");
+    let path = folder.join(format!("{name}.txt"));
+    if std::env::var("ARCHROCK_GOLDEN").is_ok_and(|value| value == "write") {
+        fs::create_dir_all(folder).unwrap();
+        fs::write(path, text).unwrap();
+        return;
+    }
+    let known = fs::read_to_string(&path).unwrap_or_default();
+    let first = (known.lines().zip(text.lines())).find(|(known, now)| known != now);
+    assert!(
+        known == text,
+        "tests/golden/{name}.txt differs, first in {first:?}. If the new text is better: ARCHROCK_GOLDEN=write cargo test golden"
+    );
+}
+
+#[test]
+fn numbers_leave_the_shape_of_a_sentence() {
+    let (shape, numbers) = skeleton("tie_1 pulls 12.50 kN at -0.3 g, (-2 to 3 s), SLV 0.5.");
+    assert_eq!(shape, "tie_1 pulls # kN at # g, (# to # s), SLV #.");
+    assert_eq!(numbers, ["12.50", "-0.3", "-2", "3", "0.5"]);
+    shows("falls at 0.358811 m with 16 blocks", &[0.358_810_9, 16.0]);
+    assert!(!is_shown("0.36", 0.358_81));
+}
