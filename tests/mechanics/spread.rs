@@ -4,10 +4,11 @@
 use archrock::ElasticJoints;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::model::{Model as _, Request};
+use archrock::internals::contact::ContactError;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, RestError};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::settling::{Follower, Movement, Movements, Reached};
+use archrock::mechanics::settling::{Follower, Movement, Movements, Reached, SettlingError};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie};
 use archrock::studies::spread::{Springing, Way, spread};
@@ -1339,6 +1340,39 @@ fn what_has_no_two_springings_has_no_spread() {
         folder.path(),
         &["spread", "ring.toml", "--angle", "200"],
         &["from -180 to 180"],
+    );
+}
+
+/// Where the springings' extrados lies above the intrados of the crown, no hinges let the springings approach each other: the arch
+/// jams, and neither its weights nor its iterations are the reason.
+#[test]
+fn a_flat_thick_arch_jams() {
+    let way = |embrace_deg, way| {
+        let row = arch(embrace_deg, 0.41, 12);
+        Follower::new(&row)
+            .unwrap()
+            .move_supports(right(way), 0.0, 1e-3)
+    };
+    for jams in [INWARDS, DOWN] {
+        let error = way(97.0, jams).unwrap_err();
+        assert!(
+            matches!(error, SettlingError::Contact(ContactError::Jammed { .. })),
+            "{error}"
+        );
+    }
+    assert_eq!(way(97.0, OUT), Ok(Reached::End));
+    // (1 + 0.205) cos(51.5 degrees) = 0.750 is below 1 - 0.205.
+    assert_eq!(way(103.0, INWARDS), Ok(Reached::End));
+
+    let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.41\nembrace_deg = 97.0\nvoussoirs = 12\n[free_hinges]\n";
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("flat.toml"), text).unwrap();
+    let words = printed(folder.path(), &["--quiet", "spread", "flat.toml"]);
+    let jammed = "right springing inwards: stands up to 0.000000 m, and was not followed further: the blocks jam";
+    assert!(words.contains(jammed), "{words}");
+    assert!(
+        words.contains("right springing outwards: falls at"),
+        "{words}"
     );
 }
 

@@ -42,15 +42,28 @@ const RATE_TOLERANCE: f64 = 1e-11;
 /// it does to free bodies.
 const DEPENDENCE: f64 = 1e-10;
 
-/// The program was not solved within its number of iterations, at the loosest tolerance.
+/// Why a program has no solution, or none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error(
-    "the velocities of the blocks were not found in {iterations} iterations: where the heaviest block is more than some \
-     1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
-)]
-pub struct ContactError {
-    /// Iterations spent.
-    pub iterations: usize,
+pub enum ContactError {
+    /// The program was not solved within its number of iterations, at the loosest tolerance.
+    #[error(
+        "the velocities of the blocks were not found in {iterations} iterations: where the heaviest block is more than some \
+         1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
+    )]
+    Unsolved {
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// No velocities satisfy the program: whatever the blocks do, the corner of a joint closes further. Supports that approach each other
+    /// jam a flat, thick arch.
+    #[error(
+        "the blocks jam: rigid blocks that do not slide cannot follow the supports, since joint {joint} (from 0 at the left springing) \
+         would overlap"
+    )]
+    Jammed {
+        /// Which joint, from 0 on the left support.
+        joint: usize,
+    },
 }
 
 /// The cost of a solution.
@@ -92,6 +105,8 @@ pub struct Program {
     wrong: Vec<Wrong>,
     /// The active set before the last exchange.
     earlier: Vec<Corners>,
+    /// The joint that closes although all active corners press more the more it is pressed.
+    jammed: Option<usize>,
 }
 
 impl Program {
@@ -108,6 +123,7 @@ impl Program {
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
             earlier: vec![[true; 2]; joints],
+            jammed: None,
         };
         program.place(&Placement::new(row));
         program.reset();
@@ -198,7 +214,9 @@ impl Program {
         }
         let finite = self.set_velocities();
         let iterations = effort.iterations;
-        finite.then_some(effort).ok_or(ContactError { iterations })
+        finite
+            .then_some(effort)
+            .ok_or(ContactError::Unsolved { iterations })
     }
 
     /// Velocities under another load while the same corners press as in the last solution, even where they would pull.

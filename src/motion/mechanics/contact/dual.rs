@@ -19,6 +19,7 @@ impl Program {
         iterations: &mut usize,
     ) -> bool {
         let cap = *iterations + 60 + 2 * self.active.len();
+        self.jammed = None;
         while *iterations <= cap {
             if self.release() {
                 self.factor.update(&self.active);
@@ -53,7 +54,11 @@ impl Program {
             effort.relaxed += 1;
             if tolerance > LARGEST_RATE_TOLERANCE {
                 let iterations = *iterations;
-                return Err(ContactError { iterations });
+                return Err(self
+                    .jammed
+                    .map_or(ContactError::Unsolved { iterations }, |joint| {
+                        ContactError::Jammed { joint }
+                    }));
             }
         }
         Ok(())
@@ -119,6 +124,7 @@ impl Program {
                 self.factor.update(&self.active);
             }
             let Some((blocked, blocked_edge)) = blocking else {
+                self.jammed = Some(joint);
                 return false;
             };
             impulse += partial;
