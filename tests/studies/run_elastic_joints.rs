@@ -494,3 +494,25 @@ fn a_threshold_says_what_it_hangs_on() {
     let words = "  with 1 GPa/m: overturns at factor 0.4500 (0.4500 g) already, the smallest tried";
     assert!(said.contains(words), "{said}");
 }
+
+/// A repetition may overturn too, but to the other side: the verdict names it, and does not claim that all is the same.
+#[test]
+fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/tour/nga1.at2");
+    fs::copy(record, folder.path().join("nga1.at2")).unwrap();
+    let text = "[arch]\nspan_m = 6.0\nmeasured_at = \"intrados\"\nembrace_deg = 150.0\nthickness_m = 0.5\nvoussoirs = 21\n\
+                [elastic_joints]\nnormal_stiffness_gpa_m = 30.0\n[simulation]\nduration_s = 30.0\n\
+                [ground.record]\nfile = \"nga1.at2\"\nscale = 1.25\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let words = printed(folder.path(), &["run", "s.toml", "--no-report"]);
+    assert!(
+        words.contains("ANOTHER OUTCOME, overturned to the right and overturned to the left"),
+        "{words}"
+    );
+    assert!(
+        words.contains("overturns to the left, and to the right with half steps;"),
+        "{words}"
+    );
+    assert!(!words.contains("the same with other steps"), "{words}");
+}

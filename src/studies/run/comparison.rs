@@ -93,10 +93,12 @@ fn believed(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
             writeln!(text, "  {}: ANOTHER OUTCOME", run.name())
         } else if own_verdict == Verdict::Overturns {
             let late_s = other.outcome_time_s - own.outcome_time_s;
+            let when = if late_s < 0.0 { "earlier" } else { "later" };
             writeln!(
                 text,
-                "  {}: overturns too, {late_s:+.4} s later",
-                run.name()
+                "  {}: overturns too, {:.4} s {when}",
+                run.name(),
+                late_s.abs()
             )
         } else if own_rad > 0.0 {
             let times = other_rad / own_rad;

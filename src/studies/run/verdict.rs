@@ -111,9 +111,9 @@ impl Evidence<'_> {
         if let Outcome::NeverMoved | Outcome::Incomplete = self.history.outcome {
             return None;
         }
-        if self.repeated().is_some() {
+        if let Some(spread) = self.repeated() {
             let known = self.verdict() != Verdict::Uncertain;
-            return known.then(|| "the same with other steps".to_owned());
+            return known.then(|| agreement(spread, self.history.outcome));
         }
         let is_arch = self.scenario.structure().thrusts();
         let four = self.scenario.motion().hinges() == Hinges::Four && is_arch;
@@ -138,6 +138,25 @@ impl Evidence<'_> {
         let needed = needs(self.scenario, self.history).into_iter();
         needed.chain(otherwise(self.history, self.varied)).collect()
     }
+}
+
+/// In which sense repetitions agree that the structure overturns or survives: it may overturn to either side, or rest earlier.
+fn agreement(spread: &Spread, own: Outcome) -> String {
+    if spread.same_outcome() {
+        return "the same with other steps".to_owned();
+    }
+    let Outcome::Overturned(sway) = own else {
+        return "and survives with other steps".to_owned();
+    };
+    let outcomes = spread.outcomes.iter().skip(1);
+    let opposite = spread
+        .repeated
+        .iter()
+        .zip(outcomes)
+        .filter(|(_, other)| **other != own)
+        .map(|(name, _)| *name);
+    let names = opposite.collect::<Vec<_>>().join(" and ");
+    format!("and to the {} with {names}", sway.opposite().name())
 }
 
 /// Why an incomplete run has no verdict, and what to do.
