@@ -735,3 +735,62 @@ fn a_column_of_drums_has_a_threshold_with_free_hinges() {
         "{outcomes:?}"
     );
 }
+
+/// Ends of ranges that follow each other on a line are printed with as many digits as distinguish them.
+#[test]
+fn neighbouring_ends_are_printed_with_distinct_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 15\n[free_hinges]\n\
+                [ground.step_pair]\namplitude_g = 0.45\nduration_s = 0.5\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let words = printed(
+        folder.path(),
+        &[
+            "--quiet",
+            "threshold",
+            "s.toml",
+            "--from",
+            "1.1",
+            "--to",
+            "1.15",
+        ],
+    );
+    let mut ranges = 0;
+    for line in words.lines().filter(|line| line.contains(" up to ")) {
+        let ends: Vec<&str> = line
+            .split(" up to ")
+            .skip(1)
+            .map(|rest| rest.split(';').next().unwrap())
+            .collect();
+        ranges += ends.len();
+        let distinct: BTreeSet<&str> = ends.iter().copied().collect();
+        assert_eq!(distinct.len(), ends.len(), "{line}");
+    }
+    assert!(ranges > 1, "{words}");
+}
+
+/// Histories are counted once: factors at which the ground falls freely have none, and are in no total.
+#[test]
+fn all_totals_of_histories_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[free_hinges]\n[ground.half_sine]\namplitude_g = 0.9\n\
+                duration_s = 0.3\nvertical_amplitude_g = -0.9\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let words = printed(folder.path(), &["--quiet", "threshold", "s.toml"]);
+    assert!(
+        words.contains("the ground falls as fast as a free body"),
+        "{words}"
+    );
+    let totals: Vec<&str> = words
+        .lines()
+        .filter(|line| line.contains("histories"))
+        .map(|line| {
+            let (before, _) = line.split_once(" histories").unwrap();
+            before.rsplit(' ').next().unwrap()
+        })
+        .collect();
+    assert!(
+        totals.len() > 1 && totals.iter().all(|total| *total == totals[0]),
+        "{words}"
+    );
+}

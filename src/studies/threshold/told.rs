@@ -390,12 +390,20 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
     }
     // A line for each band, with the range that follows it.
     let mut lines: Vec<String> = Vec::new();
+    let mut printed_end: Option<f64> = None;
     for (verdict, range) in &threshold.ranges {
         let factors = [range.from, range.to];
         let factor = rounded_range(factors);
         let accelerations_g = rounded_range(factors.map(|factor| factor * peak_g));
-        let [begins, to] =
+        let [begins, mut to] =
             [0, 1].map(|end| format!("{} ({} g)", factor[end], accelerations_g[end]));
+        // After "up to" only ends are printed, so each must differ from the last one.
+        if let (Some(last), false) = (printed_end, *verdict == Verdict::Overturns) {
+            let [_, factor] = rounded_range([last, range.to]);
+            let [_, acceleration_g] = rounded_range([last, range.to].map(|end| end * peak_g));
+            to = format!("{factor} ({acceleration_g} g)");
+        }
+        printed_end = Some(range.to);
         let (ends, beyond) = match range.to_end {
             RangeEnd::Sampled => ("up to the largest factor".to_owned(), ""),
             RangeEnd::Unknown => (format!("to {to}"), "; not known beyond"),
@@ -432,7 +440,10 @@ fn ranges(text: &mut String, peak_g: f64, threshold: &Threshold) {
 
 /// Adds what is doubtful about the ranges.
 fn doubts(text: &mut String, threshold: &Threshold) {
-    let uncertain = threshold.samples.iter().filter_map(|sample| {
+    let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+    let samples = &threshold.samples;
+    let histories = samples.iter().filter(|sample| !falls(sample)).count();
+    let uncertain = samples.iter().filter_map(|sample| {
         let reason = sample.result.as_ref().ok()?.uncertain.as_ref()?;
         Some((sample.factor, reason))
     });
@@ -442,12 +453,10 @@ fn doubts(text: &mut String, threshold: &Threshold) {
             text,
             "  uncertain: {} of {} histories; the first, at factor {}: {reason}",
             uncertain.len(),
-            threshold.samples.len(),
+            histories,
             rounded(*factor)
         );
     }
-    let falls = |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-    let samples = &threshold.samples;
     if let Some(first) = samples.iter().find(falls) {
         let _ = writeln!(
             text,
@@ -466,7 +475,7 @@ fn doubts(text: &mut String, threshold: &Threshold) {
             text,
             "  failed: {} of {} histories; the first, at factor {}: {reason}",
             failed.len(),
-            samples.len(),
+            histories,
             rounded(*factor)
         );
     }
@@ -481,8 +490,7 @@ fn doubts(text: &mut String, threshold: &Threshold) {
     if rocking > 0 {
         let _ = writeln!(
             text,
-            "  still rocking at the end of the run, which counts as survived: {rocking} of {} histories",
-            samples.len()
+            "  still rocking at the end of the run, which counts as survived: {rocking} of {histories} histories"
         );
     }
 }
