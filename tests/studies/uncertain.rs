@@ -415,7 +415,7 @@ fn maps_tell_the_probability_of_each_cell() {
         "{said}"
     );
     assert!(
-        said.contains("the scenario itself overturns in ") && said.contains("width decides "),
+        said.contains("the scenario itself overturns in ") && said.contains("width alone decides "),
         "{said}"
     );
     // Cells that the block of 0.8 m survives and narrower ones do not, counted from the tables.
@@ -957,7 +957,7 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'impact.restitution' = { deviation = 0.1 }",
-            "has no value in the scenario that it could deviate from",
+            "has no value in the scenario from which it could deviate",
         ),
         (
             "'arch.span_m' = { from = 9.0, to = 11.0 }",

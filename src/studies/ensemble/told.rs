@@ -90,12 +90,21 @@ impl<'a> Decides<'a> {
         format!(";\n    {decided};\n    {NOT_CONSIDERED}")
     }
 
-    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`.
+    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`. What is
+    /// left is decided by several numbers together, unless the intervals allow that nothing is left.
     fn in_words(&self, uncertain: &Uncertain) -> Option<String> {
         const LEAST: f64 = 0.05;
         let mut of: Vec<_> = self.of.as_ref()?.iter().collect();
         of.sort_by(|a, b| b.1.first_order.total_cmp(&a.1.first_order));
+        if let [(key, _)] = of[..] {
+            let name = spoken(&key.key, uncertain);
+            return Some(format!("{name} alone decides {}", self.what));
+        }
         let known: f64 = of.iter().map(|(_, matters)| matters.first_order).sum();
+        let at_most: f64 = of
+            .iter()
+            .map(|(_, matters)| matters.first_order_interval[1])
+            .sum();
         let matter = of
             .iter()
             .filter(|(_, matters)| matters.first_order >= LEAST);
@@ -115,7 +124,9 @@ impl<'a> Decides<'a> {
             .map(|(name, share)| format!(", {name} {share}"))
             .collect();
         let together = if known < 1.0 - LEAST {
-            format!("; {} is decided by several together", percent(1.0 - known))
+            let chance = if at_most < 1.0 { "" } else { ", or by chance" };
+            let left = percent(1.0 - known);
+            format!("; {left} is decided by several together{chance}")
         } else {
             String::new()
         };

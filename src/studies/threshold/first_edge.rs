@@ -63,10 +63,12 @@ impl FirstEdge {
             };
             if found == Verdict::Overturns {
                 edge.factor = Some(if edge.tried_to > 0.0 {
-                    let overturns = |at| verdict(at).map(|found| found == Verdict::Overturns);
-                    let ends =
-                        try_bisect(edge.tried_to, strength, Width::Relative(width), overturns);
-                    ends.map_err(NoAnswer::Failed)?.1
+                    let overturns = |at| match verdict(at) {
+                        Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
+                        Ok(found) => Ok(found == Verdict::Overturns),
+                        Err(reason) => Err(NoAnswer::Failed(reason)),
+                    };
+                    try_bisect(edge.tried_to, strength, Width::Relative(width), overturns)?.1
                 } else {
                     edge.at_most = true;
                     strength
@@ -95,5 +97,30 @@ impl FirstEdge {
             Some(_) => (!self.at_most).then_some(false),
             None => (factor <= self.tried_to).then_some(false),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A history without a verdict is neither survived nor overturned, also where an edge is narrowed.
+    #[test]
+    fn an_incomplete_history_next_to_an_edge_answers_nothing() {
+        let verdict = |incomplete_to: f64| {
+            move |strength: f64| {
+                Ok(if strength >= 0.7 {
+                    Verdict::Overturns
+                } else if strength >= 0.5 && strength < incomplete_to {
+                    Verdict::Incomplete
+                } else {
+                    Verdict::Survives
+                })
+            }
+        };
+        let edge = |to| FirstEdge::search(&[0.4, 1.0], EDGE_WIDTH, verdict(to));
+        assert!(matches!(edge(0.7), Err(NoAnswer::Incomplete)));
+        let found = edge(0.0).unwrap().factor.unwrap();
+        assert!((found - 0.7).abs() < 0.7 * EDGE_WIDTH, "{found}");
     }
 }
