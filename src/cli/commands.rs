@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
 
+use archrock::FourLinkError;
 use archrock::FourLinks;
 use archrock::dynamics::model::MechanismModel;
 use archrock::mechanics::friction::FrictionError;
@@ -77,7 +78,14 @@ impl From<NoLimit> for Failure {
 pub fn four_links(scenario: &Scenario, what: &str) -> Result<FourLinks, Failure> {
     let model = scenario.structure().four_links(scenario.motion().impact());
     model
-        .map_err(|error| Failure::Input(error.to_string()))?
+        .map_err(|error| {
+            Failure::Input(match error {
+                FourLinkError::Ties => {
+                    format!("{what} for arches without ties only: four links take none")
+                }
+                error => error.to_string(),
+            })
+        })?
         .ok_or_else(|| Failure::Input(format!("{what} for arches only; the scenario has a column")))
 }
 

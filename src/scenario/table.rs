@@ -132,8 +132,7 @@ impl Legible {
             offset: first.offset,
             of_file: false,
             message: format!(
-                "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; \
-                 `archrock check` tells what is in it",
+                "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario",
                 first.message
             ),
         })

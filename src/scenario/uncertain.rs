@@ -357,8 +357,7 @@ impl Uncertain {
         }
         if key.own.is_none() && matches!(key.spread, Spread::About { .. }) {
             return Err(format!(
-                "has no value in the scenario that it could deviate from, as `archrock check` prints it: give {} there, \
-                 or a range here",
+                "has no value in the scenario from which it could deviate: give {} there, or a range here",
                 key.key
             ));
         }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::program::{done, printed, scenarios};
+use crate::common::program::{done, printed, refused, scenarios};
 use crate::common::results::{Table, named, number, points, strokes, texts};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::geometry::profile::Profile;
@@ -704,4 +704,18 @@ fn pictures_of_an_arch_have_fill_loads_and_dimensions() {
         assert!(named(&document, "fill").len() >= 4, "{arguments:?}");
         assert!(!named(&document, "load").is_empty(), "{arguments:?}");
     }
+}
+
+/// The picture of `limit` is that of four links. Where ties rule them out, the error does not ask for a table that the scenario has.
+#[test]
+fn the_picture_of_a_tied_limit_is_refused_with_its_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 15\n[free_hinges]\n\
+                [[tie]]\nheight_m = 2.5\nstiffness_n_m = 1e6\n";
+    std::fs::write(folder.path().join("s.toml"), text).unwrap();
+    refused(
+        folder.path(),
+        &["limit", "s.toml", "--plot", "l.svg"],
+        &["--plot is for arches without ties only: four links take none"],
+    );
 }

@@ -230,7 +230,7 @@ impl Mechanism {
             Way::of_row(row, sway, &bodies, gravity_m_s2)
         } else {
             Err(
-                "the forces of ties change as the structure moves; `archrock verify` does not follow them, `archrock capacity` does"
+                "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does"
                     .to_owned(),
             )
         };
