@@ -10,7 +10,6 @@ use archrock::dynamics::fall::FallEnd;
 use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
-use archrock::output::mechanisms;
 use archrock::output::scene::{Point, Scene};
 use archrock::studies::run;
 use archrock::studies::run::report::Report;
@@ -400,7 +399,7 @@ fn event(event: &Event) -> Value {
         "rotations_rad": event.rotations_rad,
         "rates_rad_s": event.rates_rad_s,
         "energy_j": event.energy_j,
-        "hinges": mechanisms::hinges(&event.hinges),
+        "hinges": event.hinges,
         "impact": event.impact.as_ref().map(|impact| self::impact(event.time_s, impact)),
     })
 }
@@ -416,8 +415,8 @@ fn impact(time_s: f64, impact: &Impact) -> Value {
         "energy_after_j": impact.energy_after_j,
         "rates_before_rad_s": impact.rates_before_rad_s,
         "rates_after_rad_s": impact.rates_after_rad_s,
-        "closed": mechanisms::hinges(&impact.closed),
-        "opened": mechanisms::hinges(&impact.opened),
+        "closed": impact.closed,
+        "opened": impact.opened,
         "impulses_n_s": impulses.map(|one| [one.x, one.y]).collect::<Vec<_>>(),
     })
 }

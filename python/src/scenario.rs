@@ -259,19 +259,8 @@ impl Scenario {
 
     /// The acceleration that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
-        let gravity_m_s2 = self.inner.gravity_m_s2();
-        if self.inner.motion().supports().is_some() {
-            let answer = py.detach(|| limit::limit(&self.inner)).map_err(refused)?;
-            return Ok(answer.json.to_string());
-        }
-        if let Some(row) = self.inner.row().map_err(refused)? {
-            let [right, left] =
-                py.detach(|| [Sway::Right, Sway::Left].map(|sway| onset(&row, sway)));
-            let onsets = [right.map_err(refused)?, left.map_err(refused)?];
-            return Ok(limit::row_json(&row, &onsets, gravity_m_s2).to_string());
-        }
-        let json = self.of_mechanisms(py, |model| limit::mechanism_json(model, gravity_m_s2))?;
-        Ok(json.to_string())
+        let answer = py.detach(|| limit::limit(&self.inner)).map_err(refused)?;
+        Ok(answer.json.to_string())
     }
 
     /// The mechanisms through which impacts lead after a first sway to a side, as `archrock impact --format json`.

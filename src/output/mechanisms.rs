@@ -1,28 +1,5 @@
 //! Names of hinges and bodies, for programs and for people.
 
-use serde_json::{Value, json};
-
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::ring::Edge;
-
-/// Hinges from left to right: `{angle_deg, edge}`, the angle from the left springing, for an arch,
-/// `{toe}` for a column.
-#[must_use]
-pub fn hinges(hinges: &[Hinge]) -> Value {
-    hinges
-        .iter()
-        .map(|hinge| match hinge {
-            Hinge::Section { angle_rad, edge } => {
-                json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() })
-            }
-            Hinge::Toe(side) => json!({ "toe": side.name() }),
-            Hinge::Joint { joint, edge } => {
-                json!({ "joint": joint, "edge": edge.map(Edge::name) })
-            }
-        })
-        .collect()
-}
-
 /// Names of the hinges of an arch, from left to right.
 pub(crate) const HINGES: [&str; 4] = ["A", "B", "C", "D"];
 

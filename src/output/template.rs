@@ -7,7 +7,7 @@ pub(crate) fn render(template: &impl Template) -> String {
     let text = template.render();
     // Writing to a string cannot fail, and neither do the filters.
     let text = text.expect("templates are written to memory");
-    format!("{}\n", text.trim_end())
+    format!("{}\n", text.trim())
 }
 
 /// A number of a template: absent ones are printed as "-".
@@ -48,6 +48,20 @@ pub(crate) mod filters {
     pub fn fixed(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
         let fixed = |number| argument::fixed(number, decimals);
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
+    }
+
+    /// With the fewest digits that read back as the same number.
+    #[filter_fn]
+    pub fn exact(number: &f64, _: &dyn Values) -> Result<String> {
+        Ok(format!("{number:?}"))
+    }
+
+    /// Forces in N as a list in kN.
+    #[filter_fn]
+    pub fn kilonewtons(forces_n: &[f64], _: &dyn Values) -> Result<String> {
+        let forces = forces_n.iter().map(|force_n| 1e-3 * force_n);
+        let forces = forces.map(|force_kn| format!("{} kN", argument::fixed(force_kn, 6)));
+        Ok(forces.collect::<Vec<_>>().join(", "))
     }
 
     /// Padded with blanks on the left, so that it ends at the right of a column of this width.

@@ -420,13 +420,12 @@ fn a_tied_arch_on_piers_has_its_pushes() {
             .len(),
         5
     );
-    for words in [
-        "what it bears at most",
-        "to the right 0.29382434 g with 9.916",
-        "without: 0.25388685 g to the right",
-    ] {
-        assert!(yielding.text.contains(words), "{}", yielding.text);
-    }
+    // The words print the numbers of the summary.
+    assert!(
+        yielding.text.contains("0.29382434 g with 9.916"),
+        "{}",
+        yielding.text
+    );
     let too_much = Scenario::parse(
         &format!(
             "{text}\n[[tie]]\nbetween = 'springings'\nstiffness_n_m = 1e8\nprestress_n = 8e4\n"

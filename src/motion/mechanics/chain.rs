@@ -4,7 +4,10 @@
 //! Lengths are in units of the structure's size, masses in its unit of mass; every mechanism is described in
 //! the frame in which it sways right.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector2;
+use serde::{Serialize, Serializer};
 
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::geometry::pose::Pose;
@@ -96,17 +99,19 @@ pub struct Link<M> {
 }
 
 /// A hinge: where one part of a structure turns against another, or against the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Hinge {
     /// At an edge of a section of an arch.
     Section {
-        /// The section, in radians from the left springing.
+        /// The section, in radians from the left springing; in degrees as `angle_deg` of files.
+        #[serde(rename = "angle_deg", serialize_with = "in_degrees")]
         angle_rad: f64,
         /// The edge.
         edge: Edge,
     },
-    /// At a toe of the base of a column, on this side.
-    Toe(Sway),
+    /// At a toe of the base of a column, on this side; `toe` of files.
+    Toe(#[serde(serialize_with = "as_toe")] Sway),
     /// At a joint of a row of blocks.
     Joint {
         /// The joint, from 0 at the left springing or the base.
@@ -114,6 +119,14 @@ pub enum Hinge {
         /// The edge about which it opens; `None` where both edges open.
         edge: Option<Edge>,
     },
+}
+
+fn in_degrees<S: Serializer>(angle_rad: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    angle_rad.to_degrees().serialize(serializer)
+}
+
+fn as_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> {
+    BTreeMap::from([("toe", side)]).serialize(serializer)
 }
 
 impl<M: Mechanism> Link<M> {

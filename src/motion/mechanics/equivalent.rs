@@ -17,20 +17,23 @@
 //! stiffens or softens on its way. The first describes overturning and near-overturning, the second small
 //! rocking.
 
+use serde::Serialize;
+
 use super::chain::{Link, Mechanism, MechanismChain};
 use super::sway::Sway;
 
 /// A free-standing block.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Block {
     /// Frequency parameter `p = sqrt(3 g / (4 R))`, in rad/s.
+    #[serde(rename = "p_rad_s")]
     pub frequency_rad_s: f64,
     /// Half diagonal `R = 3 g / (4 p^2)`, in metres.
     pub half_diagonal_m: f64,
 }
 
 /// The blocks equivalent to a structure.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Equivalent {
     /// Slenderness `alpha = atan(A_L)` of both, in radians.
     pub slenderness_rad: f64,

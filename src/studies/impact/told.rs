@@ -14,7 +14,6 @@ use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
-use crate::output::mechanisms::hinges;
 use crate::output::table::{Cell, column, csv};
 
 /// Result of `impact` for any structure: the first `count` links of the chain that begins with a sway to
@@ -23,7 +22,7 @@ use crate::output::table::{Cell, column, csv};
 pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Value> {
     let side = |index: usize| {
         let sway = first.before(index);
-        json!({ "sway": sway.name(), "hinges": hinges(&model.hinges_after(index, sway)) })
+        json!({ "sway": sway.name(), "hinges": model.hinges_after(index, sway) })
     };
     (1..=count)
         .map_while(|index| Some((index, model.restitution_from(first, index)?)))
@@ -126,7 +125,7 @@ pub(super) fn models(impact: &LinkImpact<'_>, models: &[(ImpactModel, Option<Imp
             "restitution": by_model.restitution,
             "after": {
                 "sway": sway.name(),
-                "hinges": hinges(&mechanism.named_hinges_from_left(impact.profile(), sway)),
+                "hinges": mechanism.named_hinges_from_left(impact.profile(), sway),
             },
             "impulses": line.map(|line| impulses(impact, line)),
             "impulse_line": line.map(|line| extremes(impact, line)),

@@ -1,17 +1,25 @@
 //! Limit analysis of a scenario: the ground acceleration that starts the structure, and its mechanism.
 
-mod settled;
-mod told;
+mod report;
 
 use thiserror::Error;
 
-pub use self::told::{mechanism_json, row_json};
+use self::report::open_joints;
+pub use self::report::{
+    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, RestingHinge,
+    Summary, TieLimits, Ties, YieldingJoint, YieldingTies,
+};
 use super::results::Answer;
 use crate::dynamics::free_hinges::FreeHingesError;
+use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
-use crate::mechanics::friction::FrictionError;
-use crate::mechanics::settling::SettlingError;
-use crate::mechanics::stability::StabilityError;
+use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
+use crate::mechanics::settling::{Follower, Movements, SettlingError};
+use crate::mechanics::sides::Sides;
+use crate::mechanics::stability::{
+    RowOnset, StabilityError, limit_with_yielding_ties, onset, onset_at,
+};
+use crate::mechanics::sway::Sway;
 use crate::scenario::{ModelError, Scenario};
 
 /// Why there is no limit analysis.
@@ -29,31 +37,191 @@ pub enum NoLimit {
     /// The structure does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
-    /// It does not follow its supports.
+    /// The structure does not follow its supports.
     #[error(transparent)]
     Settling(#[from] SettlingError),
     /// The structure slides apart, or the analysis failed.
     #[error(transparent)]
     Friction(#[from] FrictionError),
+    /// A result is not a number.
+    #[error("{0}")]
+    Output(String),
 }
 
-/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction. Of one whose
-/// supports have moved: where it then stands, and also the push at which it falls.
+/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction. For
+/// moved springings: the hinges on which the structure stands, and also the push at which it falls.
 ///
 /// # Errors
 /// When the structure does not stand, or the analysis does not apply to it.
 pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
+    let row = || scenario.structure().row().map_err(FreeHingesError::from);
+    let coefficient = scenario.motion().friction_coefficient();
     if let Some(movements) = scenario.motion().supports() {
-        let row = scenario.structure().row().map_err(FreeHingesError::from)?;
-        return settled::limit(scenario, &row, &movements);
+        return Ok(of_moved_row(scenario, &row()?, &movements, coefficient)?.answer()?);
     }
-    let mut answer = match scenario.row()? {
-        Some(row) => told::row(scenario, &row)?,
-        None => told::mechanism(scenario)?,
+    let mut summary = match scenario.row()? {
+        Some(row) => of_row(scenario, &row)?,
+        None => Summary::of_mechanism(&*scenario.mechanisms()?, scenario.gravity_m_s2()),
     };
-    if let Some(coefficient) = scenario.motion().friction_coefficient() {
-        let row = scenario.structure().row().map_err(FreeHingesError::from)?;
-        told::add_friction(&mut answer, &row, coefficient)?;
+    if let Some(coefficient) = coefficient {
+        summary.friction = Some(with_friction(&row()?, coefficient)?);
     }
-    Ok(answer)
+    Ok(summary.answer()?)
+}
+
+/// Limit analysis of an undeformed row by the static programme.
+fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
+    let gravity_m_s2 = scenario.gravity_m_s2();
+    let onsets = Sides::try_of(|sway| onset(row, sway))?;
+    let mut summary = Summary::new(
+        onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g)),
+        onsets.map(|onset| open_joints(row, onset.as_ref())),
+        gravity_m_s2,
+    );
+    if !row.ties().is_empty() {
+        summary.ties = Some(ties(row)?);
+        summary.tie_places = scenario.structure().tie_places();
+    }
+    summary.is_arch = scenario.structure().thrusts();
+    if !summary.is_arch {
+        return Ok(summary);
+    }
+    summary.four_links = Some(match scenario.mechanisms() {
+        // Limit analysis of the row is complete without them.
+        Err(FourLinkError::Ties) => FourLinks::None {
+            none_because: "four links take no ties, so there are no unstable equilibrium and no equivalent block of theirs"
+                .to_owned(),
+        },
+        Err(error) => FourLinks::None {
+            none_because: error.to_string(),
+        },
+        Ok(model) => {
+            summary.bodies = model.bodies();
+            FourLinks::Sides(Sides::of(|sway| FourLinkSide {
+                hinges: model.hinges_after(0, sway),
+                unstable_equilibrium_rad: model.critical_rotations_towards_rad(sway),
+                equivalent_block: model.equivalent_towards(sway, gravity_m_s2),
+            }))
+        }
+    });
+    Ok(summary)
+}
+
+/// Forces of ties at rest, and the pushes without ties and with yielding ties, for a row that stands with its ties.
+fn ties(row: &Row) -> Result<Ties, StabilityError> {
+    let untied = row.clone().without_ties();
+    let without = Sides::try_of(|sway| onset(&untied, sway));
+    let without = match without {
+        Ok(onsets) => Some(onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g))),
+        Err(StabilityError::CannotStand(_)) => None,
+        Err(error) => return Err(error),
+    };
+    let yielding = Sides::try_of(|sway| {
+        let limit = limit_with_yielding_ties(row, sway)?;
+        let onset = limit.as_ref().map(|limit| &limit.onset);
+        Ok::<_, StabilityError>(YieldingTies {
+            incipient_acceleration_g: onset.map(|onset| onset.acceleration_g),
+            mechanism: open_joints(row, onset),
+            forces_n: limit.map(|limit| limit.forces_n),
+        })
+    })?;
+    Ok(Ties {
+        forces_at_rest_n: row.ties().iter().map(|tie| tie.prestress_n).collect(),
+        limits: Some(TieLimits {
+            stands_without: without.is_some(),
+            without: without.unwrap_or_default(),
+            yielding,
+        }),
+        hold: false,
+    })
+}
+
+/// The onset of motion of an undeformed row whose joints slip.
+fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
+    let sides = Sides::try_of(|sway| {
+        let onset = friction::onset(row, coefficient, sway)?;
+        let joints = |onset: &FrictionOnset| {
+            let joints = onset.yields.iter().map(|joint| YieldingJoint {
+                joint: joint.joint,
+                opens_intrados: joint.opens[0],
+                opens_extrados: joint.opens[1],
+                slips_towards: joint.slips,
+            });
+            joints.collect()
+        };
+        Ok::<_, FrictionError>(FrictionSide {
+            incipient_acceleration_g: onset.as_ref().map(|onset| onset.acceleration_g),
+            sliding_governs: onset.as_ref().is_some_and(FrictionOnset::sliding_governs),
+            mechanism: onset.as_ref().map(joints),
+        })
+    })?;
+    Ok(Friction {
+        coefficient,
+        onset: FrictionLimit::Undeformed {
+            least_coefficient: friction::least_coefficient(row)?,
+            sides,
+        },
+    })
+}
+
+/// The push of the first motion and the push at which a row falls whose springings have moved: see
+/// [`crate::mechanics::settling`].
+fn of_moved_row(
+    scenario: &Scenario,
+    row: &Row,
+    movements: &Movements,
+    coefficient: Option<f64>,
+) -> Result<Summary, NoLimit> {
+    let mut follower = Follower::new(row)?;
+    // The reader of the scenario has seen that the row follows these movements.
+    follower.move_supports(|part| *movements * part, 0.0, 1.0)?;
+    let stance = &follower.stance;
+    let starts_g =
+        Sides::try_of(|sway| follower.first_motion_g(sway)).map_err(SettlingError::from)?;
+    let mechanism = Sides::of(|sway| open_joints(row, mechanism(row, &follower, sway).as_ref()));
+    let capacity = Sides::of(|sway| match *starts_g.to(sway) {
+        Some(start_g) => follower.capacity_g(sway, start_g),
+        None => Ok(None),
+    });
+    let mut summary = Summary::new(starts_g, mechanism, scenario.gravity_m_s2());
+    summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
+    summary.capacity_not_found =
+        Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
+    let hinges = follower
+        .hinges()
+        .map_or(&[][..], |pins| &pins.hinges)
+        .iter();
+    let resting = |hinge: &crate::mechanics::settling::Hinge| RestingHinge {
+        joint: hinge.joint,
+        edge: hinge.edge,
+    };
+    summary.hinges = Some(hinges.map(resting).collect());
+    if !row.ties().is_empty() {
+        summary.tie_places = scenario.structure().tie_places();
+        summary.ties = Some(Ties {
+            forces_at_rest_n: stance.forces_n().collect(),
+            limits: None,
+            hold: follower.is_held_by_ties(),
+        });
+    }
+    if let Some(coefficient) = coefficient {
+        let push_g = |sway| {
+            let onset = friction::onset_at(row, stance, coefficient, sway)?;
+            Ok::<_, FrictionError>(onset.map(|onset| onset.acceleration_g))
+        };
+        let onset = FrictionLimit::Moved {
+            incipient_acceleration_g: Sides::try_of(push_g)?,
+        };
+        summary.friction = Some(Friction { coefficient, onset });
+    }
+    Ok(summary)
+}
+
+/// The mechanism in which the hinges of a row on moved springings give way to a push; none where any push moves it, because ties hold
+/// it on more than three hinges or it is about to fall.
+fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
+    if follower.is_held_by_ties() {
+        return None;
+    }
+    onset_at(row, &follower.stance, sway).ok().flatten()
 }

@@ -9,8 +9,6 @@ use super::{
     StateCheck, alike, notes,
 };
 use crate::dynamics::demand::ground::GroundSpectrum;
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::ring::Edge;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 
@@ -120,13 +118,7 @@ impl Sums {
 fn mechanism(check: &Check, mechanism: &Mechanism) -> Value {
     let sums = Sums::of(mechanism, check.gravity_m_s2);
     let hinges = mechanism.hinges.iter().map(|placed| {
-        let mut hinge = match placed.hinge {
-            Hinge::Section { angle_rad, edge } => {
-                json!({ "angle_deg": angle_rad.to_degrees(), "edge": edge.name() })
-            }
-            Hinge::Toe(side) => json!({ "toe": side.name() }),
-            Hinge::Joint { joint, edge } => json!({ "joint": joint, "edge": edge.map(Edge::name) }),
-        };
+        let mut hinge = json!(placed.hinge);
         hinge["x_m"] = (placed.at_m.x + 0.0).into();
         hinge["y_m"] = (placed.at_m.y + 0.0).into();
         hinge

@@ -1,0 +1,356 @@
+//! The report of limit analysis: the summary as JSON, from which its words follow.
+
+use askama::Template;
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::NoLimit;
+use crate::argument::fixed;
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::equivalent::Equivalent;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sides::Sides;
+use crate::mechanics::stability::RowOnset;
+use crate::mechanics::sway::Sway;
+use crate::output::OutputError;
+use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
+use crate::output::summary::summary_of;
+use crate::output::template::{filters, render};
+use crate::studies::results::Answer;
+
+/// The onset of motion of a structure, to either side.
+#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[template(path = "studies/limit/words.txt")]
+pub struct Summary {
+    /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion where its springings have
+    /// moved. Null if no push starts it.
+    pub incipient_acceleration_g: Sides<Option<f64>>,
+    /// Ground acceleration that starts the structure, in m/s2.
+    pub incipient_acceleration_m_s2: Sides<Option<f64>>,
+    /// Hinges of the mechanism that starts, from left to right.
+    pub mechanism: Sides<Vec<OpenHinge>>,
+    /// Rotations of the bodies at the unstable equilibrium of the first mechanism that sways right, in radians. Present for four links
+    /// and columns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unstable_rotations: Option<Map<String, Value>>,
+    /// Equivalent free-standing blocks. Present for four links and columns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub equivalent_block: Option<Equivalent>,
+    /// The push at which a structure on moved springings falls, in units of gravity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub capacity_g: Option<Sides<Option<f64>>>,
+    /// Why that push was not found; null where it was, or where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub capacity_not_found: Option<Sides<Option<String>>>,
+    /// Hinges on which a structure on moved springings stands.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hinges: Option<Vec<RestingHinge>>,
+    /// Present for a structure with ties.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ties: Option<Ties>,
+    /// The first mechanism of a row as four links. Present for an arch of blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub four_links: Option<FourLinks>,
+    /// Present if joints may slip.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub friction: Option<Friction>,
+    /// Names of the bodies of the first mechanism.
+    #[serde(skip)]
+    pub(super) bodies: Vec<String>,
+    /// Frame of reference, and the place of each tie.
+    #[serde(skip)]
+    pub(super) tie_places: Vec<String>,
+    /// Whether the joints of a row are those of an arch; `false` for a stack.
+    #[serde(skip)]
+    pub(super) is_arch: bool,
+}
+
+/// A hinge of the mechanism that starts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum OpenHinge {
+    /// A hinge of four links or of a column.
+    Link(Hinge),
+    /// A joint of a row that opens.
+    Joint {
+        /// The joint, from 0 at the left springing or the base.
+        joint: usize,
+        /// The edge about which it opens; null where both edges open.
+        edge: Option<Edge>,
+        /// Position of that edge in metres.
+        x_m: f64,
+        /// Position of that edge in metres.
+        y_m: f64,
+    },
+}
+
+/// A hinge on which a structure stands whose springings have moved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RestingHinge {
+    /// The joint, from 0 at the left springing.
+    pub joint: usize,
+    /// The edge at which it is closed.
+    pub edge: Edge,
+}
+
+/// Forces of ties, and the pushes that they change.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ties {
+    /// Force of each tie at rest, in N.
+    pub forces_at_rest_n: Vec<f64>,
+    /// Limit analysis without ties and with yielding ties. Absent where springings have moved.
+    #[serde(flatten)]
+    pub limits: Option<TieLimits>,
+    /// Whether a structure on moved springings is a mechanism without its ties.
+    #[serde(skip)]
+    pub(super) hold: bool,
+}
+
+/// Limit analysis without ties and with yielding ties.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TieLimits {
+    /// Whether the structure stands without its ties.
+    pub stands_without: bool,
+    /// The push that starts the structure without its ties, in units of gravity.
+    pub without: Sides<Option<f64>>,
+    /// The largest push while each tie pulls with the best force up to yielding.
+    pub yielding: Sides<YieldingTies>,
+}
+
+/// The largest push to one side while each tie pulls with the best force up to yielding.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct YieldingTies {
+    /// The push in units of gravity; null if there is no limit while ties hold.
+    pub incipient_acceleration_g: Option<f64>,
+    /// Force of each tie in N; null likewise. The smallest forces that give this push.
+    pub forces_n: Option<Vec<f64>>,
+    /// Hinges of the mechanism.
+    pub mechanism: Vec<OpenHinge>,
+}
+
+/// The first mechanism of a row as four links.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum FourLinks {
+    /// It does not move as four links.
+    None {
+        /// The reason.
+        none_because: String,
+    },
+    /// The mechanisms to the right and to the left.
+    Sides(Sides<FourLinkSide>),
+}
+
+/// The first mechanism of four links to one side.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FourLinkSide {
+    /// Hinges from left to right.
+    pub hinges: Vec<Hinge>,
+    /// Rotations of the bodies at the unstable equilibrium, in radians, from left to right.
+    pub unstable_equilibrium_rad: Vec<f64>,
+    /// Equivalent free-standing blocks.
+    pub equivalent_block: Option<Equivalent>,
+}
+
+/// The onset of motion of a row whose joints slip.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Friction {
+    /// The coefficient of friction of the scenario.
+    pub coefficient: f64,
+    /// How the row starts.
+    #[serde(flatten)]
+    pub onset: FrictionLimit,
+}
+
+/// How a row starts whose joints slip.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum FrictionLimit {
+    /// The undeformed row.
+    Undeformed {
+        /// The least coefficient with which the row stands.
+        least_coefficient: f64,
+        /// The mechanisms to the right and to the left.
+        #[serde(flatten)]
+        sides: Sides<FrictionSide>,
+    },
+    /// A row on moved springings.
+    Moved {
+        /// The push of the first motion in units of gravity; null if no push starts it.
+        incipient_acceleration_g: Sides<Option<f64>>,
+    },
+}
+
+/// The onset to one side of a row whose joints slip.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FrictionSide {
+    /// The push in units of gravity, an upper bound if sliding governs; null if no push starts it.
+    pub incipient_acceleration_g: Option<f64>,
+    /// Whether a joint of the mechanism slips.
+    pub sliding_governs: bool,
+    /// Joints of the mechanism; null if no push starts it.
+    pub mechanism: Option<Vec<YieldingJoint>>,
+}
+
+/// A joint of a mechanism in which joints slip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct YieldingJoint {
+    /// The joint, from 0 at the left springing or the base.
+    pub joint: usize,
+    /// Whether the joint opens at the intrados, beyond what slipping needs.
+    pub opens_intrados: bool,
+    /// Whether the joint opens at the extrados, beyond what slipping needs.
+    pub opens_extrados: bool,
+    /// The edge towards which the right block slips, if it does.
+    pub slips_towards: Option<Edge>,
+}
+
+impl Summary {
+    /// A summary with the push that starts the structure and its mechanism alone.
+    pub(super) fn new(
+        incipient_acceleration_g: Sides<Option<f64>>,
+        mechanism: Sides<Vec<OpenHinge>>,
+        gravity_m_s2: f64,
+    ) -> Self {
+        let in_m_s2 = |push_g: &Option<f64>| push_g.map(|push_g| push_g * gravity_m_s2);
+        Self {
+            incipient_acceleration_g,
+            incipient_acceleration_m_s2: incipient_acceleration_g.map(in_m_s2),
+            mechanism,
+            unstable_rotations: None,
+            equivalent_block: None,
+            capacity_g: None,
+            capacity_not_found: None,
+            hinges: None,
+            ties: None,
+            four_links: None,
+            friction: None,
+            bodies: Vec::new(),
+            tie_places: Vec::new(),
+            is_arch: true,
+        }
+    }
+
+    /// The summary of a structure that starts as a mechanism of one degree of freedom.
+    pub(super) fn of_mechanism(model: &dyn MechanismModel, gravity_m_s2: f64) -> Self {
+        let bodies = model.bodies();
+        let unstable = model.critical_rotations_rad().into_iter().map(Value::from);
+        let unstable = columns(&bodies, "rotation", "rad")
+            .into_iter()
+            .zip(unstable);
+        let hinges = |sway| {
+            let hinges = model.hinges_after(0, sway);
+            hinges.into_iter().map(OpenHinge::Link).collect()
+        };
+        let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
+        Self {
+            unstable_rotations: Some(unstable.collect()),
+            equivalent_block: model.equivalent(gravity_m_s2),
+            bodies,
+            ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
+        }
+    }
+
+    /// JSON and words.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub(super) fn answer(&self) -> Result<Answer, OutputError> {
+        Ok(Answer {
+            json: summary_of(self)?,
+            text: render(self),
+        })
+    }
+
+    /// Why the push at which the structure falls was not found.
+    fn not_found(&self, sway: &Sway) -> Option<&String> {
+        self.capacity_not_found.as_ref()?.to(*sway).as_ref()
+    }
+
+    /// The push at which the structure falls.
+    fn falls_g(&self, sway: &Sway) -> Option<f64> {
+        *self.capacity_g.as_ref()?.to(*sway)
+    }
+
+    /// Rotations with the names of their bodies.
+    fn by_body(&self, rotations_rad: &[f64]) -> String {
+        by_body(&self.bodies, rotations_rad)
+    }
+
+    /// Rotations at the unstable equilibrium with the names of their bodies.
+    fn unstable_by_body(&self, rotations_rad: &Map<String, Value>) -> String {
+        let rotations_rad: Vec<f64> = rotations_rad.values().filter_map(Value::as_f64).collect();
+        self.by_body(&rotations_rad)
+    }
+}
+
+/// The joints of a row that open in a mechanism.
+pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge> {
+    let openings = onset.into_iter().flat_map(|onset| &onset.openings);
+    let open = openings.map(|opening| {
+        let corner = opening.hinge.unwrap_or(Edge::Intrados);
+        let corner_m = row.joints()[opening.joint].corner_m(corner);
+        OpenHinge::Joint {
+            joint: opening.joint,
+            edge: opening.hinge,
+            x_m: corner_m.x,
+            y_m: corner_m.y,
+        }
+    });
+    open.collect()
+}
+
+impl OpenHinge {
+    /// A line about the hinge at this position in the mechanism, from 0.
+    fn words(&self, position: &usize) -> String {
+        let named = |edge: &Option<Edge>, otherwise| edge.map_or(otherwise, Edge::name);
+        match self {
+            Self::Joint {
+                joint,
+                edge,
+                x_m,
+                y_m,
+            } => format!(
+                "joint {joint:>3} at x {:>10} m, y {:>10} m, {}",
+                fixed(*x_m, 5),
+                fixed(*y_m, 5),
+                named(edge, "both edges")
+            ),
+            Self::Link(Hinge::Section { angle_rad, edge }) => format!(
+                "{}  {:10.5} deg from the left springing, {}",
+                HINGES.get(*position).unwrap_or(&""),
+                degrees(*angle_rad),
+                edge.name()
+            ),
+            Self::Link(Hinge::Toe(side)) => format!("the {} toe", side.name()),
+            Self::Link(Hinge::Joint { joint, edge }) => {
+                format!("joint {joint}, {}", named(edge, "parted"))
+            }
+        }
+    }
+}
+
+impl YieldingJoint {
+    /// What the joint does.
+    fn words(&self) -> String {
+        // Named by the edge about which it turns.
+        let opens = match (self.opens_intrados, self.opens_extrados) {
+            (true, true) => Some("parts at both edges".to_owned()),
+            (true, false) => Some("opens with its hinge at the extrados".to_owned()),
+            (false, true) => Some("opens with its hinge at the intrados".to_owned()),
+            (false, false) => None,
+        };
+        let slips = self.slips_towards;
+        let slips = slips.map(|edge| format!("slips, its right side towards the {}", edge.name()));
+        let does: Vec<String> = opens.into_iter().chain(slips).collect();
+        does.join(" and ")
+    }
+}
+
+impl From<OutputError> for NoLimit {
+    fn from(error: OutputError) -> Self {
+        Self::Output(error.to_string())
+    }
+}
