@@ -80,8 +80,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";
         }
-        let figure = arguments.figure.get()?;
-        let picture = figure.fitted(|figure| elevation::draw(figure, title, &scene, &text));
+        let picture = elevation::draw(arguments.figure.get()?, title, &scene, &text);
         commands::write_picture(plot, &picture)?;
     }
     let notes = scenario.structure().tie_places();
@@ -180,10 +179,8 @@ fn check_record(
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
     if let Some(plot) = &arguments.plot {
         let title = file.file_name().unwrap_or_default().to_string_lossy();
-        let picture = arguments
-            .figure
-            .get()?
-            .fitted(|figure| output::draw(figure, &title, &samples, &intensity, GRAVITY_M_S2));
+        let figure = arguments.figure.get()?;
+        let picture = output::draw(figure, &title, &samples, &intensity, GRAVITY_M_S2);
         commands::write_picture(plot, &picture)?;
     }
     Ok((

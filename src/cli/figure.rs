@@ -39,12 +39,8 @@ impl FigureOption {
             let sized = figure.with_text_pt(text_pt);
             figure = sized.map_err(|wrong| Failure::Input(format!("--font-size: {wrong}")))?;
         }
-        if let Some(height) = self.figure_height {
-            figure = figure.with_height(height);
-        }
-        if self.no_title {
-            figure = figure.without_title();
-        }
+        figure.height = self.figure_height;
+        figure.has_title = !self.no_title;
         Ok(figure)
     }
 
@@ -64,12 +60,11 @@ pub struct PanelsOption {
 }
 
 impl PanelsOption {
-    /// The same with the panels that are asked for.
-    pub fn of(&self, figure: Figure) -> Figure {
-        match self.panels[..] {
-            [] => figure,
-            _ => figure.with_panels(&self.panels),
-        }
+    /// The figure with the chosen panels.
+    pub fn of(&self, mut figure: Figure) -> Figure {
+        let shown = Panel::ALL.map(|panel| self.panels.contains(&panel));
+        figure.panels = (!self.panels.is_empty()).then_some(shown);
+        figure
     }
 }
 

@@ -1,4 +1,4 @@
-//! One line that tells what a picture was computed from: the structure, the ground and the model of motion.
+//! One line with the input of a picture: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, four_digits};

@@ -1,29 +1,34 @@
-//! A structure at rest as a drawing: its blocks with the numbers of their joints, what it stands on and carries, its dimensions.
+//! A structure as a drawing: its blocks with the numbers of their joints, its supports, fill and loads, its dimensions.
 
 use nalgebra::Vector2;
 
-use super::figure::{TEXT_PX, text_px};
+use super::figure::Figure;
 use super::scene::{Mark, Piece, Scene};
-use super::svg::{Anchor, Drawing, Figure, Stroke, color};
+use super::sheet::Sheet;
+use super::svg::{Anchor, Drawing, Stroke, color};
+use super::text::{TEXT_PX, Text, text_px};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::scenario::{Dimension, DimensionSide, metres};
 
-/// Blocks and what else is drawn of a structure.
-pub const STONE: &str = "#f3efe6";
-/// What lies on them.
-pub const FILL: &str = "#e3d5bd";
+/// Colour of blocks.
+pub(crate) const STONE: &str = "#f3efe6";
+/// Colour of fill.
+pub(crate) const FILL: &str = "#e3d5bd";
 const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
 /// Its outline.
-pub const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
+pub(crate) const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
 const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
+/// Colours of the bodies of a mechanism, from left to right.
+pub(crate) const BODIES: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
 /// A tie.
-pub const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
-/// The outline of what has moved since, as it was built.
-pub const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
-/// An open hinge.
-pub const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
+pub(crate) const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
+/// The outline of displaced blocks as they were built.
+const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
+/// An open hinge, and the radius of its circle.
+pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
+pub(crate) const HINGE_PX: f64 = 3.2;
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 
 /// From the structure to the first line of dimensions.
@@ -35,166 +40,196 @@ const ARROW_PX: f64 = 30.0;
 
 /// Places metres on the sheet.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub(crate) struct Place {
     /// A point of the structure.
-    pub middle_m: Vector2<f64>,
-    /// Where that is.
-    pub at: Vector2<f64>,
+    pub(crate) middle_m: Vector2<f64>,
+    /// Its place on the sheet.
+    pub(crate) at: Vector2<f64>,
     /// Pixels per metre.
-    pub scale: f64,
+    pub(crate) scale: f64,
 }
 
 impl Place {
-    /// The place of a point.
-    #[must_use]
-    pub fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
+    /// The place of a point on the sheet.
+    pub(crate) fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
         let away_m = point_m - self.middle_m;
         self.at + Vector2::new(away_m.x, -away_m.y) * self.scale
     }
 }
 
-/// Draws a structure at rest with its dimensions and the numbers of its joints; below it this text. Where it stands on supports that have
-/// moved, it is also drawn as it was built, which its dimensions are of.
+/// Draws a structure at rest with its dimensions and the numbers of its joints, and a text below. On supports that have moved, it is
+/// drawn displaced, and dashed as it was built, to which its dimensions refer.
 #[must_use]
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(title) + 12.0;
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
-    let above = if scene.loads(&[]).is_empty() {
+    let above_px = if scene.loads(&[]).is_empty() {
         6.0
     } else {
         ARROW_PX + 26.0
     };
-    // Supports go on a little beyond the structure.
-    let sides = (room(DimensionSide::Left) + 10.0) + (room(DimensionSide::Right) + 10.0);
-    let scale = ((figure.width_px() - sides) / size_m.x)
-        .min(figure.height_px(520.0) / size_m.y)
-        .max(1e-9);
-    let free_px = figure.width_px() - sides - scale * size_m.x;
-    let left = room(DimensionSide::Left) + 10.0 + 0.5 * free_px;
-    let place = Place {
-        middle_m: Vector2::new(low_m.x, high_m.y),
-        at: Vector2::new(left, top + above),
-        scale,
-    };
-    let bottom = place.px(low_m).y;
-    let (poses, hinges) = scene.stands();
-    let stands = |piece: &Piece| {
-        let outline = piece.moved(poses, 1.0).into_iter();
-        outline.map(|corner| place.px(corner)).collect::<Vec<_>>()
-    };
-    let px = |mark: &Mark| place.px(mark.moved(poses, 1.0));
-    draw_dimensions(&mut drawing, &place, scene);
-    supports(&mut drawing, &place, scene);
-    for piece in scene.fill(&[]) {
-        drawing.polygon("fill", stands(&piece), FILL, FILL_LINE);
-    }
-    for piece in scene.pieces(&[]) {
+    // Supports extend a little beyond the structure.
+    let left_px = room(DimensionSide::Left) + 10.0;
+    let width_px = figure.width_px - left_px - (room(DimensionSide::Right) + 10.0);
+    let most_px = width_px / size_m.x * size_m.y;
+    let mut sheet = Sheet::new(figure, title);
+    sheet.gap(12.0 + above_px);
+    sheet.structure(figure.height_px(520.0), most_px, |drawing, part| {
+        let scale = (part.height / size_m.y).max(1e-9);
+        let left_px = left_px + 0.5 * (width_px - scale * size_m.x);
+        let (poses, hinges) = &scene.stands;
+        let view = View {
+            scene,
+            place: Place {
+                middle_m: Vector2::new(low_m.x, high_m.y),
+                at: Vector2::new(left_px, part.top),
+                scale,
+            },
+            poses,
+            hinges,
+            exaggeration: 1.0,
+        };
+        draw_dimensions(drawing, &view.place, scene);
+        supports(drawing, &view.place, scene);
+        view.draw_fill(drawing);
         if !poses.is_empty() {
-            let built = piece.outline_m.iter().map(|corner| place.px(*corner));
-            drawing.polygon("built", built, "none", BUILT);
+            view.draw_built(drawing, "built");
+        }
+        view.draw_blocks(drawing, |_, _| ("block".to_owned(), STONE));
+        view.draw_ties(drawing);
+        view.draw_loads(drawing, Some(part.top));
+        view.draw_hinges(drawing);
+        joint_numbers(drawing, &view.place, scene);
+    });
+    sheet.caption(room(DimensionSide::Below) + 22.0, text);
+    sheet.gap(10.0);
+    sheet.finish()
+}
+
+/// A structure on a sheet, with its bodies at an instant.
+pub(crate) struct View<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) place: Place,
+    /// Poses of its bodies; empty: as it was built.
+    pub(crate) poses: &'a [Pose],
+    /// Its open hinges.
+    pub(crate) hinges: &'a [OpenHinge],
+    /// Factor on the displacements.
+    pub(crate) exaggeration: f64,
+}
+
+impl View<'_> {
+    /// The place of a point on the sheet.
+    pub(crate) fn px(&self, mark: &Mark) -> Vector2<f64> {
+        self.place.px(mark.moved(self.poses, self.exaggeration))
+    }
+
+    fn outline(&self, piece: &Piece) -> impl Iterator<Item = Vector2<f64>> {
+        let corners = piece.moved(self.poses, self.exaggeration).into_iter();
+        corners.map(|corner| self.place.px(corner))
+    }
+
+    /// Draws dashed how the blocks were built.
+    pub(crate) fn draw_built(&self, drawing: &mut Drawing, name: &str) {
+        for piece in self.scene.pieces(&[]) {
+            let outline = piece.outline_m.iter().map(|corner| self.place.px(*corner));
+            drawing.polygon(name, outline, "none", BUILT);
         }
     }
-    for piece in scene.pieces(&[]) {
-        drawing.polygon("block", stands(&piece), STONE, OUTLINE);
+
+    /// Draws fill and loads.
+    pub(crate) fn draw_carried(&self, drawing: &mut Drawing) {
+        self.draw_fill(drawing);
+        self.draw_loads(drawing, None);
     }
-    for ends in scene.ties(&[]) {
-        drawing.curve("tie", ends.each_ref().map(px), TIE);
+
+    fn draw_fill(&self, drawing: &mut Drawing) {
+        for piece in self.scene.fill(self.hinges) {
+            drawing.polygon("fill", self.outline(&piece), FILL, FILL_LINE);
+        }
     }
-    loads(&mut drawing, scene, &[], &px, Some(top + above));
-    for mark in scene.hinges(hinges) {
-        drawing.circle("hinge", px(&mark), 3.2, HINGE);
+
+    /// Draws the blocks, with a name and a colour for each, by its number and its body.
+    pub(crate) fn draw_blocks(
+        &self,
+        drawing: &mut Drawing,
+        look: impl Fn(usize, Option<usize>) -> (String, &'static str),
+    ) {
+        for (number, piece) in self.scene.pieces(self.hinges).iter().enumerate() {
+            let (name, fill) = look(number, piece.body);
+            drawing.polygon(&name, self.outline(piece), fill, OUTLINE);
+        }
     }
-    joint_numbers(&mut drawing, &place, scene);
-    let end = drawing.caption(bottom + room(DimensionSide::Below) + 22.0, text);
-    drawing.finish(end + 10.0)
+
+    pub(crate) fn draw_ties(&self, drawing: &mut Drawing) {
+        for ends in self.scene.ties(self.hinges) {
+            drawing.curve("tie", ends.each_ref().map(|end| self.px(end)), TIE);
+        }
+    }
+
+    pub(crate) fn draw_hinges(&self, drawing: &mut Drawing) {
+        for mark in self.scene.hinges(self.hinges) {
+            drawing.circle("hinge", self.px(&mark), HINGE_PX, HINGE);
+        }
+    }
+
+    /// Draws arrows for loads, with their masses if there is room for text above this height.
+    fn draw_loads(&self, drawing: &mut Drawing, text_above: Option<f64>) {
+        let mut farthest = f64::NEG_INFINITY;
+        let mut loads = self.scene.loads(self.hinges);
+        loads.sort_by(|a, b| a.1.at_m.x.total_cmp(&b.1.at_m.x));
+        for (mark, load) in loads {
+            let foot = self.px(&mark);
+            let tail = match text_above {
+                Some(top) => Vector2::new(foot.x, top - 8.0),
+                None => foot - Vector2::new(0.0, 20.0),
+            };
+            draw_arrow(drawing, tail, foot);
+            if load.width_m > 0.0 {
+                let edge = |side: f64| {
+                    let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
+                    Vector2::new(self.px(&Mark { at_m, ..mark }).x, tail.y)
+                };
+                drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
+            }
+            if text_above.is_some() {
+                let text = Text::from(mass_in_words(load.mass_kg));
+                let half = 0.5 * text.px();
+                // Beside the last one, or not at all: the words below have it.
+                if foot.x - half > farthest {
+                    farthest = foot.x + half + 8.0;
+                    let at = tail - Vector2::new(0.0, 6.0);
+                    drawing.label(at, Anchor::Middle, 0.0, text);
+                }
+            }
+        }
+    }
 }
 
 /// The room that the dimensions of a structure take on a side of it, in pixels.
-#[must_use]
-pub fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
-    let levels = levels(scene.dimensions());
-    let own = scene.dimensions().iter().zip(&levels);
+pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
+    let levels = levels(&scene.dimensions);
+    let own = scene.dimensions.iter().zip(&levels);
     let own = own.filter(|(dimension, _)| dimension.side == side);
     let lines = own.map(|(_, level)| BESIDE_PX + APART_PX * f64::from(*level) + 20.0);
     lines.fold(0.0, f64::max)
 }
 
 /// The dimensions of a structure, beside it.
-pub fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
-    let levels = levels(scene.dimensions());
-    for (dimension, level) in scene.dimensions().iter().zip(levels) {
+pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+    let levels = levels(&scene.dimensions);
+    for (dimension, level) in scene.dimensions.iter().zip(levels) {
         draw_dimension(drawing, place, scene.frame_m(), dimension, level);
     }
 }
 
-/// The fill and the loads of a structure whose bodies are at these poses, displacements drawn so many times as large.
-pub fn draw_carried(
-    drawing: &mut Drawing,
-    place: &Place,
-    scene: &Scene,
-    hinges: &[OpenHinge],
-    (poses, exaggeration): (&[Pose], f64),
-) {
-    for piece in scene.fill(hinges) {
-        let outline = piece.moved(poses, exaggeration).into_iter();
-        drawing.polygon(
-            "fill",
-            outline.map(|corner| place.px(corner)),
-            FILL,
-            FILL_LINE,
-        );
-    }
-    let px = |mark: &Mark| place.px(mark.moved(poses, exaggeration));
-    loads(drawing, scene, hinges, &px, None);
-}
-
-/// Arrows for loads, and their masses above all else, where there is room for text from a height on.
-fn loads(
-    drawing: &mut Drawing,
-    scene: &Scene,
-    hinges: &[OpenHinge],
-    px: &dyn Fn(&Mark) -> Vector2<f64>,
-    text_above: Option<f64>,
-) {
-    let mut farthest = f64::NEG_INFINITY;
-    let mut loads = scene.loads(hinges);
-    loads.sort_by(|a, b| a.1.at_m.x.total_cmp(&b.1.at_m.x));
-    for (mark, load) in loads {
-        let foot = px(&mark);
-        let tail = match text_above {
-            Some(top) => Vector2::new(foot.x, top - 8.0),
-            None => foot - Vector2::new(0.0, 20.0),
-        };
-        draw_arrow(drawing, tail, foot);
-        if load.width_m > 0.0 {
-            let edge = |side: f64| {
-                let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
-                Vector2::new(px(&Mark { at_m, ..mark }).x, tail.y)
-            };
-            drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
-        }
-        if text_above.is_some() {
-            let text = mass_in_words(load.mass_kg);
-            let half = 0.5 * text_px(&text);
-            // Beside the last one, or not at all: the words below have it.
-            if foot.x - half > farthest {
-                let at = tail - Vector2::new(0.0, 6.0);
-                drawing.label(at, Anchor::Middle, 0.0, &text);
-                farthest = foot.x + half + 8.0;
-            }
-        }
-    }
-}
-
 /// The arrow of a load that stands there, with its mass.
-pub fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>, mass_kg: f64) {
+pub(crate) fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>, mass_kg: f64) {
     let tail = foot - Vector2::new(0.0, 20.0);
     draw_arrow(drawing, tail, foot);
     let at = tail - Vector2::new(0.0, 4.0);
-    drawing.label(at, Anchor::Middle, 0.0, &mass_in_words(mass_kg));
+    drawing.label(at, Anchor::Middle, 0.0, mass_in_words(mass_kg));
 }
 
 fn mass_in_words(mass_kg: f64) -> String {
@@ -207,7 +242,7 @@ fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
     drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
 }
 
-/// What carries the structure: hatched ground under its supports.
+/// Hatched ground under the supports of the structure.
 fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let mut faces = scene.supports_m(1.0);
     if faces.is_empty() {
@@ -295,7 +330,7 @@ fn draw_dimension(
     let middle = 0.5 * (feet[0] + feet[1]);
     let beside = 5.0;
     let (at, anchor, turn_deg) = match dimension.side {
-        // What has no room between the ends stands at the right of them.
+        // A text without room between the ends is on their right.
         DimensionSide::Below
             if (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside =>
         {
@@ -318,25 +353,25 @@ fn draw_dimension(
 fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let joints = scene.joints_m();
     let last = joints.len().saturating_sub(1);
-    let numbers: Vec<(String, Vector2<f64>)> = joints
+    let numbers: Vec<(Text, Vector2<f64>)> = joints
         .iter()
         .enumerate()
         .map(|(joint, [intrados_m, extrados_m])| {
             let (inner, outer) = (place.px(*intrados_m), place.px(*extrados_m));
-            // Supports go on beyond their faces.
+            // Supports extend beyond their faces.
             let away = if joint == 0 || joint == last {
                 22.0
             } else {
                 15.0
             };
             (
-                joint.to_string(),
+                Text::from(joint.to_string()),
                 inner + (inner - outer).normalize() * away,
             )
         })
         .collect();
-    let apart = |(text, at): &(String, Vector2<f64>), (other, to): &(String, Vector2<f64>)| {
-        let wide = 0.5 * (text_px(text) + text_px(other)) + 4.0;
+    let apart = |(text, at): &(Text, Vector2<f64>), (other, to): &(Text, Vector2<f64>)| {
+        let wide = 0.5 * (text.px() + other.px()) + 4.0;
         (at.x - to.x).abs() >= wide || (at.y - to.y).abs() >= TEXT_PX
     };
     let of_every = |step: usize| numbers.iter().step_by(step).collect::<Vec<_>>();
@@ -347,6 +382,6 @@ fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     });
     for (text, at) in shown.unwrap_or_default() {
         let at = at + Vector2::new(0.0, 4.5);
-        drawing.label(at, Anchor::Middle, 0.0, text);
+        drawing.label(at, Anchor::Middle, 0.0, text.clone());
     }
 }

@@ -18,15 +18,11 @@ pub(crate) struct Envelope {
 
 impl Default for Envelope {
     fn default() -> Self {
-        Self::new()
+        Self::of_columns(COLUMNS)
     }
 }
 
 impl Envelope {
-    pub(crate) const fn new() -> Self {
-        Self::of_columns(COLUMNS)
-    }
-
     /// An envelope thinned to at most this many columns.
     pub(crate) const fn of_columns(most: usize) -> Self {
         Self {
@@ -91,7 +87,7 @@ mod tests {
 
     #[test]
     fn an_envelope_keeps_extremes_and_ends_in_few_points() {
-        let mut envelope = Envelope::new();
+        let mut envelope = Envelope::default();
         let count = 100_003;
         for i in 0..count {
             let spike = if i == 77_777 { 5.0 } else { 0.0 };
@@ -107,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_short_series_is_kept_as_it_is() {
-        let mut envelope = Envelope::new();
+        let mut envelope = Envelope::default();
         let values = [(0.0, 1.0), (0.1, -2.0), (0.2, 3.0)];
         for (time_s, value) in values {
             envelope.push(time_s, value);

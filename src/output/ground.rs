@@ -29,7 +29,7 @@ pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> V
         return points;
     }
     // Longer curves are those of records and of long wave trains; they are thinned.
-    let mut envelope = Envelope::new();
+    let mut envelope = Envelope::default();
     for (time_s, ground_g) in points {
         envelope.push(time_s, ground_g);
     }

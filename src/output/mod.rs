@@ -2,7 +2,9 @@
 //!
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
+pub(crate) mod axes;
 pub mod caption;
+pub(crate) mod chart;
 pub mod elevation;
 pub(crate) mod envelope;
 pub mod figure;
@@ -14,10 +16,12 @@ pub(crate) mod panels;
 pub mod print;
 pub mod record;
 pub mod scene;
+pub(crate) mod sheet;
 pub(crate) mod summary;
 pub(crate) mod svg;
 pub(crate) mod table;
 pub(crate) mod template;
+pub mod text;
 
 use std::io;
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-pub(crate) use super::svg::escaped;
+pub(crate) use super::text::escaped;
 use crate::scenario::shown_lines;
 
 /// Fills a template: each name between `%` signs is replaced by its text. The inserted texts are not scanned again.

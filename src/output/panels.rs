@@ -1,7 +1,11 @@
 //! Panels over a shared time axis, as in all pictures of histories.
 
+use super::axes::Scale;
+use super::chart::{Chart, Mark, PANEL_LEFT_PX, Shape};
+use super::figure::Figure;
 use super::ground;
-use super::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use super::sheet::{Key, Sheet, Sign};
+use super::svg::{Frame, Stroke, color};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::State;
 use crate::mechanics::sway::Sway;
@@ -25,35 +29,9 @@ pub struct Subject<'a> {
     pub incipient_g: [Option<f64>; 2],
 }
 
-/// A curve over time.
-pub(crate) struct Curve {
-    pub(crate) name: String,
-    pub(crate) points: Vec<(f64, f64)>,
-    pub(crate) stroke: Stroke,
-}
-
 pub(crate) const MAIN: Stroke = Stroke::new(color::BLACK, 1.4, "");
 const INCIPIENT: Stroke = Stroke::new(color::PURPLE, 1.3, "6 4");
 const OVERTURNING: Stroke = Stroke::new(color::VERMILION, 1.8, "8 3 2 3");
-
-impl Curve {
-    pub(crate) fn new(
-        name: impl Into<String>,
-        points: impl IntoIterator<Item = (f64, f64)>,
-        stroke: Stroke,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            points: points.into_iter().collect(),
-            stroke,
-        }
-    }
-
-    /// Whether the curve is zero throughout.
-    pub(crate) fn is_flat(&self) -> bool {
-        self.points.iter().all(|(_, value)| *value == 0.0)
-    }
-}
 
 /// The states of the structure over time, for shading.
 #[derive(Clone, Debug)]
@@ -65,12 +43,12 @@ pub(crate) struct States {
 /// A picture of panels, one below the other.
 pub(crate) struct Panels {
     figure: Figure,
-    drawing: Drawing,
-    start_s: f64,
-    end_s: f64,
-    top: f64,
-    /// The axes of the lowest panel, which get the time labels.
-    last: Option<Axes>,
+    title: String,
+    /// The shared axis of time.
+    x: Scale,
+    panels: Vec<Chart>,
+    /// Entries of the legend that only this picture has.
+    pub(crate) keys: Vec<Key>,
     /// Whether there were hops too short to tell apart.
     hops: bool,
     /// Whether the accelerations that start the structure are drawn.
@@ -81,138 +59,117 @@ impl Panels {
     /// Panels over this range of times.
     pub(crate) fn new(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
         let end_s = end_s.max(start_s + f64::MIN_POSITIVE);
-        let mut drawing = Drawing::new(figure);
-        let top = drawing.title(title) + 20.0;
         Self {
             figure,
-            drawing,
-            start_s,
-            end_s,
-            top,
-            last: None,
+            title: title.to_owned(),
+            x: Scale::exactly(start_s, end_s, figure.ticks(10)),
+            panels: Vec::new(),
+            keys: Vec::new(),
             hops: false,
             incipient: false,
         }
     }
 
-    /// Adds the next panel, of this height on the screen: first the shades, then the axes, then what `draw` draws.
+    /// Adds the next panel, of this height on the screen, shaded by the states of the structure.
     pub(crate) fn panel(
         &mut self,
         label: &str,
         height_px: f64,
         y: Scale,
-        doing: Option<&States>,
-        draw: impl FnOnce(&mut Drawing, &Axes),
+        states: Option<&States>,
+        marks: Vec<Mark>,
     ) {
-        let height = self.figure.height_px(height_px);
-        let axes = Axes {
-            frame: self.figure.panel(self.top, height),
-            x: Scale::exactly(self.start_s, self.end_s, self.figure.ticks(10)),
-            y,
-        };
-        if let Some(doing) = doing {
-            self.hops |= shade(&mut self.drawing, &axes, self.end_s, doing);
+        let mut shades = Vec::new();
+        if let Some(states) = states {
+            let hops;
+            (shades, hops) = shade(self.x, self.figure, states);
+            self.hops |= hops;
         }
-        axes.draw_panel(&mut self.drawing, label);
-        draw(&mut self.drawing, &axes);
-        self.top += height + GAP_PX;
-        self.last = Some(axes);
+        self.panels.push(Chart {
+            is_panel: true,
+            below: shades,
+            marks,
+            ..Chart::new(height_px, ("", self.x), (label, y))
+        });
     }
 
-    /// Adds a panel with these curves, on a scale that holds them all.
+    /// Adds a panel with these curves, on a scale that holds them all; nothing if all are zero throughout.
     pub(crate) fn curves(
         &mut self,
         label: &str,
         height_px: f64,
-        curves: &[Curve],
-        doing: Option<&States>,
+        curves: Vec<Mark>,
+        states: Option<&States>,
     ) {
-        let values = curves.iter().flat_map(|curve| &curve.points);
-        let y = around(values.map(|point| point.1), ticks(height_px));
-        self.panel(label, height_px, y, doing, |drawing, axes| {
-            draw_curves(drawing, axes, curves);
-        });
+        if !curves.iter().all(Mark::is_flat) {
+            let ticks = if height_px > 200.0 { 6 } else { 3 };
+            let y = around(&curves, [], ticks);
+            self.panel(label, height_px, y, states, curves);
+        }
     }
 
     /// Adds the panel of the ground, with the accelerations that start the structure; nothing if the ground stays still.
-    pub(crate) fn ground(&mut self, height_px: f64, subject: &Subject<'_>, doing: Option<&States>) {
-        let Subject {
-            ground,
-            gravity_m_s2,
-            ..
-        } = *subject;
-        let curve = Curve::new(
-            "ground",
-            ground::curve_g(ground, gravity_m_s2, self.end_s),
-            MAIN,
-        );
-        if curve.is_flat() {
-            return;
-        }
-        let largest = curve
-            .points
+    pub(crate) fn ground(
+        &mut self,
+        height_px: f64,
+        subject: &Subject<'_>,
+        states: Option<&States>,
+    ) {
+        let points = ground::curve_g(subject.ground, subject.gravity_m_s2, self.x.high);
+        let largest = points
             .iter()
             .fold(0.0_f64, |most, point| most.max(point.1.abs()));
         let [right, left] = subject.incipient_g;
         // Ground that accelerates to the left pushes to the right. Levels far beyond the ground motion would flatten its curve.
         let levels = [right.map(|g| -g), left].into_iter().flatten();
-        let levels: Vec<f64> = levels.filter(|level| level.abs() < 4.0 * largest).collect();
-        let values = curve.points.iter().map(|point| point.1);
-        let y = around(values.chain(levels.iter().copied()), ticks(height_px));
-        self.incipient |= !levels.is_empty();
-        self.panel("Ground (g)", height_px, y, doing, |drawing, axes| {
-            for level in levels {
-                let ends = [axes.x.low, axes.x.high].map(|time_s| axes.place(time_s, level));
-                drawing.curve("A_L", ends, INCIPIENT);
-            }
-            draw_curves(drawing, axes, &[curve]);
-        });
+        let mut curves: Vec<Mark> = levels
+            .filter(|level| level.abs() < 4.0 * largest)
+            .map(|level| {
+                let ends = [self.x.low, self.x.high].map(|time_s| (time_s, level));
+                Mark::curve("A_L", INCIPIENT, ends)
+            })
+            .collect();
+        self.incipient |= !curves.is_empty();
+        curves.push(Mark::curve("ground", MAIN, points));
+        self.curves("Ground (g)", height_px, curves, states);
     }
 
-    /// The file, with the time axis below the panels and a legend: first these entries, then those that all pictures
+    /// The file, with the time axis below the panels and a legend: first its own entries, then those that all pictures
     /// share.
-    pub(crate) fn finish(mut self, keys: &[Key<'_>], shaded: bool) -> String {
-        if let Some(axes) = self.last {
-            axes.label_x(&mut self.drawing, "Time (s)");
-        }
-        let mut keys = keys.to_vec();
+    pub(crate) fn finish(self, shaded: bool) -> String {
+        let (mut panels, mut keys) = (self.panels, self.keys);
         if shaded {
             for ((_, fill), text) in [(SWAYS_RIGHT, "sways right"), (SWAYS_LEFT, "sways left")] {
-                keys.push((text, Sign::Band(fill, OPACITY)));
+                keys.push(Key::new(text, Sign::Band(fill, OPACITY)));
             }
         }
         if self.hops {
-            keys.push(("hops", Sign::Band(HOPS.1, OPACITY)));
+            keys.push(Key::new("hops", Sign::Band(HOPS.1, OPACITY)));
         }
         if self.incipient {
-            keys.push(("A_L, which starts it from rest", Sign::Line(INCIPIENT)));
+            keys.push(Key::line("A_L, which starts it from rest", INCIPIENT));
         }
-        let left = self.figure.panel(0.0, 0.0).left;
-        let end = self.drawing.legend(left, self.top + 30.0, &keys);
-        self.drawing.finish(end + 12.0)
+        if let Some(last) = panels.last_mut() {
+            last.x.0 = "Time (s)".to_owned();
+        }
+        let mut sheet = Sheet::new(self.figure, &self.title);
+        sheet.gap(20.0);
+        for panel in panels {
+            panel.add_plot(&mut sheet);
+            sheet.gap(GAP_PX);
+        }
+        sheet.gap(30.0);
+        sheet.legend(PANEL_LEFT_PX, keys);
+        sheet.gap(12.0);
+        sheet.finish()
     }
 }
 
-/// Number of ticks for a panel of this height on the screen.
-fn ticks(height_px: f64) -> u32 {
-    if height_px > 200.0 { 6 } else { 3 }
-}
-
-/// A scale that holds the values and zero, with a little margin, so that no curve runs along the frame.
-pub(crate) fn around(values: impl Iterator<Item = f64>, ticks: u32) -> Scale {
+/// A scale that holds curves, more values and zero, with a little margin, so that no curve runs along the frame.
+pub(crate) fn around(curves: &[Mark], more: impl IntoIterator<Item = f64>, ticks: u32) -> Scale {
+    let values = curves.iter().flat_map(Mark::points).map(|point| point.1);
+    let values = values.chain(more).filter(|value| value.is_finite());
     Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
-}
-
-pub(crate) fn draw_curves(drawing: &mut Drawing, axes: &Axes, curves: &[Curve]) {
-    for Curve {
-        name,
-        points,
-        stroke,
-    } in curves
-    {
-        let places = points.iter().map(|(t, value)| axes.place(*t, *value));
-        drawing.curve(name, places, *stroke);
-    }
 }
 
 /// Name and colour of a band.
@@ -236,69 +193,49 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
-/// Shades the states of the structure from the beginning, and tells whether there are hops too short to tell apart.
+/// The shades of the states of the structure, and whether there are hops too short to tell apart.
 /// A sequence of such hops gets one common shade.
-fn shade(drawing: &mut Drawing, axes: &Axes, end_s: f64, doing: &States) -> bool {
-    let place = |time_s: f64| axes.place(time_s.min(end_s), axes.y.low).x;
-    let mut band = |(name, fill): Shade, left: f64, right: f64| {
-        let mut frame = axes.frame;
-        frame.left = left;
-        frame.width = right - left;
-        drawing.band(name, &frame, fill, OPACITY);
+fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
+    let (start_s, end_s) = (x.low, x.high);
+    let width_px = figure.right_of(PANEL_LEFT_PX, Frame::default()).width;
+    let least_s = NARROWEST_PX * (end_s - start_s) / width_px;
+    let is_seen = |[from_s, to_s]: [f64; 2]| to_s - from_s >= least_s;
+    let band = |(name, fill): Shade, ends| {
+        let shape = Shape::Range(ends, OPACITY);
+        Mark::new(name, Stroke::new(fill, 0.0, ""), shape)
     };
-    let changes = doing.changes.iter().copied();
+    let changes = states
+        .changes
+        .iter()
+        .map(|(time_s, state)| (time_s.min(end_s), *state));
     let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
-    // The right end of the last visible band.
-    let mut drawn = place(axes.x.low);
-    let mut hops = false;
-    let states = [(axes.x.low, doing.start)].into_iter().chain(changes);
-    for ((from_s, state), to_s) in states.zip(ends_s) {
-        let (left, right) = (place(from_s), place(to_s));
-        if right - left < NARROWEST_PX && to_s < end_s {
+    // The end of the last visible band.
+    let mut drawn_s = start_s;
+    let (mut bands, mut hops) = (Vec::new(), false);
+    let begins = [(start_s, states.start)].into_iter().chain(changes);
+    for ((from_s, state), to_s) in begins.zip(ends_s) {
+        if !is_seen([from_s, to_s]) && to_s < end_s {
             continue;
         }
-        if left - drawn >= NARROWEST_PX {
-            band(HOPS, drawn, left);
+        if is_seen([drawn_s, from_s]) {
+            bands.push(band(HOPS, [drawn_s, from_s]));
             hops = true;
-            drawn = left;
+            drawn_s = from_s;
         }
-        if let Some(shade) = shade_of(state)
-            && right - drawn >= NARROWEST_PX
-        {
-            band(shade, drawn, right);
+        if let Some(shade) = shade_of(state).filter(|_| is_seen([drawn_s, to_s])) {
+            bands.push(band(shade, [drawn_s, to_s]));
         }
-        drawn = right;
+        drawn_s = to_s;
     }
-    hops
+    (bands, hops)
 }
 
 /// The entry of a legend for the instant of overturning.
-pub(crate) const OVERTURNS: Key<'static> = ("overturns", Sign::Line(OVERTURNING));
-
-/// Marks the instant of overturning.
-pub(crate) fn mark_overturning(drawing: &mut Drawing, axes: &Axes, time_s: f64) {
-    let ends = [axes.y.low, axes.y.high].map(|y| axes.place(time_s, y));
-    drawing.curve("overturning", ends, OVERTURNING);
+pub(crate) fn overturns() -> Key {
+    Key::line("overturns", OVERTURNING)
 }
 
-/// The stroke that marks an impact.
-pub(crate) const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
-/// Marks closer together than this, in pixels, would merge.
-const BETWEEN_MARKS_PX: f64 = 2.5;
-
-/// Marks impacts with short upright lines along the lower side; leaves out a mark too close to the one before.
-pub(crate) fn mark_impacts(
-    drawing: &mut Drawing,
-    axes: &Axes,
-    impacts_s: impl Iterator<Item = f64>,
-) {
-    let mut last_px = f64::NEG_INFINITY;
-    for time_s in impacts_s {
-        let at = axes.place(time_s, axes.y.low);
-        if at.x - last_px >= BETWEEN_MARKS_PX {
-            let path = format!("M{:.2} {:.2}v-10", at.x, at.y);
-            drawing.path("impact", &path, "none", IMPACT);
-            last_px = at.x;
-        }
-    }
+/// The mark of the instant of overturning.
+pub(crate) fn overturning(time_s: f64, y: Scale) -> Mark {
+    Mark::upright("overturning", OVERTURNING, time_s, y)
 }

@@ -11,7 +11,7 @@ use thiserror::Error;
 pub enum PictureFormat {
     /// Lines and texts, for browsers and drawing programs.
     Svg,
-    /// The same for print, with its fonts embedded.
+    /// Lines and texts for print, with fonts embedded.
     Pdf,
     /// Pixels: 600 to an inch of print, 2 to a pixel of the screen.
     Png,
@@ -57,7 +57,6 @@ impl FromStr for PictureFormat {
 }
 
 impl PictureFormat {
-    /// Those that stand beside an SVG.
     /// The formats that pictures may have beside SVG.
     pub const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
 
@@ -89,22 +88,13 @@ impl PictureFormat {
     pub fn of_picture(self, picture: &str) -> Result<Vec<u8>, PrintError> {
         match self {
             Self::Svg => Ok(picture.as_bytes().to_vec()),
+            #[cfg(feature = "print")]
             Self::Pdf => converted::pdf(picture),
+            #[cfg(feature = "print")]
             Self::Png => converted::png(picture),
+            #[cfg(not(feature = "print"))]
+            Self::Pdf | Self::Png => Err(PrintError::NotBuilt),
         }
-    }
-}
-
-#[cfg(not(feature = "print"))]
-mod converted {
-    use super::PrintError;
-
-    pub const fn pdf(_: &str) -> Result<Vec<u8>, PrintError> {
-        Err(PrintError::NotBuilt)
-    }
-
-    pub const fn png(_: &str) -> Result<Vec<u8>, PrintError> {
-        Err(PrintError::NotBuilt)
     }
 }
 
@@ -119,7 +109,7 @@ mod converted {
     use resvg::usvg::{self, Options, Tree};
 
     use super::PrintError;
-    use crate::output::svg::FONTS;
+    use crate::output::text::FONTS;
 
     /// Dots to an inch of print, and to one of the screen.
     const PRINT_DPI: f32 = 600.0;
@@ -216,17 +206,16 @@ mod tests {
     #[cfg(feature = "print")]
     #[test]
     fn a_picture_keeps_its_size_and_its_texts() {
-        use crate::output::svg::{Anchor, Drawing, Figure};
-        use nalgebra::Vector2;
+        use crate::output::Figure;
+        use crate::output::sheet::Sheet;
         let figure: Figure = "84mm".parse().unwrap();
-        let mut drawing = Drawing::new(figure);
-        drawing.label(
-            Vector2::new(9.0, 30.0),
-            Anchor::Start,
-            0.0,
-            "Rotation (rad)",
-        );
-        let picture = drawing.finish(0.5 * figure.width_px());
+        let drawn = |text: &str| {
+            let mut sheet = Sheet::new(figure, "");
+            sheet.caption(26.0, text);
+            sheet.gap(0.5 * figure.width_px - 4.0 - 34.0);
+            sheet.finish()
+        };
+        let picture = drawn("Rotation (rad)");
         let pdf = PictureFormat::Pdf.of_picture(&picture).unwrap();
         let text = String::from_utf8_lossy(&pdf);
         assert!(text.starts_with("%PDF-") && text.contains("/FontFile"));
@@ -247,7 +236,7 @@ mod tests {
             "no edge shows through"
         );
         // Black on white: the text is there.
-        let empty = Drawing::new(figure).finish(0.5 * figure.width_px());
+        let empty = drawn("");
         assert!(png.len() > 1000 + PictureFormat::Png.of_picture(&empty).unwrap().len());
     }
 }

@@ -1,8 +1,12 @@
 //! A record of ground motion: its acceleration and the quantities derived from it.
 
+use super::axes::Scale;
+use super::chart::{Mark, Shape};
 use super::envelope::Envelope;
-use super::panels::{Curve, Panels, around, draw_curves};
-use super::svg::{Figure, Frame, Scale, Sign, Stroke, color};
+use super::figure::Figure;
+use super::panels::{Panels, around};
+use super::sheet::{Key, Sign};
+use super::svg::{Stroke, color};
 use crate::dynamics::ground::intensity::Intensity;
 
 /// Draws acceleration, velocity, displacement and the build-up of the Arias intensity. The significant duration is
@@ -17,46 +21,35 @@ pub fn draw(
 ) -> String {
     let span = [samples.first(), samples.last()].map(|end| end.map_or(0.0, |end| end.0));
     let mut panels = Panels::new(figure, title, span);
-    let course = |index: usize| intensity.course.iter().map(move |course| course[index]);
-    let curves: [(&str, &str, Box<dyn Iterator<Item = f64>>); 4] = [
-        (
-            "acceleration",
-            "Acceleration (g)",
-            Box::new(samples.iter().map(|sample| sample.1 / gravity_m_s2)),
-        ),
-        ("velocity", "Velocity (m/s)", Box::new(course(0))),
-        ("displacement", "Displacement (m)", Box::new(course(1))),
-        ("arias", "Arias, part", Box::new(course(2))),
+    let courses = [
+        ("acceleration", "Acceleration (g)"),
+        ("velocity", "Velocity (m/s)"),
+        ("displacement", "Displacement (m)"),
+        ("arias", "Arias, part"),
     ];
-    for (name, label, values) in curves {
-        let mut envelope = Envelope::new();
-        for (sample, value) in samples.iter().zip(values) {
-            envelope.push(sample.0, value);
-        }
-        let curve = Curve::new(name, envelope.points(), CURVE);
-        let values = curve.points.iter().map(|point| point.1);
-        let y = if name == "arias" {
-            Scale::around(values.chain([0.0]), 4)
-        } else {
-            around(values, 4)
-        };
-        panels.panel(label, 145.0, y, None, |drawing, axes| {
-            let [from, to] = intensity
-                .significant_s
-                .map(|time_s| axes.place(time_s, axes.y.low).x);
-            let shaded = Frame {
-                left: from,
-                width: to - from,
-                ..axes.frame
+    for (index, (name, label)) in courses.into_iter().enumerate() {
+        let mut envelope = Envelope::default();
+        for ((time_s, acceleration_m_s2), course) in samples.iter().zip(&intensity.course) {
+            let value = match index {
+                0 => acceleration_m_s2 / gravity_m_s2,
+                _ => course[index - 1],
             };
-            drawing.band("significant", &shaded, color::SKY, SHADE);
-            draw_curves(drawing, axes, &[curve]);
-        });
+            envelope.push(*time_s, value);
+        }
+        let curve = Mark::curve(name, CURVE, envelope.points());
+        let y = match name {
+            "arias" => Scale::around([0.0, 1.0], 4),
+            _ => around(std::slice::from_ref(&curve), [], 4),
+        };
+        let range = Shape::Range(intensity.significant_s, SHADE.1);
+        let shade = Mark::new("significant", Stroke::new(SHADE.0, 0.0, ""), range);
+        panels.panel(label, 145.0, y, None, vec![shade, curve]);
     }
     let words = "from 5 % to 95 % of the Arias intensity";
-    panels.finish(&[(words, Sign::Band(color::SKY, SHADE))], false)
+    panels.keys = vec![Key::new(words, Sign::Band(SHADE.0, SHADE.1))];
+    panels.finish(false)
 }
 
 const CURVE: Stroke = Stroke::new(color::BLACK, 1.0, "");
-/// Opacity of the significant duration.
-const SHADE: f64 = 0.18;
+/// Colour and opacity of the significant duration.
+const SHADE: (&str, f64) = (color::SKY, 0.18);

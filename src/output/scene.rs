@@ -22,27 +22,31 @@ pub struct Scene {
     outline: Outline,
     /// Whether the blocks between two hinges form one body, and those outside the hinges stand still.
     linked: bool,
-    sections: Vec<Section>,
-    /// Where the left and the right support of an arch are.
+    /// The sections at which the position of the line of thrust is known.
+    pub sections: Vec<Section>,
+    /// Poses of the left and the right support of an arch.
     supports: [Pose; 2],
-    /// Of a picture at rest: where its bodies stand, and on which hinges; empty where they stand as they were built.
-    stands: (Vec<Pose>, Vec<OpenHinge>),
+    /// Poses and hinges of a picture at rest; empty if the structure stands as it was built.
+    pub stands: (Vec<Pose>, Vec<OpenHinge>),
     ties: Vec<Tie>,
-    /// What lies on blocks, outline by outline: with the block.
-    fill_m: Vec<FillColumn>,
-    loads: Vec<Load>,
-    dimensions: Vec<Dimension>,
+    /// The fill on blocks: blocks and outlines.
+    pub fill_m: Vec<FillColumn>,
+    /// The masses on blocks.
+    pub loads: Vec<Load>,
+    /// The dimensions of the structure.
+    pub dimensions: Vec<Dimension>,
 }
 
 /// A mass on a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    block: usize,
-    /// Where its middle stands in the undeformed structure, in metres.
+    /// Its block.
+    pub block: usize,
+    /// The place of its middle in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// The mass in kg.
     pub mass_kg: f64,
-    /// Over which width it is spread, in metres; zero: a point.
+    /// The width over which it is distributed, in metres; zero: a point.
     pub width_m: f64,
 }
 
@@ -149,7 +153,7 @@ impl Scene {
         scene.of_structure(structure)
     }
 
-    /// The same with what the structure carries, and its dimensions.
+    /// This scene with fill, loads and dimensions of the structure.
     #[must_use]
     pub fn of_structure(mut self, structure: &Structure) -> Self {
         self.dimensions = structure.dimensions();
@@ -192,24 +196,18 @@ impl Scene {
         }
     }
 
-    /// The same with its left and right support at these places.
+    /// This scene with its left and right support moved.
     #[must_use]
     pub const fn on_supports(mut self, poses: [Pose; 2]) -> Self {
         self.supports = poses;
         self
     }
 
-    /// The same as a picture at rest shows it: where its bodies stand on supports that have moved, and the hinges that are open there.
+    /// This scene with poses and open hinges for a picture at rest, on supports that have moved.
     #[must_use]
     pub fn standing(mut self, poses: Vec<Pose>, hinges: Vec<OpenHinge>) -> Self {
         self.stands = (poses, hinges);
         self
-    }
-
-    /// Where its bodies stand, and on which hinges; empty where they stand as they were built.
-    #[must_use]
-    pub fn stands(&self) -> (&[Pose], &[OpenHinge]) {
-        (&self.stands.0, &self.stands.1)
     }
 
     /// Whether a support has moved.
@@ -236,14 +234,8 @@ impl Scene {
         self.ties.iter().map(|tie| tie.ends.map(end)).collect()
     }
 
-    /// The sections at which the position of the line of thrust is known.
-    #[must_use]
-    pub fn sections(&self) -> &[Section] {
-        &self.sections
-    }
-
-    /// The faces of the supports of an arch, in metres, from the intrados to the extrados, how far they have moved drawn so many times
-    /// as large; empty for a column, which stands on the ground.
+    /// The faces of the supports of an arch, in metres, from the intrados to the extrados, with their displacements multiplied by
+    /// `exaggeration`; empty for a column, which stands on the ground.
     #[must_use]
     pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
         let is_arch = match &self.outline {
@@ -274,7 +266,7 @@ impl Scene {
         })
     }
 
-    /// The same of its blocks alone.
+    /// Lower left and upper right corner of the undeformed blocks alone, in metres.
     #[must_use]
     pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
         let pieces = self.pieces(&[]);
@@ -285,7 +277,7 @@ impl Scene {
         })
     }
 
-    /// The same with what it carries, and where it stands.
+    /// Lower left and upper right corner with fill and loads, as built and at rest, in metres.
     #[must_use]
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
         let corners = self.fill_m.iter().flat_map(|(_, outline)| outline);
@@ -304,50 +296,24 @@ impl Scene {
         })
     }
 
-    /// What lies on the bodies in pieces when these hinges are open.
+    /// The fill in pieces when these hinges are open.
     #[must_use]
     pub fn fill(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
-        let mut pieces = self.fill_of_blocks();
-        for piece in &mut pieces {
-            piece.body = piece.body.and_then(|block| self.body_of(block, hinges));
-        }
-        pieces
-    }
-
-    /// The same, each with its block, whatever moves together.
-    #[must_use]
-    pub fn fill_of_blocks(&self) -> Vec<Piece> {
         let pieces = self.fill_m.iter().map(|(block, outline_m)| Piece {
-            body: Some(*block),
+            body: self.body_of(*block, hinges),
             outline_m: outline_m.clone(),
         });
         pieces.collect()
     }
 
-    /// The masses, each with its block, whatever moves together.
+    /// The masses on the bodies when these hinges are open, each with the place of its middle.
     #[must_use]
-    pub fn loads_of_blocks(&self) -> Vec<(Mark, Load)> {
+    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, Load)> {
         let loads = self.loads.iter().map(|load| {
-            let (body, at_m) = (Some(load.block), load.at_m);
+            let (body, at_m) = (self.body_of(load.block, hinges), load.at_m);
             (Mark { body, at_m }, *load)
         });
         loads.collect()
-    }
-
-    /// The masses on the bodies when these hinges are open, each with where its middle stands.
-    #[must_use]
-    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, Load)> {
-        let mut loads = self.loads_of_blocks();
-        for (mark, load) in &mut loads {
-            mark.body = self.body_of(load.block, hinges);
-        }
-        loads
-    }
-
-    /// The dimensions of the structure.
-    #[must_use]
-    pub fn dimensions(&self) -> &[Dimension] {
-        &self.dimensions
     }
 
     /// Its dimensions and loads in words, for pictures that have no room to draw them; empty where there are none.
@@ -499,7 +465,7 @@ impl Scene {
         let Section {
             middle_m, across_m, ..
         } = self.sections.get(joint)?;
-        // The support follows the last block of an arch. Where it has moved, the block that stands on it tells where.
+        // The support follows the last block of an arch. If it has moved, the block on it gives its pose.
         let last = self.has_settled().then(|| outlines_m.len() - 1);
         Some([-0.5, 0.5].map(|part| Mark {
             body: (joint < outlines_m.len()).then_some(joint).or(last),

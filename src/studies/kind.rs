@@ -1,7 +1,8 @@
 //! Kinds of outcomes and their colours, the same in all pictures.
 
 use super::ending::columns::{FAILED, UNCERTAIN};
-use crate::output::svg::{Key, Sign, color};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::color;
 
 /// Outcome of an arch that cannot carry its own weight.
 pub(crate) const CANNOT_STAND: &str = "cannot_stand";
@@ -80,10 +81,10 @@ impl Kind {
 }
 
 /// The legend entries of these kinds.
-pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key<'static>> {
+pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key> {
     let present = Kind::ALL.into_iter().filter(|kind| kinds.contains(kind));
     present
-        .map(|kind| (kind.label, Sign::Band(kind.fill, 1.0)))
+        .map(|kind| Key::new(kind.label, Sign::Band(kind.fill, 1.0)))
         .collect()
 }
 

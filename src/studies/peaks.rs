@@ -9,7 +9,10 @@ use serde_json::json;
 
 use super::ensemble::statistics::fractile;
 use super::results::Results;
-use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
+use crate::output::Figure;
+use crate::output::axes::Scale;
+use crate::output::chart::{Chart, Mark};
+use crate::output::svg::CURVES;
 use crate::output::table::{Column, column, csv};
 use crate::output::{OutputError, pretty};
 
@@ -123,7 +126,7 @@ pub fn results(
         column("share", |at: &&ShareUpTo<'_>| at.share),
     ];
     let rows: Vec<&ShareUpTo<'_>> = distributions.iter().flatten().collect();
-    let picture = figure.fitted(|figure| draw(figure, title, models, &distributions));
+    let picture = draw(figure, title, models, &distributions);
     let contents = [
         picture.into_bytes(),
         csv(columns, &rows)?,
@@ -156,32 +159,17 @@ fn draw(
     models: &[ModelPeaks<'_>],
     distributions: &[Vec<ShareUpTo<'_>>],
 ) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(title);
-    let named = models.iter().map(|(name, _)| *name).zip(CURVES);
-    let keys: Vec<Key<'_>> = named
-        .clone()
-        .map(|(name, stroke)| (name, Sign::Line(stroke)))
-        .collect();
-    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let peaks = distributions.iter().flatten().map(|at| at.rotation_rad);
-    let largest = peaks.fold(1e-3, f64::max);
-    let axes = Axes {
-        frame: figure.plot(top, figure.height_px(405.0)),
-        x: Scale::exactly(0.0, 1.05 * largest, figure.ticks(8)),
-        y: Scale::exactly(0.0, 1.0, 5),
-    };
-    let label = "largest rotation (rad); what overturned is beyond";
-    axes.draw(
-        &mut drawing,
-        Some(label),
-        "share with at most this rotation",
-    );
-    for ((name, stroke), distribution) in named.zip(distributions) {
+    let x = Scale::exactly(0.0, 1.05 * peaks.fold(1e-3, f64::max), figure.ticks(8));
+    let curves = models.iter().zip(distributions).zip(CURVES);
+    let curves = curves.map(|(((name, _), distribution), stroke)| {
         let rises = distribution.iter().map(|at| (at.rotation_rad, at.share));
-        drawing.curve(name, axes.staircase(0.0, rises), stroke);
-    }
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+        Mark::staircase(*name, stroke, (x, 0.0), rises)
+    });
+    let label = "largest rotation (rad); overturned cases are beyond";
+    let y = Scale::exactly(0.0, 1.0, 5);
+    let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));
+    chart.with_named(curves.collect()).draw(figure, title)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::common::program::{archrock, refusal, scenarios, stderr};
 use crate::common::results::{named, points, texts};
-use archrock::output::figure::text_px;
+use archrock::output::text::text_px;
 use roxmltree::{Document, Node};
 
 /// From the left, from above, to the right and to below, in pixels.

@@ -127,9 +127,7 @@ pub fn report(
     let json = summary_of(&summary)?;
     let title = scenario.title().unwrap_or("Capacity");
     let contents = [
-        figure
-            .fitted(|figure| draw(figure, title, sides))
-            .into_bytes(),
+        draw(figure, title, sides).into_bytes(),
         table(sides)?,
         pretty(&json).into_bytes(),
     ];

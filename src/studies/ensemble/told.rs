@@ -336,15 +336,11 @@ pub(super) fn histories(
         files: vec![
             (
                 "bands.svg",
-                figure
-                    .fitted(|figure| picture::bands(figure, told, &bands, asked))
-                    .into_bytes(),
+                picture::bands(figure, told, &bands, asked).into_bytes(),
             ),
             (
                 "matters.svg",
-                figure
-                    .fitted(|figure| picture::matters(figure, told, &decides))
-                    .into_bytes(),
+                picture::matters(figure, told, &decides).into_bytes(),
             ),
             ("bands.csv", csv(band_columns(), &bands)?),
             ("samples.csv", csv(all, &lines(told))?),
@@ -473,15 +469,11 @@ pub(super) fn edges(told: &Told<'_, FirstEdge>, figure: Figure) -> Result<Result
         files: vec![
             (
                 "probability.svg",
-                figure
-                    .fitted(|figure| picture::probability(figure, told, &probabilities))
-                    .into_bytes(),
+                picture::probability(figure, told, &probabilities).into_bytes(),
             ),
             (
                 "matters.svg",
-                figure
-                    .fitted(|figure| picture::matters(figure, told, &decides))
-                    .into_bytes(),
+                picture::matters(figure, told, &decides).into_bytes(),
             ),
             (
                 "probability.csv",
@@ -697,15 +689,11 @@ pub(super) fn capacities(
         files: vec![
             (
                 "fragility.svg",
-                figure
-                    .fitted(|figure| picture::fragility(figure, told, asked))
-                    .into_bytes(),
+                picture::fragility(figure, told, asked).into_bytes(),
             ),
             (
                 "matters.svg",
-                figure
-                    .fitted(|figure| picture::matters(figure, told, &decides))
-                    .into_bytes(),
+                picture::matters(figure, told, &decides).into_bytes(),
             ),
             ("fragility.csv", csv(at_levels, &levels)?),
             ("capacities.csv", csv(of_edges, &reached)?),

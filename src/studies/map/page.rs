@@ -8,8 +8,8 @@ use serde_json::{Map, Value, json};
 
 use super::picture::{self, Drawn};
 use super::{CellResult, CellRow, OverturningMap};
+use crate::output::Figure;
 use crate::output::page::{escaped, filled, script_safe};
-use crate::output::svg::Figure;
 use crate::scenario::{Ground, Quantity, toml_text};
 use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
@@ -99,7 +99,7 @@ impl Cells<'_> {
         let labels: Vec<&str> = self.palette.iter().map(|kind| kind.label).collect();
         json!({
             "axes": [axis(0), axis(1)],
-            "sheet_px": { "width": Figure::SCREEN.width_px(), "height": drawn.height_px },
+            "sheet_px": { "width": Figure::SCREEN.width_px, "height": drawn.height_px },
             "kinds": BASE64_STANDARD.encode(kinds),
             "doubts": doubts,
             "labels": labels,

@@ -1,12 +1,14 @@
 //! The picture of an overturning map.
 
-use std::fmt::Write as _;
-
 use super::told::{is_doubtful, outcome};
 use super::{CellResult, CellRow, OverturningMap};
 use crate::dynamics::history::Outcome;
+use crate::output::Figure;
+use crate::output::axes::{Axes, Scale};
 use crate::output::caption::caption;
-use crate::output::svg::{Axes, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::output::chart::{Chart, LEFT_PX, Mark, Shape};
+use crate::output::sheet::{self as output, Key, Sign};
+use crate::output::svg::{Stroke, color};
 use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::kind::{self, Kind};
 use crate::studies::results::Look;
@@ -87,12 +89,6 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     (scale, edges)
 }
 
-/// Draws the map. Only maps whose y is the amplitude have boundaries.
-#[must_use]
-pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
-    drawn(title, map, rows, look).picture
-}
-
 /// The picture of a map, and the positions of its cells.
 pub(in crate::studies) struct Drawn {
     pub(in crate::studies) picture: String,
@@ -101,139 +97,152 @@ pub(in crate::studies) struct Drawn {
     pub(in crate::studies) edges_px: [Vec<f64>; 2],
 }
 
-/// A map to be drawn, whatever fills its cells.
-#[derive(Clone, Copy)]
+/// The cells of a map and its axes, whatever fills the cells.
 pub(in crate::studies) struct Sheet<'s> {
-    pub(in crate::studies) title: &'s str,
-    pub(in crate::studies) map: &'s OverturningMap<'s>,
-    pub(in crate::studies) look: Look,
+    title: &'s str,
+    map: &'s OverturningMap<'s>,
+    look: Look,
+    scales: [Scale; 2],
+    /// The edges of the columns and of the rows.
+    edges: [Vec<f64>; 2],
 }
 
-impl Sheet<'_> {
-    /// What axes are multiplied by.
-    pub(in crate::studies) fn factors(&self) -> [f64; 2] {
-        self.look.factors.unwrap_or([1.0; 2])
+impl<'s> Sheet<'s> {
+    /// A map with this title.
+    pub(in crate::studies) fn new(title: &'s str, map: &'s OverturningMap<'s>, look: Look) -> Self {
+        let factors = look.factors.unwrap_or([1.0; 2]);
+        let [x, y] = [0, 1].map(|i: usize| scale(map.axes()[i], factors[i], look.figure));
+        Self {
+            title,
+            map,
+            look,
+            scales: [x.0, y.0],
+            edges: [x.1, y.1],
+        }
     }
 
-    /// Fills the cells by their kinds, which are in the palette. `keys` are those of the legend, for the scale of y; `over` draws
-    /// over the cells, whose edges it is given.
-    pub(in crate::studies) fn draw<'k>(
+    /// A point of the map, whose axes may be dimensionless.
+    pub(in crate::studies) fn point(&self, x: f64, y: f64) -> (f64, f64) {
+        let factors = self.look.factors.unwrap_or([1.0; 2]);
+        (factors[0] * x, factors[1] * y)
+    }
+
+    /// Fills the cells by their kinds, which are in the palette, and draws marks over them.
+    pub(in crate::studies) fn draw(
         self,
         palette: &[Kind],
         kinds: &[Kind],
-        keys: impl FnOnce(&Scale) -> Vec<Key<'k>>,
-        over: impl FnOnce(&mut Drawing, &Axes, [&[f64]; 2]),
+        keys: Vec<Key>,
+        marks: Vec<Mark>,
     ) -> Drawn {
-        let Self { title, map, look } = self;
+        let Self {
+            title,
+            map,
+            look,
+            scales: [x, y],
+            ref edges,
+        } = self;
         let figure = look.figure;
-        let mut drawing = Drawing::new(figure);
-        let top = drawing.title(title);
-        let top = drawing.subtitle(top, &caption(map.scenario(), &map.axes()));
-        let factors = self.factors();
-        let [x_axis, y_axis] = map.axes();
-        let (x, x_edges) = scale(x_axis, factors[0], figure);
-        let (y, y_edges) = scale(y_axis, factors[1], figure);
-        let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys(&y)) + 8.0;
-        let axes = Axes {
-            frame: figure.plot(top, figure.height_px(560.0)),
-            x,
-            y,
-        };
-        let edges = [x_edges, y_edges];
-        for kind in palette {
-            let path = cells(&axes, &edges, kinds, *kind);
-            if !path.is_empty() {
-                // The stroke closes the seams between cells.
-                drawing.path(kind.name, &path, kind.fill, Stroke::new(kind.fill, 0.4, ""));
-            }
-        }
         let [x_label, y_label] = match look.factors {
             Some(_) => ["p t_p", "a / A_L"],
             None => map.axes().map(label),
         };
-        axes.draw(&mut drawing, Some(x_label), y_label);
-        over(&mut drawing, &axes, [&edges[0], &edges[1]]);
-        let height_px = axes.frame.top + axes.frame.height + 56.0;
-        let [x_edges, y_edges] = edges;
+        let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
+        // The stroke closes the seams between cells.
+        let fills = palette.iter().map(|kind| {
+            let cells = runs(edges, kinds).filter(|(own, _)| own == kind);
+            let boxes = cells.map(|(_, corners)| corners);
+            Mark::new(
+                kind.name,
+                Stroke::new(kind.fill, 0.4, ""),
+                Shape::Boxes(boxes.collect()),
+            )
+        });
+        chart.below = fills.collect();
+        chart.keys = keys;
+        chart.marks = marks;
+        let mut sheet = output::Sheet::new(figure, title);
+        if figure.has_title {
+            sheet.caption(11.0, &caption(map.scenario(), &map.axes()));
+        }
+        let plot = chart.add_to(&mut sheet);
+        let drawn = sheet.drawn();
+        let axes = Axes {
+            frame: figure.right_of(LEFT_PX, drawn.frames[plot]),
+            x,
+            y,
+        };
+        let [columns, rows] = edges;
         Drawn {
-            picture: drawing.finish(height_px),
-            height_px,
+            picture: drawn.svg,
+            height_px: drawn.height_px,
             edges_px: [
-                x_edges
+                columns
                     .iter()
-                    .map(|x| axes.place(*x, axes.y.low).x)
+                    .map(|edge| axes.place(*edge, y.low).x)
                     .collect(),
-                y_edges
-                    .iter()
-                    .map(|y| axes.place(axes.x.low, *y).y)
-                    .collect(),
+                rows.iter().map(|edge| axes.place(x.low, *edge).y).collect(),
             ],
         }
     }
 }
 
-/// The path around the cells of a kind.
-fn cells(axes: &Axes, [x_edges, y_edges]: &[Vec<f64>; 2], kinds: &[Kind], kind: Kind) -> String {
-    let mut path = String::new();
-    for (column, kinds) in kinds.chunks(y_edges.len() - 1).enumerate() {
+/// Cells of a kind one above the other in a column: their kind and two opposite corners.
+fn runs<'c>(
+    [x_edges, y_edges]: &'c [Vec<f64>; 2],
+    kinds: &'c [Kind],
+) -> impl Iterator<Item = (Kind, [(f64, f64); 2])> + 'c {
+    let columns = kinds.chunks(y_edges.len() - 1).zip(x_edges.windows(2));
+    columns.flat_map(move |(kinds, x)| {
         let mut bottom = 0;
-        for run in kinds.chunk_by(|a, b| a == b) {
-            let top = bottom + run.len();
-            if run[0] == kind {
-                let low = axes.place(x_edges[column], y_edges[bottom]);
-                let high = axes.place(x_edges[column + 1], y_edges[top]);
-                let _ = write!(
-                    path,
-                    "M{:.2} {:.2}H{:.2}V{:.2}H{:.2}Z",
-                    low.x, low.y, high.x, high.y, low.x
-                );
-            }
-            bottom = top;
-        }
-    }
-    path
+        kinds.chunk_by(|a, b| a == b).map(move |run| {
+            let low = (x[0], y_edges[bottom]);
+            bottom += run.len();
+            (run[0], [low, (x[1], y_edges[bottom])])
+        })
+    })
 }
 
-/// As [`draw`].
+/// Draws a map.
+#[must_use]
+pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
+    drawn(title, map, rows, look).picture
+}
+
+/// The picture of a map, with the positions of its cells.
 pub(super) fn drawn(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> Drawn {
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, look)).collect();
-    let sheet = Sheet { title, map, look };
-    sheet.draw(
-        &Kind::ALL,
-        &kinds,
-        |_| legend(map, &kinds),
-        |drawing, axes, edges| hatch(drawing, axes, edges, rows),
-    )
+    let sheet = Sheet::new(title, map, look);
+    let hatch = hatch(&sheet.edges, rows);
+    sheet.draw(&Kind::ALL, &kinds, legend(map, &kinds), vec![hatch])
 }
 
 /// Hatches the cells whose outcome depends on how they are computed.
-fn hatch(drawing: &mut Drawing, axes: &Axes, edges: [&[f64]; 2], rows: &[CellRow]) {
-    let [x_edges, y_edges] = edges;
-    let mut path = String::new();
-    for (index, _) in (0..).zip(rows).filter(|(_, row)| is_doubtful(row)) {
-        let [column, line] = [index / (y_edges.len() - 1), index % (y_edges.len() - 1)];
-        let low = axes.place(x_edges[column], y_edges[line]);
-        let high = axes.place(x_edges[column + 1], y_edges[line + 1]);
-        let _ = write!(
-            path,
-            "M{:.2} {:.2}L{:.2} {:.2}",
-            low.x, low.y, high.x, high.y
-        );
-    }
-    if !path.is_empty() {
-        drawing.path("doubtful", &path, "none", DOUBTFUL);
-    }
+fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
+    let count = y_edges.len() - 1;
+    let doubtful = (0..).zip(rows).filter(|(_, row)| is_doubtful(row));
+    let diagonals = doubtful.flat_map(|(index, _): (usize, _)| {
+        let [column, line] = [index / count, index % count];
+        let low = (x_edges[column], y_edges[line]);
+        [
+            low,
+            (x_edges[column + 1], y_edges[line + 1]),
+            (f64::NAN, f64::NAN),
+        ]
+    });
+    Mark::curve("doubtful", DOUBTFUL, diagonals)
 }
 
 /// Light, as most cells: lines are drawn on cells, so the legend draws them on this.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
+
 /// The legend of the colours, and of the hatching if cells are repeated.
-fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key<'static>> {
+fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key> {
     let mut keys = kind::keys(kinds);
     if map.is_repeated() {
-        let words = "another outcome in a repetition";
-        keys.push((words, Sign::LineOn(CELL, "doubtful", DOUBTFUL)));
+        let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
+        keys.push(Key::new("another outcome in a repetition", sign));
     }
     keys
 }

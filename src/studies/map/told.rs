@@ -24,9 +24,7 @@ impl OverturningMap<'_> {
         let title = scenario.title().unwrap_or("Overturning map");
         let remarks = remarks(self, cells);
         let summary = remarks::summary(scenario, cells.len(), &remarks);
-        let picture = look
-            .figure
-            .fitted(|figure| picture::draw(title, self, cells, Look { figure, ..look }));
+        let picture = picture::draw(title, self, cells, look);
         let page = page::page(title, self, cells, look);
         let files = vec![
             ("map.svg", picture.into_bytes()),

@@ -1,37 +1,6 @@
 //! The frames of an animation: a history thinned to what the eye can see.
 
-use nalgebra::Vector2;
-
-use crate::dynamics::history::{JointPressure, OpenHinge, Sample, State};
-use crate::mechanics::geometry::pose::Pose;
-
-/// One frame: everything visible at an instant.
-#[derive(Clone, Debug)]
-pub(super) struct Frame {
-    pub(super) time_s: f64,
-    pub(super) ground_m_s2: f64,
-    pub(super) feet_apart_m: Vector2<f64>,
-    pub(super) state: State,
-    pub(super) poses: Vec<Pose>,
-    pub(super) hinges: Vec<OpenHinge>,
-    pub(super) eccentricity_ratios: Vec<Option<f64>>,
-    pub(super) pressures: Vec<JointPressure>,
-}
-
-impl Frame {
-    fn of(sample: &Sample) -> Self {
-        Self {
-            time_s: sample.time_s,
-            ground_m_s2: sample.ground_acceleration_m_s2,
-            feet_apart_m: sample.feet_apart_m,
-            state: sample.state,
-            poses: sample.poses.clone(),
-            hinges: sample.hinges.clone(),
-            eccentricity_ratios: sample.eccentricity_ratios.clone(),
-            pressures: sample.pressures.clone(),
-        }
-    }
-}
+use crate::dynamics::history::Sample;
 
 /// Every sample, or every second, fourth, eighth ... one, so that there are no more than a given number; and the last one.
 #[derive(Clone, Debug)]
@@ -40,8 +9,8 @@ pub(super) struct Film {
     /// One sample in this many is kept.
     every: usize,
     samples: usize,
-    frames: Vec<Frame>,
-    last: Option<Frame>,
+    frames: Vec<Sample>,
+    last: Option<Sample>,
 }
 
 impl Film {
@@ -58,7 +27,6 @@ impl Film {
 
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
-        let frame = Frame::of(sample);
         if self.samples.is_multiple_of(self.every) {
             if self.frames.len() == self.most {
                 let mut index = 0;
@@ -69,16 +37,16 @@ impl Film {
                 self.every *= 2;
             }
             if self.samples.is_multiple_of(self.every) {
-                self.frames.push(frame.clone());
+                self.frames.push(sample.clone());
             }
         }
         self.samples += 1;
-        self.last = Some(frame);
+        self.last = Some(sample.clone());
     }
 
     /// The frames in order of time.
-    pub(super) fn frames(&self) -> Vec<&Frame> {
-        let later = |last: &&Frame| {
+    pub(super) fn frames(&self) -> Vec<&Sample> {
+        let later = |last: &&Sample| {
             self.frames
                 .last()
                 .is_none_or(|kept| kept.time_s < last.time_s)

@@ -318,8 +318,7 @@ pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
     }
     let subject = first.subject(first.scenario.title().unwrap_or(&all));
     let named: Vec<_> = names.into_iter().zip(curves).collect();
-    let figure = first.wanted.figure;
-    figure.fitted(|figure| overlay::draw(figure, &subject, &named))
+    overlay::draw(first.wanted.figure, &subject, &named)
 }
 
 /// The drawable parts of a structure, as a model moves them.
@@ -404,7 +403,7 @@ impl Shown {
                 .map(|a_second| Snapshots::film(scene(), a_second, wanted.exaggeration)),
             notable: Notable::default(),
             points: run.points.clone(),
-            curves: Curves::new(),
+            curves: Curves::default(),
         }
     }
 
@@ -448,8 +447,7 @@ impl Shown {
         let (scenario, figure) = (run.scenario, run.wanted.figure);
         let title = scenario.title().unwrap_or("Rocking history");
         let subject = run.subject(title);
-        let draw = |figure| self.picture.draw(figure, &subject, history, &self.points);
-        let picture = figure.fitted(draw);
+        let picture = self.picture.draw(figure, &subject, history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
             let page = report.page(scenario, scenario.ground_motion(), history, said);
@@ -467,7 +465,7 @@ impl Shown {
             );
         }
         if let Some(snapshots) = &self.snapshots {
-            let picture = figure.fitted(|figure| snapshots.draw(figure, title));
+            let picture = snapshots.draw(figure, title);
             write(folder, SNAPSHOTS, "the snapshots", &picture)?;
             let places = [("before the start", "first"), ("after the end", "last")];
             for ((place, shown), times_s) in places.into_iter().zip(snapshots.outside_s()) {

@@ -2,9 +2,11 @@
 
 use crate::dynamics::history::Sample;
 use crate::mechanics::sway::Sway;
+use crate::output::Figure;
+use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
-use crate::output::panels::{Curve, Panels, Subject};
-use crate::output::svg::{CURVES, Figure, Key, Sign};
+use crate::output::panels::{Panels, Subject, around};
+use crate::output::svg::CURVES;
 
 /// The curves that every model has, thinned.
 #[derive(Clone, Debug, Default)]
@@ -15,16 +17,6 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Curves without samples yet.
-    #[must_use]
-    pub const fn new() -> Self {
-        Self {
-            rotation_rad: Envelope::new(),
-            energy_j: Envelope::new(),
-            end_s: 0.0,
-        }
-    }
-
     /// Takes a sample. Samples come in the order of time.
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
@@ -51,25 +43,23 @@ pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]
     let span_s = [start_s, ends_s.fold(start_s, f64::max)];
     let mut panels = Panels::new(figure, subject.title, span_s);
     panels.ground(110.0, subject, None);
-    let each = |quantity: fn(&Curves) -> &Envelope| -> Vec<Curve> {
+    let each = |quantity: fn(&Curves) -> &Envelope| -> Vec<Mark> {
         let named = histories.iter().zip(CURVES);
         named
-            .map(|((name, curves), stroke)| Curve::new(*name, quantity(curves).points(), stroke))
+            .map(|((name, curves), stroke)| Mark::curve(*name, stroke, quantity(curves).points()))
             .collect()
     };
     let rotations = each(|curves| &curves.rotation_rad);
-    panels.curves(
+    panels.keys = rotations.iter().map(Mark::key).collect();
+    panels.panel(
         "Largest rotation (rad), swaying left positive",
         280.0,
-        &rotations,
+        around(&rotations, [], 6),
         None,
+        rotations,
     );
-    panels.curves("Energy (J)", 120.0, &each(|curves| &curves.energy_j), None);
-    let names = histories.iter().map(|(name, _)| *name).zip(CURVES);
-    let keys: Vec<Key<'_>> = names
-        .map(|(name, stroke)| (name, Sign::Line(stroke)))
-        .collect();
-    panels.finish(&keys, false)
+    panels.curves("Energy (J)", 120.0, each(|curves| &curves.energy_j), None);
+    panels.finish(false)
 }
 
 #[cfg(test)]
@@ -81,7 +71,7 @@ mod tests {
     #[test]
     fn a_sway_to_the_right_is_negative_as_everywhere() {
         for (sway, rotation_rad) in [(Sway::Right, -0.02), (Sway::Left, 0.03)] {
-            let mut curves = Curves::new();
+            let mut curves = Curves::default();
             curves.push(&Sample {
                 state: State::Rocking(sway),
                 rotations_rad: vec![rotation_rad],

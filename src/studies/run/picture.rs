@@ -3,13 +3,13 @@
 use super::points::Points;
 use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
 use crate::mechanics::sway::Sway;
+use crate::output::Figure;
+use crate::output::chart::{Mark, Shape};
 use crate::output::envelope::Envelope;
 use crate::output::figure::Panel;
-use crate::output::panels::{
-    Curve, IMPACT, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_impacts,
-    mark_overturning,
-};
-use crate::output::svg::{CURVES, Figure, Key, Sign, Stroke};
+use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, overturns};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{CURVES, Stroke, color};
 
 /// Collects samples and events of a history, and draws them.
 pub(super) trait Picture {
@@ -66,7 +66,7 @@ pub(super) struct Timeline {
     /// Half cycles that went far.
     far: Vec<FarCycle>,
     /// The states of the structure over time.
-    doing: States,
+    states: States,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
@@ -76,13 +76,13 @@ impl Timeline {
     pub(super) fn new(bodies: &[String]) -> Self {
         Self {
             bodies: bodies.to_vec(),
-            rotations_rad: vec![Envelope::new(); bodies.len()],
-            excess_ratio: Envelope::new(),
-            energy_ratio: Envelope::new(),
+            rotations_rad: vec![Envelope::default(); bodies.len()],
+            excess_ratio: Envelope::default(),
+            energy_ratio: Envelope::default(),
             phase: 0,
             phase_from_s: 0.0,
             far: Vec::new(),
-            doing: States {
+            states: States {
                 start: State::Rest,
                 changes: Vec::new(),
             },
@@ -124,7 +124,7 @@ impl Picture for Timeline {
     fn sample(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         if sample.phase == 0 {
-            self.doing.start = sample.state;
+            self.states.start = sample.state;
         }
         self.end_s = time_s;
         let envelopes = self.rotations_rad.iter_mut();
@@ -139,7 +139,7 @@ impl Picture for Timeline {
     }
 
     fn event(&mut self, event: &Event) {
-        self.doing.changes.push((event.time_s, event.state));
+        self.states.changes.push((event.time_s, event.state));
         if event.impact.is_some() {
             self.impacts_s.push(event.time_s);
         }
@@ -154,87 +154,70 @@ impl Picture for Timeline {
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
         let mut panels = Panels::new(figure, subject.title, span_s);
-        let doing = Some(&self.doing);
-        let watched = points.any();
-        let shows = |panel| figure.shows(panel, watched);
+        let states = Some(&self.states);
+        let shows = |panel| figure.shows(panel, points.any());
         if shows(Panel::Ground) {
-            panels.ground(130.0, subject, doing);
+            panels.ground(130.0, subject, states);
         }
-
-        let bodies = self.bodies.iter().zip(CURVES);
-        let rotations: Vec<Curve> = bodies
-            .clone()
-            .zip(&self.rotations_rad)
-            .map(|((body, stroke), envelope)| {
-                let name = if body.is_empty() { "rotation" } else { body };
-                Curve::new(name, envelope.points(), stroke)
-            })
-            .collect();
-        let values = rotations.iter().flat_map(|curve| &curve.points);
-        let unstable_rad = self.far.iter().map(|cycle| cycle.unstable_rad);
-        let y = around(values.map(|point| point.1).chain(unstable_rad), 6);
-        let overturned_s = summary.overturned_s();
-        let turns = shows(Panel::Rotation);
-        if turns {
-            panels.panel("Rotation (rad)", 260.0, y, doing, |drawing, axes| {
-                draw_curves(drawing, axes, &rotations);
-                for cycle in &self.far {
-                    let ends =
-                        [cycle.from_s, cycle.to_s].map(|t| axes.place(t, cycle.unstable_rad));
-                    drawing.curve("unstable", ends, unstable(cycle.body));
-                }
-                mark_impacts(drawing, axes, self.impacts_s.iter().copied());
-                if let Some(time_s) = overturned_s {
-                    mark_overturning(drawing, axes, time_s);
-                }
-            });
+        if shows(Panel::Rotation) {
+            self.add_rotations(&mut panels, summary.overturned_s());
         }
-
-        let (names, mut of_points) = (points.names(), Vec::new());
         if shows(Panel::Points) {
-            points.draw(&mut panels, doing, &names, &mut of_points);
+            points.draw(&mut panels, states);
         }
-        let more = [
-            (
-                Panel::Energy,
-                "Total energy / barrier",
-                "energy",
-                &self.energy_ratio,
-            ),
-            (
-                Panel::Thrust,
-                "Thrust line outside / t",
-                "excess",
-                &self.excess_ratio,
-            ),
-        ];
-        for (_, label, name, envelope) in more.into_iter().filter(|more| shows(more.0)) {
-            let curve = Curve::new(name, envelope.points(), MAIN);
-            // An empty panel would only take up room.
-            if !curve.is_flat() {
-                panels.curves(label, 125.0, &[curve], doing);
+        let energy = &self.energy_ratio;
+        let excess = &self.excess_ratio;
+        for (panel, label, name, envelope) in [
+            (Panel::Energy, "Total energy / barrier", "energy", energy),
+            (Panel::Thrust, "Thrust line outside / t", "excess", excess),
+        ] {
+            if shows(panel) {
+                let curve = Mark::curve(name, MAIN, envelope.points());
+                panels.curves(label, 125.0, vec![curve], states);
             }
         }
+        panels.finish(summary.outcome != Outcome::NeverMoved)
+    }
+}
 
-        let named = bodies.filter(|(body, _)| turns && !body.is_empty());
-        let mut keys: Vec<Key<'_>> = named
-            .map(|(body, stroke)| (body.as_str(), Sign::Line(stroke)))
-            .collect();
-        if turns && !self.impacts_s.is_empty() {
-            keys.push(("impacts", Sign::Tick(IMPACT)));
+impl Timeline {
+    /// Adds the panel of the rotations, with impacts, unstable equilibria and the instant of overturning.
+    fn add_rotations(&self, panels: &mut Panels, overturned_s: Option<f64>) {
+        let mut marks = Vec::new();
+        let bodies = self.bodies.iter().zip(&self.rotations_rad);
+        for ((body, envelope), stroke) in bodies.zip(CURVES) {
+            let name = if body.is_empty() { "rotation" } else { body };
+            marks.push(Mark::curve(name, stroke, envelope.points()));
+            if !body.is_empty() {
+                panels.keys.push(Key::line(body, stroke));
+            }
         }
-        if let Some(cycle) = self.far.first().filter(|_| turns) {
+        marks.extend(self.far.iter().map(|cycle| {
+            let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
+            Mark::curve("unstable", unstable(cycle.body), ends)
+        }));
+        let y = around(&marks, [], 6);
+        marks.push(Mark::new(
+            "impact",
+            IMPACT,
+            Shape::Ticks(self.impacts_s.clone()),
+        ));
+        if !self.impacts_s.is_empty() {
+            panels.keys.push(Key::new("impacts", Sign::Tick(IMPACT)));
+        }
+        if let Some(cycle) = self.far.first() {
             let words = match self.bodies.len() {
                 1 => "unstable rotation",
                 _ => "unstable rotation of the body of that colour alone: others may go beyond it",
             };
-            keys.push((words, Sign::Line(unstable(cycle.body))));
+            panels.keys.push(Key::line(words, unstable(cycle.body)));
         }
-        let moved = summary.outcome != Outcome::NeverMoved;
-        if turns && overturned_s.is_some() {
-            keys.push(OVERTURNS);
+        if let Some(time_s) = overturned_s {
+            marks.push(overturning(time_s, y));
+            panels.keys.push(overturns());
         }
-        keys.extend(of_points);
-        panels.finish(&keys, moved)
+        panels.panel("Rotation (rad)", 260.0, y, Some(&self.states), marks);
     }
 }
+
+const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");

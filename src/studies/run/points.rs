@@ -6,11 +6,12 @@ use nalgebra::Vector2;
 use serde_json::{Value, json};
 
 use crate::dynamics::history::{OpenHinge, Sample};
+use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
 use crate::output::mechanisms::columns;
-use crate::output::panels::{Curve, Panels, States};
+use crate::output::panels::{Panels, States};
 use crate::output::scene::{Point, Scene};
-use crate::output::svg::{CURVES, Key, Sign};
+use crate::output::svg::CURVES;
 use crate::output::table::{Cell, Column, several};
 use crate::output::{OutputError, finite};
 
@@ -141,7 +142,7 @@ impl Points {
         text
     }
 
-    /// The same for programs.
+    /// Their largest displacements as JSON.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -162,29 +163,22 @@ impl Points {
     }
 
     /// Adds the panel of their displacements.
-    pub(super) fn draw<'k>(
-        &self,
-        panels: &mut Panels,
-        doing: Option<&States>,
-        names: &'k [[String; 2]],
-        keys: &mut Vec<Key<'k>>,
-    ) {
+    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&States>) {
         let displacements = self
             .watched
             .iter()
             .flat_map(|watched| &watched.displacements);
-        let named = names.as_flattened().iter().zip(CURVES).zip(displacements);
-        let curves: Vec<Curve> = named
-            .map(|((name, stroke), along)| {
-                Curve::new(name.clone(), along.millimetres.points(), stroke)
-            })
+        let named = self.names().into_iter().flatten().zip(CURVES);
+        let curves: Vec<Mark> = named
+            .zip(displacements)
+            .map(|((name, stroke), along)| Mark::curve(name, stroke, along.millimetres.points()))
             .collect();
-        if curves.iter().all(Curve::is_flat) {
-            return;
+        if !curves.iter().all(Mark::is_flat) {
+            let keys = curves.iter();
+            let keys = keys.map(Mark::key);
+            panels.keys.extend(keys);
+            panels.curves("Displacement (mm)", 150.0, curves, states);
         }
-        panels.curves("Displacement (mm)", 150.0, &curves, doing);
-        let strokes = names.as_flattened().iter().zip(CURVES);
-        keys.extend(strokes.map(|(name, stroke)| (name.as_str(), Sign::Line(stroke))));
     }
 
     /// Names of their curves, for the displacements to the right and upwards.
@@ -204,7 +198,7 @@ impl Points {
             .collect()
     }
 
-    /// What the page shows of them: positions, and named curves in millimetres.
+    /// Their positions and named curves in millimetres, for the page.
     pub(super) fn on_page(&self, curve: impl Fn(&[(f64, f64)]) -> String) -> Value {
         let point = |(watched, names): (&Watched, [String; 2])| {
             let curves = watched

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use self::packed::{
     MOST, body_number, curve, eighth, encoded, floats, layouts, motion, piece as drawn_piece,
 };
-use super::film::{Film, Frame};
+use super::film::Film;
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
 use crate::dynamics::fall::FallEnd;
@@ -69,7 +69,7 @@ impl Report {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
         let pressing = model.shape().pressing;
         // Rotation and displacement of each body, each section, each pressed joint, time, ground and the rest, in base 64.
-        let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections().len() + pressing) + 24) / 3;
+        let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
         Self {
             scene,
@@ -189,7 +189,7 @@ impl Report {
     fn data(
         &self,
         ground: &GroundMotion,
-        frames: &[&Frame],
+        frames: &[&Sample],
         fall_from: usize,
         history: &Summary,
     ) -> Value {
@@ -213,7 +213,7 @@ impl Report {
             ]))
         };
         let joints: Vec<Value> = (0..).map_while(joint).collect();
-        let sections = self.scene.sections().iter().map(|section| {
+        let sections = self.scene.sections.iter().map(|section| {
             let (middle, across) = (section.middle_m, section.across_m);
             json!([middle.x, middle.y, across.x, across.y])
         });
@@ -226,7 +226,7 @@ impl Report {
             faces.collect::<Vec<_>>()
         });
         let [frame_low_m, frame_high_m] = self.scene.frame_m();
-        let dimensions = self.scene.dimensions().iter().map(|dimension| {
+        let dimensions = self.scene.dimensions.iter().map(|dimension| {
             let [from, to] = dimension.ends_m;
             let side = match dimension.side {
                 DimensionSide::Below => "below",
@@ -330,7 +330,7 @@ impl Report {
     fn frames(
         &self,
         ground: &GroundMotion,
-        frames: &[&Frame],
+        frames: &[&Sample],
         layout_of: Vec<u16>,
         joints: usize,
     ) -> Value {
@@ -338,7 +338,7 @@ impl Report {
         let displacements_m = GroundVelocity::new(ground).displacements_m(&times_s);
         let ground_g = frames
             .iter()
-            .map(|frame| frame.ground_m_s2 / self.gravity_m_s2);
+            .map(|frame| frame.ground_acceleration_m_s2 / self.gravity_m_s2);
         let parts = ground.right_foot().is_some();
         let apart_m = frames.iter();
         let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
@@ -418,12 +418,12 @@ impl Report {
 }
 
 /// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.
-fn strongest_s(frames: &[&Frame], history: &Summary) -> f64 {
+fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;
     }
     let body = history.largest_body();
-    let turned = |frame: &&&Frame| {
+    let turned = |frame: &&&Sample| {
         frame
             .poses
             .get(body)

@@ -1,19 +1,19 @@
 //! `history.svg` for a row of blocks: a history at a glance, with the joints that are open.
 
-use std::fmt::Write as _;
-
 use super::picture::{FAR, Picture};
 use super::points::Points;
 use crate::dynamics::history::{Outcome, Sample, State, Summary};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
+use crate::output::Figure;
+use crate::output::axes::Scale;
+use crate::output::chart::{Mark, Shape};
 use crate::output::envelope::{COLUMNS, Envelope};
 use crate::output::figure::Panel;
-use crate::output::panels::{
-    Curve, MAIN, OVERTURNS, Panels, States, Subject, around, draw_curves, mark_overturning,
-};
-use crate::output::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
+use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, overturns};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{Stroke, color};
 
 /// Number of columns for all curves of rotations together, so that long rows do not make huge files.
 const COLUMNS_OF_ALL: usize = 16_000;
@@ -48,8 +48,8 @@ impl RowTimeline {
         let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
         Self {
             rotations_rad: vec![Envelope::of_columns(columns); blocks],
-            energy: Envelope::new(),
-            feet_mm: [Envelope::new(), Envelope::new()],
+            energy: Envelope::default(),
+            feet_mm: [Envelope::default(), Envelope::default()],
             slips_mm: Vec::new(),
             in_barriers: false,
             joints: OpenJoints::new(row.joints().len()),
@@ -96,98 +96,31 @@ impl Picture for RowTimeline {
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
         let mut panels = Panels::new(figure, subject.title, span_s);
-        let doing = doing(summary);
-        let doing = Some(&doing);
-        let watched = points.any();
-        let shows = |panel| figure.shows(panel, watched);
+        let states = states(summary);
+        let states = Some(&states);
+        let shows = |panel| figure.shows(panel, points.any());
         if shows(Panel::Ground) {
-            panels.ground(110.0, subject, doing);
+            panels.ground(110.0, subject, states);
+            self.add_feet(&mut panels, states);
         }
-
-        let feet = ["right foot to the right", "right foot upwards"];
-        let feet = feet.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
-        let feet: Vec<((&str, Stroke), Curve)> = feet
-            .map(|((name, feet), stroke)| ((name, stroke), Curve::new(name, feet.points(), stroke)))
-            .filter(|(_, feet)| !feet.is_flat())
-            .collect();
-        let (feet_keys, feet): (Vec<_>, Vec<_>) = feet.into_iter().unzip();
-        if shows(Panel::Ground) && !feet.is_empty() {
-            panels.curves("Right foot (mm)", 110.0, &feet, doing);
+        if shows(Panel::Rotation) {
+            self.add_rotations(&mut panels, states, summary);
         }
-
-        // The block that rotates most is drawn on top of the others.
-        let largest = summary.largest_body();
-        let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
-        let rotations: Vec<Curve> = others
-            .map(|block| (block, BLOCK))
-            .chain([(largest, LARGEST)])
-            .map(|(block, stroke)| {
-                let points = self.rotations_rad[block].points();
-                Curve::new((block + 1).to_string(), points, stroke)
-            })
-            .collect();
-        let values = rotations.iter().flat_map(|curve| &curve.points);
-        let y = around(values.map(|point| point.1), 6);
-        let overturned_s = summary.overturned_s();
-        let turns = shows(Panel::Rotation);
-        if turns {
-            panels.panel("Rotation (rad)", 240.0, y, doing, |drawing, axes| {
-                draw_curves(drawing, axes, &rotations);
-                if let Some(time_s) = overturned_s {
-                    mark_overturning(drawing, axes, time_s);
-                }
-            });
-        }
-
-        let mut keys = Vec::new();
-        if feet_keys.len() > 1 {
-            keys.extend(
-                feet_keys
-                    .iter()
-                    .map(|(name, stroke)| (*name, Sign::Line(*stroke))),
-            );
-        }
-        let name = format!("block {}, which turns most", largest + 1);
-        if turns && self.rotations_rad.len() > 1 {
-            keys.extend([
-                (name.as_str(), Sign::Line(LARGEST)),
-                ("others", Sign::Line(BLOCK)),
-            ]);
-        }
-        // An empty panel would only take up room.
         if shows(Panel::Joints) && self.joints.any() {
-            let (height, highest) = (
-                (14 * self.joints.count).clamp(60, 260) as f64,
-                self.joints.count as f64 - 0.5,
-            );
-            let ticks = u32::try_from(self.joints.count.min(6)).unwrap_or(6);
-            let y = Scale::exactly(-0.5, highest, ticks);
-            panels.panel("Open joint", height, y, None, |drawing, axes| {
-                self.joints.draw(drawing, axes, self.end_s);
-            });
-            let [intrados, extrados] = self.edges;
-            let texts = KINDS.into_iter().zip([intrados, extrados, "parted"]);
-            keys.extend(
-                texts
-                    .filter(|((_, bit), _)| self.joints.has(*bit))
-                    .map(|((kind, _), text)| (text, Sign::Band(kind.fill, 1.0))),
-            );
+            self.joints
+                .add_to(&mut panels, figure, self.edges, self.end_s);
         }
-        let slips: Vec<Curve> = self
-            .slips_mm
-            .iter()
-            .enumerate()
-            .map(|(joint, slip)| Curve::new(format!("slip {joint}"), slip.points(), BLOCK))
-            .filter(|slip| !slip.is_flat())
-            .collect();
-        if shows(Panel::Slip) && !slips.is_empty() {
-            panels.curves("Slip (mm)", 120.0, &slips, doing);
+        if shows(Panel::Slip) {
+            let slips = self.slips_mm.iter().enumerate();
+            let slips = slips
+                .map(|(joint, slip)| Mark::curve(format!("slip {joint}"), BLOCK, slip.points()));
+            let slips = slips.filter(|slip| !slip.is_flat()).collect();
+            panels.curves("Slip (mm)", 120.0, slips, states);
         }
-        let names = points.names();
         if shows(Panel::Points) {
-            points.draw(&mut panels, doing, &names, &mut keys);
+            points.draw(&mut panels, states);
         }
-        let energy = Curve::new("energy", self.energy.points(), MAIN);
+        let energy = Mark::curve("energy", MAIN, self.energy.points());
         if shows(Panel::Energy) && !energy.is_flat() {
             let label = if self.in_barriers {
                 "Total energy / barrier"
@@ -199,23 +132,59 @@ impl Picture for RowTimeline {
             let over_barrier = summary.peak_potential_over_barrier;
             if over_barrier.is_some_and(|peak| peak >= FAR) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
-                curves.push(Curve::new("barrier", ends, BARRIER));
-                keys.push((
-                    "gravity alone overturns the first mechanism",
-                    Sign::Line(BARRIER),
-                ));
+                curves.push(Mark::curve("barrier", BARRIER, ends));
+                let words = "gravity alone overturns the first mechanism";
+                panels.keys.push(Key::line(words, BARRIER));
             }
-            panels.curves(label, 120.0, &curves, doing);
+            panels.curves(label, 120.0, curves, states);
         }
-        if turns && overturned_s.is_some() {
-            keys.push(OVERTURNS);
+        if shows(Panel::Rotation) && summary.overturned_s().is_some() {
+            panels.keys.push(overturns());
         }
-        panels.finish(&keys, summary.outcome != Outcome::NeverMoved)
+        panels.finish(summary.outcome != Outcome::NeverMoved)
+    }
+}
+
+impl RowTimeline {
+    /// Adds the panel of the right foot, if it moves.
+    fn add_feet(&self, panels: &mut Panels, states: Option<&States>) {
+        let names = ["right foot to the right", "right foot upwards"];
+        let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
+        let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
+        let feet: Vec<Mark> = feet.filter(|foot| !foot.is_flat()).collect();
+        if feet.len() > 1 {
+            let keys = feet.iter();
+            panels.keys.extend(keys.map(Mark::key));
+        }
+        panels.curves("Right foot (mm)", 110.0, feet, states);
+    }
+
+    /// Adds the panel of the rotations. The block that rotates most is drawn on top of the others.
+    fn add_rotations(&self, panels: &mut Panels, states: Option<&States>, summary: &Summary) {
+        let largest = summary.largest_body();
+        let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
+        let strokes = others
+            .map(|block| (block, BLOCK))
+            .chain([(largest, LARGEST)]);
+        let curves = strokes.map(|(block, stroke)| {
+            let points = self.rotations_rad[block].points();
+            Mark::curve((block + 1).to_string(), stroke, points)
+        });
+        let mut marks: Vec<Mark> = curves.collect();
+        let y = around(&marks, [], 6);
+        let overturned_s = summary.overturned_s();
+        marks.extend(overturned_s.map(|time_s| overturning(time_s, y)));
+        panels.panel("Rotation (rad)", 240.0, y, states, marks);
+        if self.rotations_rad.len() > 1 {
+            let name = format!("block {}, which turns most", largest + 1);
+            let keys = [Key::line(name, LARGEST), Key::line("others", BLOCK)];
+            panels.keys.extend(keys);
+        }
     }
 }
 
 /// The states: the half cycles, and the end.
-fn doing(summary: &Summary) -> States {
+fn states(summary: &Summary) -> States {
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
@@ -239,40 +208,30 @@ const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
 const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
 const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");
 
-/// How an open joint is drawn: name, colour, and the lower and upper end of the mark in its strip.
+/// A way in which a joint can be open, and its mark.
 #[derive(Clone, Copy)]
 struct Kind {
     name: &'static str,
     fill: &'static str,
+    /// Lower and upper end of the mark in the strip of the joint.
     part: [f64; 2],
+    bit: u8,
 }
 
-/// The ways in which a joint can be open, each with its bit.
-const KINDS: [(Kind, u8); 3] = [
-    (
-        Kind {
-            name: "intrados",
-            fill: color::BLUE,
-            part: [-0.42, 0.0],
-        },
-        1,
-    ),
-    (
-        Kind {
-            name: "extrados",
-            fill: color::VERMILION,
-            part: [0.0, 0.42],
-        },
-        2,
-    ),
-    (
-        Kind {
-            name: "parted",
-            fill: color::BLACK,
-            part: [-0.42, 0.42],
-        },
-        4,
-    ),
+const fn kind(name: &'static str, fill: &'static str, part: [f64; 2], bit: u8) -> Kind {
+    Kind {
+        name,
+        fill,
+        part,
+        bit,
+    }
+}
+
+/// The ways in which a joint can be open.
+const KINDS: [Kind; 3] = [
+    kind("intrados", color::BLUE, [-0.42, 0.0], 1),
+    kind("extrados", color::VERMILION, [0.0, 0.42], 2),
+    kind("parted", color::BLACK, [-0.42, 0.42], 4),
 ];
 
 /// The open joints over time, thinned to columns. A column has all ways in which a joint is open in any of its samples.
@@ -323,9 +282,9 @@ impl OpenJoints {
         for open in &sample.hinges {
             if let Hinge::Joint { joint, edge } = open.hinge {
                 self.bits[first + joint] |= match edge {
-                    Some(Edge::Intrados) => KINDS[0].1,
-                    Some(Edge::Extrados) => KINDS[1].1,
-                    None => KINDS[2].1,
+                    Some(Edge::Intrados) => KINDS[0].bit,
+                    Some(Edge::Extrados) => KINDS[1].bit,
+                    None => KINDS[2].bit,
                 };
             }
         }
@@ -344,36 +303,44 @@ impl OpenJoints {
             .collect();
     }
 
-    fn draw(&self, drawing: &mut Drawing, axes: &Axes, end_s: f64) {
-        let row_px = axes.frame.height / self.count as f64;
-        for (kind, bit) in KINDS {
+    /// Adds the panel of the joints, whose edges have these names.
+    fn add_to(&self, panels: &mut Panels, figure: Figure, edges: [&str; 2], end_s: f64) {
+        let height_px = (14.0 * self.count as f64).clamp(60.0, 260.0);
+        let is_narrow = figure.height_px(height_px) < NARROW_PX * self.count as f64;
+        let marks = KINDS.map(|kind| {
             // Divided strips this narrow would look pale.
-            let part = if row_px < NARROW_PX {
-                [-0.5, 0.5]
-            } else {
-                kind.part
-            };
-            let mut path = String::new();
-            for joint in 0..self.count {
+            let part = if is_narrow { [-0.5, 0.5] } else { kind.part };
+            let boxes = (0..self.count).flat_map(|joint| {
                 let [low, high] = part.map(|part| joint as f64 + part);
-                let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
-                let mut columns = 0..self.starts_s.len();
-                while let Some(first) = columns.find(is_open) {
-                    let end = columns.find(|column| !is_open(column));
-                    let end_s = end.map_or(end_s, |end| self.starts_s[end]);
-                    let corner = axes.place(self.starts_s[first], high);
-                    let opposite = axes.place(end_s, low);
-                    let _ = write!(
-                        path,
-                        "M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z",
-                        corner.x, corner.y, opposite.x, opposite.y, corner.x
-                    );
-                }
-            }
-            if !path.is_empty() {
-                drawing.path(kind.name, &path, kind.fill, Stroke::new("none", 0.0, ""));
-            }
+                let stretches = self.stretches(joint, kind.bit, end_s).into_iter();
+                stretches.map(move |[from_s, to_s]| [(from_s, high), (to_s, low)])
+            });
+            Mark::new(
+                kind.name,
+                Stroke::new(kind.fill, 0.0, ""),
+                Shape::Boxes(boxes.collect()),
+            )
+        });
+        let ticks = u32::try_from(self.count.min(6)).unwrap_or(6);
+        let y = Scale::exactly(-0.5, self.count as f64 - 0.5, ticks);
+        panels.panel("Open joint", height_px, y, None, marks.into());
+        let texts = KINDS.into_iter().zip([edges[0], edges[1], "parted"]);
+        let texts = texts.filter(|(kind, _)| self.has(kind.bit));
+        let keys = texts.map(|(kind, text)| Key::new(text, Sign::Band(kind.fill, 1.0)));
+        panels.keys.extend(keys);
+    }
+
+    /// The times from which and to which a joint is open in this way.
+    fn stretches(&self, joint: usize, bit: u8, end_s: f64) -> Vec<[f64; 2]> {
+        let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
+        let mut columns = 0..self.starts_s.len();
+        let mut stretches = Vec::new();
+        while let Some(first) = columns.find(is_open) {
+            let end = columns.find(|column| !is_open(column));
+            let end_s = end.map_or(end_s, |end| self.starts_s[end]);
+            stretches.push([self.starts_s[first], end_s]);
         }
+        stretches
     }
 }
 

@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
-use crate::output::elevation::{BUILT, HINGE, Place, STONE, TIE, draw_carried};
+use crate::output::Figure;
+use crate::output::elevation::{BODIES, Place, STONE, TIE, View};
 use crate::output::scene::{Mark, Scene};
-use crate::output::svg::{Anchor, Drawing, Figure, Stroke, color};
+use crate::output::sheet::Sheet;
+use crate::output::svg::{Anchor, Drawing, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
 #[derive(Clone, Debug)]
@@ -41,7 +43,7 @@ impl Snapshots {
         }
     }
 
-    /// The same at so many instants a second, for a film.
+    /// Pictures of a film, at so many instants a second.
     pub(super) fn film(scene: Scene, a_second: f64, exaggeration: f64) -> Self {
         Self {
             film: Some((1.0 / a_second, f64::NEG_INFINITY)),
@@ -101,7 +103,7 @@ impl Snapshots {
 
     /// The thickness of the thinnest joint, in metres.
     fn thickness_m(&self) -> f64 {
-        let sections = self.scene.sections().iter();
+        let sections = self.scene.sections.iter();
         let thicknesses_m = sections.map(|section| section.across_m.norm());
         thicknesses_m.fold(f64::INFINITY, f64::min)
     }
@@ -127,39 +129,45 @@ impl Snapshots {
 
     fn sheet(&self, figure: Figure, title: &str, shown: &[&Sample]) -> String {
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
-        let cell_px = figure.width_px() / columns as f64;
+        let cell_px = figure.width_px / columns as f64;
         let [low_m, high_m] = self.scene.frame_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
         // Leaves room for the sway; no higher than wide.
         let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
-        let scale = figure.squeezed_px(scale);
-        let tall_px = 1.1 * scale * height_m;
-        let mut drawing = Drawing::new(figure);
-        let mut top = drawing.title(title) + 14.0;
-        for row in shown.chunks(columns) {
-            for (column, sample) in (0_u32..).zip(row) {
-                let at = Vector2::new((f64::from(column) + 0.5) * cell_px, top + tall_px);
-                let place = Place {
-                    middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
-                    at,
-                    scale,
-                };
-                self.draw_one(&mut drawing, &place, sample, 0.5 * cell_px - 8.0);
-            }
-            top += tall_px + 52.0;
+        let mut sheet = Sheet::new(figure, title);
+        sheet.gap(14.0);
+        for samples in shown.chunks(columns) {
+            let tall_px = 1.1 * scale * height_m;
+            sheet.structure(tall_px, tall_px, move |drawing, part| {
+                for (column, sample) in (0_u32..).zip(samples) {
+                    let middle = (f64::from(column) + 0.5) * cell_px;
+                    let place = Place {
+                        middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
+                        at: Vector2::new(middle, part.top + part.height),
+                        scale: part.height / (1.1 * height_m),
+                    };
+                    self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
+                }
+            });
+            sheet.gap(52.0);
         }
-        let exaggeration = if self.exaggeration == 1.0 {
+        sheet.caption(0.0, &self.caption());
+        sheet.gap(8.0);
+        sheet.finish()
+    }
+
+    fn caption(&self) -> String {
+        let mut caption = if self.exaggeration == 1.0 {
             "to scale".to_owned()
         } else {
             format!("displacements times {}", self.exaggeration)
         };
-        let mut caption =
-            format!("{exaggeration}; dashed: at rest; circles: open hinges; blue: thrust line");
+        caption += "; dashed: at rest; circles: open hinges; blue: thrust line";
         let largest_pa = self.largest_pa();
         if largest_pa > 0.0 {
             let _ = write!(
                 caption,
-                "; wedges: compressive stress of what presses, the highest {:.2} MPa",
+                "; wedges: compressive stress on closed joints, the highest {:.2} MPa",
                 1e-6 * largest_pa
             );
         }
@@ -167,44 +175,36 @@ impl Snapshots {
         if !sizes.is_empty() {
             let _ = write!(caption, "; {sizes}");
         }
-        let end = drawing.caption(top, &caption);
-        drawing.finish(end + 8.0)
+        caption
     }
 
-    fn draw_one(&self, drawing: &mut Drawing, place: &Place, sample: &Sample, half_px: f64) {
-        let black = Stroke::new(color::BLACK, 1.1, "");
+    fn draw_one(&self, drawing: &mut Drawing, place: Place, sample: &Sample, half_px: f64) {
         let left = place.at - Vector2::new(half_px, 0.0);
         let right = place.at + Vector2::new(half_px, 0.0);
         drawing.line(left, right, Stroke::new(color::GREY, 1.4, ""));
-        let poses = &sample.poses[..];
-        let still = self.scene.pieces(&[]);
-        for piece in &still {
-            let outline = piece.outline_m.iter().map(|corner| place.px(*corner));
-            drawing.polygon("", outline, "none", BUILT);
-        }
+        let view = View {
+            scene: &self.scene,
+            place,
+            poses: &sample.poses,
+            hinges: &sample.hinges,
+            exaggeration: self.exaggeration,
+        };
+        view.draw_built(drawing, "");
         if self.scene.has_settled() {
             for face in self.scene.supports_m(self.exaggeration) {
                 let ends = face.map(|end| place.px(end));
                 drawing.curve("support", ends, Stroke::new(color::BLACK, 2.0, ""));
             }
         }
-        let hinges = &sample.hinges[..];
-        let displaced = (poses, self.exaggeration);
-        draw_carried(drawing, place, &self.scene, hinges, displaced);
-        for piece in self.scene.pieces(hinges) {
-            let fill = match piece.body {
-                None => "#e4e4e4",
-                Some(body) if poses.len() == LINKS.len() => LINKS[body],
-                Some(_) => STONE,
-            };
-            let outline = piece.moved(poses, self.exaggeration).into_iter();
-            let name = match piece.body {
-                None => "still".to_owned(),
-                Some(body) => format!("body {body}"),
-            };
-            drawing.polygon(&name, outline.map(|corner| place.px(corner)), fill, black);
-        }
-        let moved = |mark: &Mark| place.px(mark.moved(poses, self.exaggeration));
+        view.draw_carried(drawing);
+        view.draw_blocks(drawing, |_, body| match body {
+            None => ("still".to_owned(), "#e4e4e4"),
+            Some(body) if sample.poses.len() == BODIES.len() => {
+                (format!("body {body}"), BODIES[body])
+            }
+            Some(body) => (format!("body {body}"), STONE),
+        });
+        let moved = |mark: &Mark| view.px(mark);
         let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
         for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {
             let [from, to] = ends.each_ref().map(moved);
@@ -230,17 +230,15 @@ impl Snapshots {
             let points = stretch.iter().map(moved);
             drawing.curve("thrust line", points, Stroke::new(color::BLUE, 1.6, ""));
         }
-        for mark in self.scene.hinges(&sample.hinges) {
-            drawing.circle("hinge", moved(&mark), 3.2, HINGE);
-        }
-        let doing = match sample.state {
+        view.draw_hinges(drawing);
+        let state = match sample.state {
             State::Rest => "at rest".to_owned(),
             State::Rocking(sway) => format!("sways {}", sway.name()),
             State::Overturned(sway) => format!("overturned to the {}", sway.name()),
         };
         let below = place.at + Vector2::new(0.0, 22.0);
-        let text = format!("{:.3} s, {doing}", sample.time_s);
-        drawing.label(below, Anchor::Middle, 0.0, &text);
+        let text = format!("{:.3} s, {state}", sample.time_s);
+        drawing.label(below, Anchor::Middle, 0.0, text);
     }
 }
 
@@ -250,6 +248,3 @@ const STUB_RATIO: f64 = 0.4;
 const WEDGE_RATIO: f64 = 0.6;
 /// The colour of stress wedges.
 const PRESSED: &str = "#e3c3dc";
-
-/// Colours of the bodies of a four-link mechanism.
-const LINKS: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];

@@ -10,9 +10,8 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::{Hinge, Snap};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
-use crate::output::svg::Figure;
 use crate::output::table::{Cell, column, csv, several};
-use crate::output::{OutputError, pretty};
+use crate::output::{Figure, OutputError, pretty};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 
@@ -37,9 +36,7 @@ pub fn tell(
     let mut json = to_json(spread, weight_n);
     json["scenario"] = scenario.to_json();
     let contents = [
-        figure
-            .fitted(|figure| draw(figure, title, spread, &scene))
-            .into_bytes(),
+        draw(figure, title, spread, &scene).into_bytes(),
         table(spread, weight_n)?,
         pretty(&json).into_bytes(),
     ];

@@ -1,142 +1,120 @@
 //! Incremental dynamic analysis: the response to each record as it gets stronger.
 
-use std::fmt::Write as _;
-
 use super::fragility::by_intensity;
 use super::picture::{intensity_label, intensity_scale};
 use super::told::Heading;
 use super::{CaseRow, SuiteFragility};
 use crate::dynamics::history::Outcome;
-use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign, Stroke, color};
+use crate::output::Figure;
+use crate::output::axes::Scale;
+use crate::output::chart::{Chart, Mark, Shape};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::ensemble::statistics;
 
 /// Number of records whose curves have looks and names of their own.
 const NAMED: usize = CURVES.len();
-/// Where overturned cases are drawn, as a fraction of the width.
-const OVERTURNED: f64 = 1.0;
-/// How far to the right surviving cases may be drawn, as a fraction of the width.
+/// Surviving cases are drawn left of this fraction of the width, and overturned cases at its end.
 const SURVIVED: f64 = 0.94;
 
 /// Draws the intensity against the peak rotation, relative to the critical one if that is known. Every record has a curve, also
-/// when mirrored if mirrored cases count. Overturned cases are at the right end; an uncertain case is marked where its own history went.
+/// when mirrored if mirrored cases count. Overturned cases are at the right end; an uncertain case is marked by the outcome of its own history.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
-    let mut drawing = Drawing::new(figure);
-    let mut top = drawing.title(heading.title());
-    let records = records(results);
-    let both = if results.mirrored_count {
-        ", also mirrored"
-    } else {
-        ""
-    };
-    let count = results.record_count();
-    let all = format!("a curve for each of {count} records{both}");
-    let names: Vec<String> = records.iter().map(|cases| name(cases[0])).collect();
-    let mut keys: Vec<Key<'_>> = if records.len() <= NAMED {
-        let named = names.iter().map(String::as_str).zip(CURVES);
-        named
-            .map(|(name, stroke)| (name, Sign::Line(stroke)))
-            .collect()
-    } else {
-        vec![(all.as_str(), Sign::Line(MANY))]
-    };
-    if results.has_uncertain() {
-        keys.push((
-            "uncertain whether it overturns",
-            Sign::Circle(4.0, UNCERTAIN),
-        ));
-    }
-    keys.extend(FRACTILES.map(|(name, stroke)| (name, Sign::Line(stroke))));
     let over_critical = over_critical(results);
-    if over_critical {
-        keys.push(("critical rotation", Sign::Line(CRITICAL)));
-    }
-    top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let survived = results.cases.iter().filter(|case| !goes_over(case));
-    let largest = survived.filter_map(peak).fold(0.0, f64::max);
-    let largest = if over_critical {
-        largest.max(1.0)
-    } else {
-        largest.max(1e-3)
-    };
-    let axes = Axes {
-        frame: figure.plot(top + 8.0, figure.height_px(480.0)),
-        x: Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8)),
-        y: intensity_scale(heading, &results.levels, figure),
-    };
+    let least = if over_critical { 1.0 } else { 1e-3 };
+    let largest = survived.filter_map(peak).fold(least, f64::max);
+    let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
+    let y = intensity_scale(heading, &results.levels, figure);
     let label = if over_critical {
         "peak / critical rotation; arrows: overturned"
     } else {
         "peak rotation (rad); arrows: overturned"
     };
-    axes.draw(&mut drawing, Some(label), intensity_label(results.measure));
+    let y_axis = (intensity_label(results.measure), y);
+    let mut chart = Chart::new(480.0, (label, x), y_axis);
     if over_critical {
-        let [low, high] = [axes.y.low, axes.y.high].map(|y| axes.place(1.0, y));
-        drawing.curve("critical", [low, high], CRITICAL);
+        chart
+            .marks
+            .push(Mark::upright("critical", CRITICAL, 1.0, y));
     }
-    let overturned = axes.x.at(OVERTURNED);
-    let looks = (0..).map(|index: usize| {
-        if records.len() > NAMED {
-            MANY
+    let records = records(results);
+    let are_named = records.len() <= NAMED;
+    for (cases, named) in records.iter().zip(CURVES.into_iter().cycle()) {
+        let stroke = if are_named { named } else { MANY };
+        let mirrored = if cases[0].mirrored { " mirrored" } else { "" };
+        let name = format!("{}{mirrored}", cases[0].record);
+        if are_named {
+            chart.keys.push(Key::line(&name, stroke));
+        }
+        chart.marks.extend(of_record(&name, stroke, cases, results));
+    }
+    if !are_named {
+        let both = if results.mirrored_count {
+            ", also mirrored"
         } else {
-            CURVES[index % NAMED]
-        }
+            ""
+        };
+        let count = results.record_count();
+        let all = format!("a curve for each of {count} records{both}");
+        chart.keys.push(Key::line(all, MANY));
+    }
+    if results.has_uncertain() {
+        let sign = Sign::Circle(4.0, UNCERTAIN);
+        chart
+            .keys
+            .push(Key::new("uncertain whether it overturns", sign));
+    }
+    let levels = fractiles(results);
+    let fractiles = FRACTILES.into_iter().enumerate();
+    let fractiles = fractiles.map(|(fractile, (name, stroke))| {
+        let known = levels.iter();
+        let points = known.filter_map(|level| Some((level.peaks[fractile]?, level.intensity)));
+        Mark::curve(name, stroke, points)
     });
-    for ((cases, name), stroke) in records.iter().zip(&names).zip(looks) {
-        let at = |case: &CaseRow, x: f64| axes.place(x, case.level(results.measure));
-        // What overturned is no point of the curve: it ends before, and goes on where the record is survived again.
-        let mut curve = String::new();
-        for survived in cases.split(|case| goes_over(case)) {
-            let points = survived
-                .iter()
-                .filter_map(|case| Some(at(case, peak(case)?)));
-            for (at, letter) in points.zip(["M"].into_iter().chain(std::iter::repeat("L"))) {
-                let _ = write!(curve, "{letter}{:.2} {:.2}", at.x, at.y);
-            }
-        }
-        if !curve.is_empty() {
-            drawing.path(name, &curve, "none", stroke);
-        }
-        for case in cases {
-            let plain = Stroke::new(stroke.color, 1.0, "");
-            let Some(verdict) = case.known_verdict() else {
-                continue;
-            };
-            if goes_over(case) {
-                let (mark, look) = match verdict {
-                    Verdict::Uncertain => ("uncertain", UNCERTAIN),
-                    _ => ("overturned", plain),
-                };
-                let tip = at(case, overturned);
-                let arrow = format!(
-                    "M{:.2} {y:.2}H{:.2}M{:.2} {:.2}L{:.2} {y:.2}L{:.2} {:.2}",
-                    tip.x - 11.0,
-                    tip.x,
-                    tip.x - 5.0,
-                    tip.y - 3.0,
-                    tip.x,
-                    tip.x - 5.0,
-                    tip.y + 3.0,
-                    y = tip.y,
-                );
-                drawing.path(mark, &arrow, "none", look);
-            } else if let Some(peak) = peak(case) {
-                let (mark, radius, look) = match verdict {
-                    Verdict::Uncertain => ("uncertain", 4.0, UNCERTAIN),
-                    _ => ("survived", 2.2, plain),
-                };
-                drawing.circle(mark, at(case, peak), radius, look);
-            }
+    let mut chart = chart.with_named(fractiles.collect());
+    if over_critical {
+        chart.keys.push(Key::line("critical rotation", CRITICAL));
+    }
+    chart.draw(figure, heading.title())
+}
+
+/// The curve of a record through the cases that it survives, and a mark for each case.
+fn of_record(
+    name: &str,
+    stroke: Stroke,
+    cases: &[&CaseRow],
+    results: &SuiteFragility,
+) -> Vec<Mark> {
+    let level = |case: &CaseRow| case.level(results.measure);
+    // Overturned cases are no points of the curve: it is interrupted there.
+    let points = cases.iter().filter_map(|case| match goes_over(case) {
+        true => Some((f64::NAN, level(case))),
+        false => Some((peak(case)?, level(case))),
+    });
+    let mut marks = vec![Mark::curve(name, stroke, points)];
+    let plain = Stroke::new(stroke.color, 1.0, "");
+    for case in cases {
+        let Some(verdict) = case.known_verdict() else {
+            continue;
+        };
+        let is_certain = verdict != Verdict::Uncertain;
+        let mark = |certain: &'static str| match is_certain {
+            true => (certain, plain, 2.2),
+            false => ("uncertain", UNCERTAIN, 4.0),
+        };
+        if goes_over(case) {
+            let (name, look, _) = mark("overturned");
+            marks.push(Mark::new(name, look, Shape::Beyond(level(case))));
+        } else if let Some(peak) = peak(case) {
+            let (name, look, radius_px) = mark("survived");
+            let circle = Shape::Circle((peak, level(case)), radius_px);
+            marks.push(Mark::new(name, look, circle));
         }
     }
-    for (fractile, (name, stroke)) in FRACTILES.into_iter().enumerate() {
-        let known = fractiles(results).into_iter();
-        let points =
-            known.filter_map(|level| Some(axes.place(level.peaks[fractile]?, level.intensity)));
-        drawing.curve(name, points, stroke);
-    }
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    marks
 }
 
 const MANY: Stroke = Stroke::new(color::GREY, 0.9, "");
@@ -221,11 +199,6 @@ fn goes_over(case: &CaseRow) -> bool {
     ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
 }
 
-fn name(case: &CaseRow) -> String {
-    let mirrored = if case.mirrored { " mirrored" } else { "" };
-    format!("{}{mirrored}", case.record)
-}
-
 /// The cases of each record that count, weakest first.
 fn records(results: &SuiteFragility) -> Vec<Vec<&CaseRow>> {
     let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
@@ -266,27 +239,23 @@ pub fn peaks(results: &SuiteFragility) -> Vec<PeakUpTo> {
 /// Draws the distribution of the peaks.
 #[must_use]
 pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(heading.title());
     let peaks = peaks(results);
-    let words = "share of all records and levels; what overturned is beyond";
-    let keys = [(words, Sign::Line(PEAKS))];
-    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
     let largest = peaks.last().map_or(1.0, |at| at.peak).max(1e-3);
-    let axes = Axes {
-        frame: figure.plot(top, figure.height_px(405.0)),
-        x: Scale::exactly(0.0, 1.05 * largest, figure.ticks(8)),
-        y: Scale::exactly(0.0, 1.0, 5),
-    };
+    let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
     let label = if over_critical(results) {
         "peak / critical rotation"
     } else {
         "peak rotation (rad)"
     };
-    axes.draw(&mut drawing, Some(label), "share with at most this peak");
     let rises = peaks.iter().map(|at| (at.peak, at.share));
-    drawing.curve("peaks", axes.staircase(0.0, rises), PEAKS);
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    let y_axis = ("share with at most this peak", Scale::exactly(0.0, 1.0, 5));
+    let words = "share of all records and levels; overturned cases are beyond";
+    let chart = Chart {
+        keys: vec![Key::line(words, PEAKS)],
+        marks: vec![Mark::staircase("peaks", PEAKS, (x, 0.0), rises)],
+        ..Chart::new(405.0, (label, x), y_axis)
+    };
+    chart.draw(figure, heading.title())
 }
 
 const PEAKS: Stroke = Stroke::new(color::BLUE, 2.0, "");

@@ -3,42 +3,56 @@
 use super::fragility::Fragility;
 use super::told::{CurveInWords, Heading, curves_in_words, records_in_words};
 use super::{FragilityRow, SuiteFragility};
-use crate::output::svg::{Axes, Drawing, Figure, Scale, Sign, Stroke, color};
+use crate::output::Figure;
+use crate::output::axes::Scale;
+use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
+use crate::output::sheet::{Key, Sheet, Sign};
+use crate::output::svg::{Stroke, color};
 use crate::scenario::{Measure, Spacing};
 
 /// Draws fractions, curve and band.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(heading.title());
-    let top = legend(&mut drawing, figure, top, results);
-    let axes = Axes {
-        frame: figure.plot(top, figure.height_px(405.0)),
-        x: intensity_scale(heading, &results.levels, figure),
-        y: Scale::exactly(0.0, 1.0, 5),
-    };
+    let x = intensity_scale(heading, &results.levels, figure);
     let curves = curves(results);
-    draw_bands(&mut drawing, &axes, &curves);
-    let label = intensity_label(results.measure);
-    axes.draw(&mut drawing, Some(label), "fraction that overturns");
+    let mut marks: Vec<Mark> = Vec::new();
     for (fit, look) in &curves {
-        let intensities = along(&axes.x, &curves).into_iter();
-        let curve = intensities.map(|x| axes.place(x, fit.probability(x)));
-        drawing.curve(look.name, curve, look.line);
+        let intensities = along(&x, &curves).into_iter();
+        let points = intensities.map(|x| (x, fit.probability(x)));
+        marks.push(Mark::curve(look.name, look.line, points));
     }
+    let circle = |name, at| Mark::new(name, POINT, Shape::Circle(at, 4.5));
     for level in &results.levels {
         let fractions = level.fraction().zip(level.fraction_with_uncertain());
         let Some((certain, possible)) = fractions else {
             continue;
         };
-        let [low, high] = [certain, possible].map(|part| axes.place(level.intensity, part));
+        let [low, high] = [certain, possible].map(|part| (level.intensity, part));
         if possible > certain {
-            drawing.curve("uncertain", [low, high], POINT);
-            drawing.circle("fraction-with-uncertain", high, 4.5, POINT);
+            marks.push(Mark::curve("uncertain", POINT, [low, high]));
+            marks.push(circle("fraction-with-uncertain", high));
         }
-        drawing.circle("fraction", low, 4.5, POINT);
+        marks.push(circle("fraction", low));
     }
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    let mut sheet = Sheet::new(figure, heading.title());
+    sheet.legend(LEFT_PX, keys(results, &curves));
+    let words = curves_in_words(results).into_iter();
+    let words = words.map(|CurveInWords { taken, curve }| match curve {
+        Ok(curve) => format!("{curve}{taken}"),
+        Err(reason) => format!("no curve: {reason}{taken}"),
+    });
+    sheet.caption(14.0, &words.collect::<Vec<_>>().join("; "));
+    sheet.gap(10.0);
+    let x_axis = (intensity_label(results.measure), x);
+    let y_axis = ("fraction that overturns", Scale::exactly(0.0, 1.0, 5));
+    let chart = Chart {
+        below: bands(&x, &curves),
+        marks,
+        ..Chart::new(405.0, x_axis, y_axis)
+    };
+    chart.add_plot(&mut sheet);
+    sheet.gap(BELOW_PX);
+    sheet.finish()
 }
 
 /// The look of a curve.
@@ -55,7 +69,7 @@ const CURVE: Look = Look {
 };
 const CURVE_WITH_UNCERTAIN: Look = Look {
     name: "fit-with-uncertain",
-    label: "the same with uncertain cases as overturned",
+    label: "with uncertain cases as overturned",
     line: Stroke::new(color::BLUE, 2.0, "7 4"),
 };
 
@@ -91,28 +105,23 @@ pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure
     }
 }
 
-/// Draws the legend, with the curves in words or the reason why there are none; returns the position of its lower end.
-fn legend(drawing: &mut Drawing, figure: Figure, top: f64, results: &SuiteFragility) -> f64 {
+/// The legend.
+fn keys(results: &SuiteFragility, curves: &[(&Fragility, Look)]) -> Vec<Key> {
     let cases: usize = results.levels.iter().map(|level| level.cases).sum();
     let text = format!("fraction of {}, {cases} cases", records_in_words(results));
-    let mut keys = vec![(text.as_str(), Sign::Circle(4.5, POINT))];
-    let curves = curves(results);
-    let lines = curves.iter();
-    keys.extend(lines.map(|(_, look)| (look.label, Sign::Line(look.line))));
+    let mut keys = vec![Key::new(text, Sign::Circle(4.5, POINT))];
+    keys.extend(
+        curves
+            .iter()
+            .map(|(_, look)| Key::line(look.label, look.line)),
+    );
     if curves.len() > 1 {
-        keys.push(("between these", Sign::Band(BETWEEN, 1.0)));
+        keys.push(Key::new("between these", Sign::Band(BETWEEN, 1.0)));
     }
     if !curves.is_empty() {
-        keys.push(("95 % band", Sign::Band(BAND, 1.0)));
+        keys.push(Key::new("95 % band", Sign::Band(BAND, 1.0)));
     }
-    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys);
-    let words = curves_in_words(results).into_iter();
-    let words = words.map(|CurveInWords { taken, curve }| match curve {
-        Ok(curve) => format!("{curve}{taken}"),
-        Err(reason) => format!("no curve: {reason}{taken}"),
-    });
-    let words: Vec<String> = words.collect();
-    drawing.caption(top + 14.0, &words.join("; ")) + 10.0
+    keys
 }
 
 const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
@@ -139,36 +148,30 @@ fn along(scale: &Scale, curves: &[(&Fragility, Look)]) -> Vec<f64> {
     values
 }
 
-/// Draws the joint 95 % band of the curves, and the area between them.
-fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)]) {
-    let mut fill = |name: &str, color: &'static str, ends: &dyn Fn(f64) -> [f64; 2]| {
-        let (low, mut high): (Vec<_>, Vec<_>) = along(&axes.x, curves)
-            .into_iter()
-            .map(|x| {
-                let [low, high] = ends(x).map(|probability| axes.place(x, probability));
-                (low, high)
-            })
-            .unzip();
-        high.reverse();
-        let corners = low.into_iter().chain(high);
-        drawing.polygon(name, corners, color, Stroke::new(color, 0.0, ""));
-    };
-    if curves.is_empty() {
-        return;
-    }
+/// The joint 95 % band of the curves, and the area between them.
+fn bands(x: &Scale, curves: &[(&Fragility, Look)]) -> Vec<Mark> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold([1.0, 0.0], |[low, high]: [f64; 2], value| {
             [low.min(value), high.max(value)]
         })
     };
-    fill("band", BAND, &|x| {
+    let area = |name, color, ends: &dyn Fn(f64) -> [f64; 2]| {
+        let xs = along(x, curves);
+        let [low, high] = [0, 1].map(|end: usize| xs.iter().map(move |x| (*x, ends(*x)[end])));
+        Mark::between(name, color, low, high)
+    };
+    let band = |x: f64| {
         let bands = curves.iter();
         range(&mut bands.flat_map(|(fit, _)| <[f64; 2]>::from(fit.band(x))))
-    });
-    if curves.len() > 1 {
-        fill("between", BETWEEN, &|x| {
-            range(&mut curves.iter().map(|(fit, _)| fit.probability(x)))
-        });
+    };
+    let between = |x: f64| range(&mut curves.iter().map(|(fit, _)| fit.probability(x)));
+    match curves.len() {
+        0 => Vec::new(),
+        1 => vec![area("band", BAND, &band)],
+        _ => vec![
+            area("band", BAND, &band),
+            area("between", BETWEEN, &between),
+        ],
     }
 }
 
@@ -176,6 +179,8 @@ fn draw_bands(drawing: &mut Drawing, axes: &Axes, curves: &[(&Fragility, Look)])
 mod tests {
     use super::super::fragility::{Observation, fit};
     use super::*;
+    use crate::output::axes::Axes;
+    use crate::output::svg::Frame;
 
     /// However steep a curve is, it turns by a few degrees at most from one piece to the next on the sheet.
     #[test]
@@ -195,8 +200,12 @@ mod tests {
         let fit = fit(&cases.collect::<Vec<_>>()).unwrap();
         assert!(fit.dispersion < 0.02, "{}", fit.dispersion);
         for x in [Scale::exactly(0.0, 3.0, 8), Scale::logarithmic(0.1, 10.0)] {
+            let frame = Frame {
+                height: 405.0,
+                ..Frame::default()
+            };
             let axes = Axes {
-                frame: Figure::SCREEN.plot(0.0, 405.0),
+                frame: Figure::SCREEN.right_of(LEFT_PX, frame),
                 x,
                 y: Scale::exactly(0.0, 1.0, 5),
             };

@@ -76,21 +76,12 @@ impl Heading {
             files: vec![
                 (
                     "suite.svg",
-                    figure
-                        .fitted(|figure| picture::draw(figure, self, &results))
-                        .into_bytes(),
+                    picture::draw(figure, self, &results).into_bytes(),
                 ),
-                (
-                    "ida.svg",
-                    figure
-                        .fitted(|figure| ida::draw(figure, self, &results))
-                        .into_bytes(),
-                ),
+                ("ida.svg", ida::draw(figure, self, &results).into_bytes()),
                 (
                     "peaks.svg",
-                    figure
-                        .fitted(|figure| ida::draw_peaks(figure, self, &results))
-                        .into_bytes(),
+                    ida::draw_peaks(figure, self, &results).into_bytes(),
                 ),
                 (
                     "ida.csv",

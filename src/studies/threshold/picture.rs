@@ -4,7 +4,11 @@ use nalgebra::Vector2;
 
 use super::told::{outcome, rounded};
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
-use crate::output::svg::{Anchor, Axes, Drawing, Figure, Frame, Scale, Sign, Stroke, color};
+use crate::output::Figure;
+use crate::output::axes::{Axes, Scale};
+use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark};
+use crate::output::sheet::{Key, Sheet};
+use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::kind::{self, Kind};
 
@@ -32,87 +36,88 @@ pub fn draw(
     factors: &Factors,
     thresholds: &[Threshold],
 ) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(title);
     let kinds: Vec<Kind> = thresholds
         .iter()
         .flat_map(|threshold| threshold.samples.iter().map(kind_of))
         .collect();
     let names: Vec<String> = thresholds.iter().map(name).collect();
-    let rotation = Rotation::of(thresholds);
+    let over_critical = are_over_critical(thresholds);
+    let peak = |sample: &FactorSample| match over_critical {
+        true => sample.result.as_ref().ok()?.peak.over_critical(),
+        false => sample.peak_rotation_rad,
+    };
+    let (least, y_label) = match over_critical {
+        true => (1.0, "peak rotation / critical rotation"),
+        false => (0.01, "peak rotation (rad)"),
+    };
     let mut keys = kind::keys(&kinds);
-    if rotation == Rotation::OverCritical {
-        keys.push(("unstable equilibrium", Sign::Line(CRITICAL)));
+    if over_critical {
+        keys.push(Key::line("unstable equilibrium", CRITICAL));
     }
-    if let [_, _, ..] = names[..] {
-        let named = names.iter().map(String::as_str).zip(curves());
-        keys.extend(named.map(|(name, stroke)| (name, Sign::Line(stroke))));
+    if names.len() > 1 {
+        let named = names.iter().zip(curves());
+        keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
-    let Frame { left, width, .. } = figure.plot(0.0, 0.0);
-    let mut top = drawing.legend(left, top, &keys);
-
     let (first, last) = (factors.first(), factors.last());
     let x = if last < 2.0 * first {
         Scale::exactly(first, last, figure.ticks(8))
     } else {
         Scale::logarithmic(first, last)
     };
-    let strips = thresholds.len() as f64 * (EDGE_LABELS + STRIP);
-    let axes = Axes {
-        frame: figure.plot(top + strips + 16.0, figure.height_px(320.0)),
-        x,
-        y: rotation.scale(thresholds),
-    };
+    let y = scale(thresholds, least, peak);
+    let mut sheet = Sheet::new(figure, title);
+    sheet.legend(LEFT_PX, keys);
     for (threshold, name) in thresholds.iter().zip(&names) {
-        top += EDGE_LABELS;
-        let frame = Frame {
-            left,
-            top,
-            width,
-            height: STRIP,
-        };
-        strip(&mut drawing, &Axes { frame, ..axes }, threshold);
-        let at = Vector2::new(left - 8.0, top + 0.5 * STRIP + 4.5);
-        drawing.label(at, Anchor::End, 0.0, name);
-        top += STRIP;
+        sheet.gap(EDGE_LABELS);
+        sheet.fixed(STRIP, move |drawing, part| {
+            let frame = figure.right_of(LEFT_PX, part);
+            strip(drawing, &Axes { frame, x, y }, threshold);
+            let at = Vector2::new(frame.left - 8.0, frame.top + 0.5 * STRIP + 4.5);
+            drawing.label(at, Anchor::End, 0.0, name);
+        });
+    }
+    sheet.gap(16.0);
+    let mut marks = Vec::new();
+    if over_critical {
+        let ends = [first, last].map(|factor| (factor, 1.0));
+        marks.push(Mark::curve("", CRITICAL, ends));
+    }
+    for (threshold, stroke) in thresholds.iter().zip(curves()) {
+        let faint = Stroke::new(stroke.color, 0.5, "2 3");
+        marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
+        // Where it overturns there is no peak to show: the curve is interrupted.
+        let points = threshold.samples.iter().map(|sample| {
+            let overturns = sample.verdict() == Some(Verdict::Overturns);
+            let peak = peak(sample).filter(|_| !overturns);
+            (sample.factor, peak.unwrap_or(f64::NAN))
+        });
+        marks.push(Mark::curve(
+            format!("{} peak", threshold.model),
+            stroke,
+            points,
+        ));
     }
     let label = format!("factor on the ground motion (1: {} g)", rounded(peak_g));
-    axes.draw(&mut drawing, Some(&label), rotation.label());
-    drawing.within(&axes.frame, |drawing| {
-        if rotation == Rotation::OverCritical {
-            drawing.line(axes.place(first, 1.0), axes.place(last, 1.0), CRITICAL);
-        }
-        for (threshold, stroke) in thresholds.iter().zip(curves()) {
-            for edge in edges(threshold) {
-                let [bottom, top] = [axes.y.low, axes.y.high].map(|y| axes.place(edge, y));
-                drawing.line(bottom, top, Stroke::new(stroke.color, 0.5, "2 3"));
-            }
-            // Where it overturns there is no peak to show: the curve ends, and begins again behind.
-            let peak = |sample: &FactorSample| {
-                let overturns = sample.verdict() == Some(Verdict::Overturns);
-                rotation.peak(sample).filter(|_| !overturns)
-            };
-            for run in threshold
-                .samples
-                .chunk_by(|a, b| peak(a).is_some() == peak(b).is_some())
-            {
-                let points = run
-                    .iter()
-                    .filter_map(|sample| Some(axes.place(sample.factor, peak(sample)?)));
-                drawing.curve(&format!("{} peak", threshold.model), points, stroke);
-            }
-        }
-    });
-    let bottom = axes.frame.top + axes.frame.height + 56.0;
-    let narrow = narrow(thresholds, &names, &axes);
-    if narrow.is_empty() {
-        return drawing.finish(bottom);
+    let chart = Chart {
+        marks: vec![Mark::clipped(marks)],
+        ..Chart::new(320.0, (&label, x), (y_label, y))
+    };
+    chart.add_plot(&mut sheet);
+    sheet.gap(BELOW_PX);
+    let across = Axes {
+        frame: figure.right_of(LEFT_PX, Frame::default()),
+        x,
+        y,
+    };
+    let narrow = narrow(thresholds, &names, &across);
+    if !narrow.is_empty() {
+        sheet.caption(8.0, &narrow);
+        sheet.gap(8.0);
     }
-    let end = drawing.caption(bottom + 8.0, &narrow);
-    drawing.finish(end + 8.0)
+    sheet.finish()
 }
 
-/// What the curves of the models look like: in no colour of an outcome.
+/// The looks of the curves of the models, in no colour of an outcome.
 fn curves() -> impl Iterator<Item = Stroke> {
     const CURVES: [Stroke; 3] = [
         Stroke::new(color::BLACK, 1.6, ""),
@@ -170,60 +175,33 @@ fn kind_of(sample: &FactorSample) -> Kind {
     Kind::of(outcome(sample), impacts)
 }
 
-/// The rotation to draw.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Rotation {
-    /// The largest rotation relative to the critical one.
-    OverCritical,
-    /// The largest rotation in radians, because some model has no critical one.
-    Plain,
+/// Whether all largest rotations are known over the critical one; otherwise they are drawn in radians.
+fn are_over_critical(thresholds: &[Threshold]) -> bool {
+    let mut samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+    samples.all(|sample| {
+        let ending = sample.result.as_ref();
+        ending.map_or(true, |ending| ending.peak.over_critical().is_some())
+    })
 }
 
-impl Rotation {
-    fn of(thresholds: &[Threshold]) -> Self {
-        let mut samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-        let known = samples.all(|sample| {
-            let ending = sample.result.as_ref();
-            ending.map_or(true, |ending| ending.peak.over_critical().is_some())
-        });
-        if known {
-            Self::OverCritical
-        } else {
-            Self::Plain
-        }
-    }
-
-    const fn label(self) -> &'static str {
-        match self {
-            Self::OverCritical => "peak rotation / critical rotation",
-            Self::Plain => "peak rotation (rad)",
-        }
-    }
-
-    fn peak(self, sample: &FactorSample) -> Option<f64> {
-        match self {
-            Self::OverCritical => sample.result.as_ref().ok()?.peak.over_critical(),
-            Self::Plain => sample.peak_rotation_rad,
-        }
-    }
-
-    /// The scale up to the largest rotation that was survived. Overturning cases go beyond it.
-    fn scale(self, thresholds: &[Threshold]) -> Scale {
-        let least = match self {
-            Self::OverCritical => 1.0,
-            Self::Plain => 0.01,
-        };
-        let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-        let survived = samples
-            .filter(|sample| sample.verdict() == Some(Verdict::Survives))
-            .filter_map(|sample| self.peak(sample));
-        Scale::exactly(0.0, 1.15 * survived.fold(least, f64::max), 6)
-    }
+/// The scale up to the largest rotation that was survived. Overturning cases go beyond it.
+fn scale(
+    thresholds: &[Threshold],
+    least: f64,
+    peak: impl Fn(&FactorSample) -> Option<f64>,
+) -> Scale {
+    let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+    let survived = samples.filter(|sample| sample.verdict() == Some(Verdict::Survives));
+    Scale::exactly(
+        0.0,
+        1.15 * survived.filter_map(peak).fold(least, f64::max),
+        6,
+    )
 }
 
 /// The edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
-    let mut told = f64::NAN;
+    let mut last = f64::NAN;
     let ranges = threshold.ranges.iter();
     let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
     let ends = ranges.flat_map(|(_, range)| {
@@ -233,8 +211,8 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     });
     // Where a band meets an uncertain range, one of the two factors that enclose the edge is enough.
     ends.filter(move |factor| {
-        let anew = factor - told > 2.0 * EDGE_WIDTH * factor || told.is_nan();
-        told = *factor;
+        let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();
+        last = *factor;
         anew
     })
 }
@@ -286,8 +264,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         }
     }
     let Frame { left, width, .. } = axes.frame;
-    let outline = format!("M{left} {top}h{width}v{height}h-{width}z");
-    drawing.path("", &outline, "none", Stroke::new(color::BLACK, 0.8, ""));
+    drawing.outline(&axes.frame, Stroke::new(color::BLACK, 0.8, ""));
     let places: Vec<f64> = edges.iter().map(|edge| place(*edge)).collect();
     for ((edge, at), beside) in edges
         .iter()
@@ -298,7 +275,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let head = Vector2::new(beside, top - 14.0);
         drawing.line(foot, head, EDGE);
         let text = head + Vector2::new(4.5, -3.0);
-        drawing.label(text, Anchor::Start, 90.0, &rounded(*edge));
+        drawing.label(text, Anchor::Start, 90.0, rounded(*edge));
     }
 }
 

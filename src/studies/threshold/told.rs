@@ -56,7 +56,7 @@ pub fn tell(
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario, ground);
     let json = to_json(scenarios, ground, factors, thresholds)?;
-    let picture = figure.fitted(|figure| picture::draw(figure, title, peak_g, factors, thresholds));
+    let picture = picture::draw(figure, title, peak_g, factors, thresholds);
     let contents = [
         picture.into_bytes(),
         table(thresholds)?,

@@ -3,7 +3,10 @@
 use serde_json::json;
 
 use super::{Came, CellsOfSamples, LEVELS, Likely, OTHERS, Reached, Told};
-use crate::output::svg::{Axes, Drawing, Figure, Key, Sign, Stroke, color};
+use crate::output::Figure;
+use crate::output::chart::Mark;
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{Stroke, color};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{OutputError, pretty};
 use crate::studies::ending::columns::yes;
@@ -115,16 +118,12 @@ pub(super) fn tell(
         files: vec![
             (
                 "map.svg",
-                look.figure
-                    .fitted(|figure| draw(title, study, &found, Look { figure, ..look }).picture)
-                    .into_bytes(),
+                draw(title, study, &found, look).picture.into_bytes(),
             ),
             ("map.html", page.into_bytes()),
             (
                 "matters.svg",
-                look.figure
-                    .fitted(|figure| picture::matters(figure, told, &decides))
-                    .into_bytes(),
+                picture::matters(look.figure, told, &decides).into_bytes(),
             ),
             ("probability.csv", csv(line_columns(study), &found.reached)?),
             ("map.csv", csv(columns(study), &found.likely)?),
@@ -180,37 +179,26 @@ fn line_columns<'s>(study: &'s CellsOfSamples<'_>) -> Vec<Column<'s, Reached>> {
 }
 
 fn draw(title: &str, study: &CellsOfSamples<'_>, found: &Found, look: Look) -> Drawn {
-    let map = &study.map;
     let kinds: Vec<Kind> = found.likely.iter().map(kind_of).collect();
     let palette: Vec<Kind> = palette().collect();
-    let sheet = Sheet { title, map, look };
-    let factors = sheet.factors();
-    let keys = |_: &_| -> Vec<Key<'static>> {
-        let kinds = palette.iter().filter(|kind| kinds.contains(kind));
-        let kinds = kinds.map(|kind| (kind.label, Sign::Band(kind.fill, 1.0)));
-        let lines = (0..LEVELS.len()).filter(|level| found.is_reached(*level));
-        kinds
-            .chain(lines.map(|level| (LINES[level].0, Sign::Line(LINES[level].1))))
-            .collect()
-    };
-    let over = |drawing: &mut Drawing, axes: &Axes, _: [&[f64]; 2]| {
-        drawing.within(&axes.frame, |drawing| {
-            for (level, (name, stroke)) in LINES.into_iter().enumerate() {
-                // A line ends where the probability is not reached, or reached below the map.
-                for piece in found
-                    .reached
-                    .chunk_by(|a, b| [a, b].iter().all(|reached| reached.inside(level).is_some()))
-                {
-                    let points = piece.iter().filter_map(|reached| {
-                        let y = reached.inside(level)?;
-                        Some(axes.place(factors[0] * reached.x, factors[1] * y))
-                    });
-                    drawing.curve(name, points, stroke);
-                }
-            }
-        });
-    };
-    sheet.draw(&palette, &kinds, keys, over)
+    let present = palette.iter().filter(|kind| kinds.contains(kind));
+    let mut keys: Vec<Key> = present
+        .map(|kind| Key::new(kind.label, Sign::Band(kind.fill, 1.0)))
+        .collect();
+    let sheet = Sheet::new(title, &study.map, look);
+    let mut lines = Vec::new();
+    for (level, (name, stroke)) in LINES.into_iter().enumerate() {
+        if found.is_reached(level) {
+            keys.push(Key::line(name, stroke));
+        }
+        // A line is interrupted where the probability is not reached, or reached below the map.
+        let points = found
+            .reached
+            .iter()
+            .map(|reached| sheet.point(reached.x, reached.inside(level).unwrap_or(f64::NAN)));
+        lines.push(Mark::curve(name, stroke, points));
+    }
+    sheet.draw(&palette, &kinds, keys, vec![Mark::clipped(lines)])
 }
 
 fn palette() -> impl Iterator<Item = Kind> {

@@ -4,8 +4,7 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
-use super::super::film::Frame;
-use crate::dynamics::history::OpenHinge;
+use crate::dynamics::history::{OpenHinge, Sample};
 use crate::mechanics::geometry::pose::Pose;
 use crate::output::scene::{Piece, Scene};
 
@@ -14,7 +13,10 @@ pub(super) const MOST: f64 = 32767.0;
 
 /// The distinct layouts of frames by their hinges, and which of them each frame has. The joints of a row are written for each frame
 /// instead.
-pub(super) fn layouts<'a>(scene: &Scene, frames: &[&'a Frame]) -> (Vec<&'a [OpenHinge]>, Vec<u16>) {
+pub(super) fn layouts<'a>(
+    scene: &Scene,
+    frames: &[&'a Sample],
+) -> (Vec<&'a [OpenHinge]>, Vec<u16>) {
     let is_row = scene.joint(0).is_some();
     let same = |one: &[OpenHinge], other: &[OpenHinge]| {
         let hinges = |open: &OpenHinge| open.hinge;
@@ -35,7 +37,7 @@ pub(super) fn layouts<'a>(scene: &Scene, frames: &[&'a Frame]) -> (Vec<&'a [Open
 }
 
 /// The poses of all bodies in each frame, and its layout.
-pub(super) fn motion(frames: &[&Frame], layout_of: Vec<u16>) -> Map<String, Value> {
+pub(super) fn motion(frames: &[&Sample], layout_of: Vec<u16>) -> Map<String, Value> {
     let times_s = frames.iter().map(|frame| frame.time_s.to_le_bytes());
     let poses = || frames.iter().flat_map(|frame| &frame.poses);
     let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));

@@ -1,7 +1,9 @@
 //! The picture of thresholds along a range.
 
 use super::report::Point;
-use crate::output::svg::{Axes, CURVES, Drawing, Figure, Key, Scale, Sign};
+use crate::output::Figure;
+use crate::output::chart::{Chart, Mark, Shape};
+use crate::output::svg::CURVES;
 
 /// A quantity of a point, in g.
 type Quantity = fn(&Point) -> Option<f64>;
@@ -13,38 +15,26 @@ const CURVES_OF: [(&str, Quantity); 2] = [
 
 /// Draws the peak ground acceleration that overturns the structure over the values of a key, each value a point of a curve.
 pub(super) fn draw(figure: Figure, title: &str, key: &str, points: &[Point]) -> String {
-    let mut drawing = Drawing::new(figure);
-    let top = drawing.title(title);
-    let shown = CURVES_OF
+    let curves = CURVES_OF
         .into_iter()
         .zip(CURVES)
-        .filter(|((_, of), _)| points.iter().any(|point| of(point).is_some()));
-    let shown: Vec<_> = shown.collect();
-    let keys: Vec<Key<'_>> = shown
-        .iter()
-        .map(|((name, _), stroke)| (*name, Sign::Line(*stroke)))
+        .map(|((name, of), stroke)| {
+            // The curve is interrupted where there is no value.
+            let points = points.iter();
+            let points = points.map(|point| (point.value, of(point).unwrap_or(f64::NAN)));
+            Mark::curve(name, stroke, points)
+        });
+    let is_known = |point: &(f64, f64)| point.1.is_finite();
+    let curves: Vec<Mark> = curves
+        .filter(|curve| curve.points().iter().any(is_known))
         .collect();
-    let top = drawing.legend(figure.plot(0.0, 0.0).left, top, &keys) + 8.0;
-    let heights = shown
-        .iter()
-        .flat_map(|((_, of), _)| points.iter().filter_map(of));
-    let axes = Axes {
-        frame: figure.plot(top, figure.height_px(405.0)),
-        x: Scale::around(points.iter().map(|point| point.value), figure.ticks(8)),
-        y: Scale::around(heights.chain([0.0]), 6),
-    };
-    axes.draw(&mut drawing, Some(key), "peak ground acceleration (g)");
-    for ((name, of), stroke) in shown {
-        // The curve is interrupted where there is no value.
-        for run in points.chunk_by(|a, b| of(a).is_some() == of(b).is_some()) {
-            let places = run
-                .iter()
-                .filter_map(|point| Some(axes.place(point.value, of(point)?)));
-            drawing.curve(name, places.clone(), stroke);
-            for place in places {
-                drawing.circle(name, place, 2.5, stroke);
-            }
-        }
-    }
-    drawing.finish(axes.frame.top + axes.frame.height + 56.0)
+    let circles = curves.iter().flat_map(|curve| {
+        let known = curve.points().iter().copied().filter(is_known);
+        known.map(|at| Mark::new(&curve.name, curve.stroke, Shape::Circle(at, 2.5)))
+    });
+    let circles: Vec<Mark> = circles.collect();
+    let labels = [key, "peak ground acceleration (g)"];
+    let mut chart = Chart::around(figure, 405.0, labels, curves);
+    chart.marks.extend(circles);
+    chart.draw(figure, title)
 }

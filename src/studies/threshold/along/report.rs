@@ -94,7 +94,7 @@ impl Along<'_> {
             column("why_not", |point: &Point| point.why_not),
         ];
         let title = self.scenario.title().unwrap_or("Threshold of overturning");
-        let picture = figure.fitted(|figure| picture::draw(figure, title, key, &points));
+        let picture = picture::draw(figure, title, key, &points);
         let contents = [
             picture.into_bytes(),
             pretty(&summary).into_bytes(),

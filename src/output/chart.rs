@@ -1,0 +1,272 @@
+//! Charts as values: axes, marks in the units of the axes, and a legend.
+
+use super::axes::{Axes, Scale};
+use super::figure::Figure;
+use super::sheet::{Key, Sheet};
+use super::svg::{Drawing, Frame, Stroke};
+
+/// Distance of a plot to the left side of the picture, with room for the label of its y axis.
+pub(crate) const LEFT_PX: f64 = 85.0;
+/// Distance of a panel, whose label is above it.
+pub(crate) const PANEL_LEFT_PX: f64 = 66.0;
+/// Height of the texts below a plot.
+pub(crate) const BELOW_PX: f64 = 56.0;
+
+/// A chart, or a panel of several with one x axis.
+pub(crate) struct Chart {
+    /// Height of its plot on the screen.
+    pub(crate) height_px: f64,
+    /// Label and scale along the lower side; without a label there are only ticks.
+    pub(crate) x: (String, Scale),
+    /// Label and scale along the left side.
+    pub(crate) y: (String, Scale),
+    /// Whether the label of the y axis is above the plot.
+    pub(crate) is_panel: bool,
+    /// Entries of its legend.
+    pub(crate) keys: Vec<Key>,
+    /// Marks below the grid.
+    pub(crate) below: Vec<Mark>,
+    /// Marks above the grid.
+    pub(crate) marks: Vec<Mark>,
+}
+
+impl Chart {
+    /// A chart with axes, so far without marks.
+    pub(crate) fn new(height_px: f64, x: (&str, Scale), y: (&str, Scale)) -> Self {
+        Self {
+            height_px,
+            x: (x.0.to_owned(), x.1),
+            y: (y.0.to_owned(), y.1),
+            is_panel: false,
+            keys: Vec::new(),
+            below: Vec::new(),
+            marks: Vec::new(),
+        }
+    }
+
+    /// A chart of curves on scales that hold them all, and zero along y; each is in the legend by its name.
+    pub(crate) fn around(
+        figure: Figure,
+        height_px: f64,
+        [x_label, y_label]: [&str; 2],
+        curves: Vec<Mark>,
+    ) -> Self {
+        let points = || curves.iter().flat_map(Mark::points);
+        let x = Scale::around(points().map(|point| point.0), figure.ticks(8));
+        let y = Scale::around(points().map(|point| point.1).chain([0.0]), 6);
+        Self::new(height_px, (x_label, x), (y_label, y)).with_named(curves)
+    }
+
+    /// This chart with more marks, each also in the legend by its name.
+    pub(crate) fn with_named(mut self, marks: Vec<Mark>) -> Self {
+        self.keys.extend(marks.iter().map(Mark::key));
+        self.marks.extend(marks);
+        self
+    }
+
+    /// The chart alone, below a title.
+    pub(crate) fn draw(self, figure: Figure, title: &str) -> String {
+        let mut sheet = Sheet::new(figure, title);
+        self.add_to(&mut sheet);
+        sheet.finish()
+    }
+
+    /// Adds legend, plot and axes to a picture; returns the number of the plot among its parts.
+    pub(crate) fn add_to(mut self, sheet: &mut Sheet<'_>) -> usize {
+        sheet.legend(LEFT_PX, std::mem::take(&mut self.keys));
+        sheet.gap(8.0);
+        let plot = self.add_plot(sheet);
+        sheet.gap(BELOW_PX);
+        plot
+    }
+
+    /// Adds plot and axes to a picture; returns the number of the plot among its parts.
+    pub(crate) fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
+        let figure = sheet.figure;
+        sheet.plot(figure.height_px(self.height_px), move |drawing, part| {
+            let left_px = if self.is_panel {
+                PANEL_LEFT_PX
+            } else {
+                LEFT_PX
+            };
+            let axes = Axes {
+                frame: figure.right_of(left_px, part),
+                x: self.x.1,
+                y: self.y.1,
+            };
+            draw(drawing, &axes, &self.below);
+            axes.draw(drawing, &self.y.0, self.is_panel);
+            axes.label_x(drawing, &self.x.0);
+            draw(drawing, &axes, &self.marks);
+        })
+    }
+}
+
+/// A mark of a chart: its name for scripts and tests, its shape, and the line around it, whose colour also fills areas.
+#[derive(Clone, Debug)]
+pub(crate) struct Mark {
+    pub(crate) name: String,
+    pub(crate) stroke: Stroke,
+    shape: Shape,
+}
+
+/// Values along both axes.
+pub(crate) type Point = (f64, f64);
+
+/// The shape of a mark.
+#[derive(Clone, Debug)]
+pub(crate) enum Shape {
+    /// A curve; it is interrupted at values that are not finite.
+    Curve(Vec<Point>),
+    /// A filled area.
+    Area(Vec<Point>),
+    /// Filled boxes between opposite corners.
+    Boxes(Vec<[Point; 2]>),
+    /// A range along the x axis, shaded with this opacity.
+    Range([f64; 2], f64),
+    /// A circle of this radius in pixels.
+    Circle(Point, f64),
+    /// An arrow at the right end of the plot at this y, for a value beyond the axis.
+    Beyond(f64),
+    /// Short lines at the lower side; one that is too close to the last is left out.
+    Ticks(Vec<f64>),
+    /// Marks clipped to the plot.
+    Clipped(Vec<Mark>),
+}
+
+/// Ticks closer together than this, in pixels, would merge.
+const BETWEEN_TICKS_PX: f64 = 2.5;
+
+impl Mark {
+    pub(crate) fn new(name: impl Into<String>, stroke: Stroke, shape: Shape) -> Self {
+        let name = name.into();
+        Self {
+            name,
+            stroke,
+            shape,
+        }
+    }
+
+    /// A curve, interrupted at values that are not finite.
+    pub(crate) fn curve(
+        name: impl Into<String>,
+        stroke: Stroke,
+        points: impl IntoIterator<Item = Point>,
+    ) -> Self {
+        Self::new(name, stroke, Shape::Curve(points.into_iter().collect()))
+    }
+
+    /// A curve that goes level from `first` and rises at each x to the height given with it, across the scale.
+    pub(crate) fn staircase(
+        name: impl Into<String>,
+        stroke: Stroke,
+        (x, first): (Scale, f64),
+        rises: impl IntoIterator<Item = Point>,
+    ) -> Self {
+        let mut before = first;
+        let mut corners = vec![(x.low, before)];
+        for (x, y) in rises {
+            corners.extend([(x, before), (x, y)]);
+            before = y;
+        }
+        corners.push((x.high, before));
+        Self::curve(name, stroke, corners)
+    }
+
+    /// A straight line across the plot at this x.
+    pub(crate) fn upright(name: impl Into<String>, stroke: Stroke, x: f64, y: Scale) -> Self {
+        Self::curve(name, stroke, [(x, y.low), (x, y.high)])
+    }
+
+    /// An area of this colour between a lower and an upper curve.
+    pub(crate) fn between(
+        name: &str,
+        fill: &'static str,
+        low: impl IntoIterator<Item = Point>,
+        high: impl IntoIterator<Item = Point>,
+    ) -> Self {
+        let high: Vec<Point> = high.into_iter().collect();
+        let corners = low.into_iter().chain(high.into_iter().rev()).collect();
+        Self::new(name, Stroke::new(fill, 0.0, ""), Shape::Area(corners))
+    }
+
+    /// Marks clipped to the plot.
+    pub(crate) fn clipped(marks: Vec<Self>) -> Self {
+        Self::new("", Stroke::new("", 0.0, ""), Shape::Clipped(marks))
+    }
+
+    /// Its entry in a legend.
+    pub(crate) fn key(&self) -> Key {
+        Key::line(&self.name, self.stroke)
+    }
+
+    /// The points of a curve; of other marks none.
+    pub(crate) fn points(&self) -> &[Point] {
+        match &self.shape {
+            Shape::Curve(points) => points,
+            _ => &[],
+        }
+    }
+
+    /// Whether a curve is zero throughout.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.points().iter().all(|(_, value)| *value == 0.0)
+    }
+
+    fn draw(&self, drawing: &mut Drawing, axes: &Axes) {
+        let (name, stroke) = (&*self.name, self.stroke);
+        let place = |(x, y): &Point| axes.place(*x, *y);
+        match &self.shape {
+            Shape::Curve(points) => drawing.curve(name, points.iter().map(place), stroke),
+            Shape::Area(corners) => {
+                drawing.polygon(name, corners.iter().map(place), stroke.color, stroke);
+            }
+            Shape::Boxes(boxes) => {
+                let boxes = boxes.iter().map(|corners| corners.each_ref().map(place));
+                drawing.boxes(name, boxes, stroke);
+            }
+            Shape::Range(ends, opacity) => {
+                let [left, right] = ends.map(|x| axes.place(x, axes.y.low).x);
+                let frame = Frame {
+                    left,
+                    width: right - left,
+                    ..axes.frame
+                };
+                drawing.band(name, &frame, stroke.color, *opacity);
+            }
+            Shape::Circle(at, radius_px) => drawing.circle(name, place(at), *radius_px, stroke),
+            Shape::Beyond(y) => {
+                let tip = axes.place(axes.x.high, *y);
+                let (y, back, barb) = (tip.y, tip.x - 11.0, tip.x - 5.0);
+                let arrow = format!(
+                    "M{back:.2} {y:.2}H{x:.2}M{barb:.2} {:.2}L{x:.2} {y:.2}L{barb:.2} {:.2}",
+                    y - 3.0,
+                    y + 3.0,
+                    x = tip.x,
+                );
+                drawing.path(name, &arrow, "none", stroke);
+            }
+            Shape::Ticks(all) => {
+                let mut last_px = f64::NEG_INFINITY;
+                for x in all {
+                    let at = axes.place(*x, axes.y.low);
+                    if at.x - last_px >= BETWEEN_TICKS_PX {
+                        let path = format!("M{:.2} {:.2}v-10", at.x, at.y);
+                        drawing.path(name, &path, "none", stroke);
+                        last_px = at.x;
+                    }
+                }
+            }
+            Shape::Clipped(marks) => {
+                drawing.within(&axes.frame, |drawing| draw(drawing, axes, marks));
+            }
+        }
+    }
+}
+
+/// Draws marks one above the other.
+fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
+    for mark in marks {
+        mark.draw(drawing, axes);
+    }
+}

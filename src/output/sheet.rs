@@ -1,0 +1,376 @@
+//! The layout of a picture: parts below one another, whose heights are known before anything is drawn.
+
+use nalgebra::Vector2;
+
+use super::figure::Figure;
+use super::svg::{Anchor, Drawing, Frame, Stroke, color};
+use super::text::{LINE_PX, TEXT_PX, Text};
+
+/// Largest number of lines of a title; the rest is cut off.
+const TITLE_LINES: usize = 3;
+/// Space below the baseline of the last line of a text.
+const BELOW_TEXT_PX: f64 = 8.0;
+/// Limits to how far plots are squeezed and stretched.
+const LEAST_STRETCH: f64 = 0.15;
+const MOST_STRETCH: f64 = 20.0;
+
+/// A picture to be drawn.
+pub(crate) struct Sheet<'a> {
+    pub(crate) figure: Figure,
+    parts: Vec<(Height, Draw<'a>)>,
+}
+
+/// Draws a part into its frame, as wide as the sheet.
+type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
+
+/// The height of a part in pixels.
+#[derive(Clone, Copy, Debug)]
+enum Height {
+    /// Texts and gaps.
+    Fixed(f64),
+    /// A height that is stretched and squeezed so that the picture gets its own, and the largest one.
+    Elastic(f64, f64),
+}
+
+impl Height {
+    fn at(self, stretch: f64) -> f64 {
+        match self {
+            Self::Fixed(height_px) => height_px,
+            Self::Elastic(height_px, most_px) => (stretch * height_px).min(most_px),
+        }
+    }
+}
+
+/// A picture, and the frames of its parts.
+pub(crate) struct Drawn {
+    pub(crate) svg: String,
+    pub(crate) height_px: f64,
+    pub(crate) frames: Vec<Frame>,
+}
+
+impl<'a> Sheet<'a> {
+    /// A sheet with a title, in a few lines; a very long one is cut off.
+    pub(crate) fn new(figure: Figure, title: &str) -> Self {
+        let mut sheet = Self {
+            figure,
+            parts: Vec::new(),
+        };
+        if figure.has_title && !title.is_empty() {
+            let mut lines = Text::lines(title, figure.width_px - 20.0);
+            if lines.len() > TITLE_LINES {
+                lines.truncate(TITLE_LINES);
+                lines[TITLE_LINES - 1] = format!("{} ...", lines[TITLE_LINES - 1].shown).into();
+            }
+            sheet.paragraphs(26.0, vec![(0.5 * figure.width_px, lines)]);
+        } else {
+            sheet.gap(4.0);
+        }
+        sheet
+    }
+
+    fn part(&mut self, height: Height, draw: impl FnOnce(&mut Drawing, Frame) + 'a) -> usize {
+        self.parts.push((height, Box::new(draw)));
+        self.parts.len() - 1
+    }
+
+    /// Adds a part of this height.
+    pub(crate) fn fixed(&mut self, height_px: f64, draw: impl FnOnce(&mut Drawing, Frame) + 'a) {
+        self.part(Height::Fixed(height_px), draw);
+    }
+
+    /// Adds a gap.
+    pub(crate) fn gap(&mut self, height_px: f64) {
+        self.fixed(height_px, |_, _| ());
+    }
+
+    /// Adds a plot, which can be stretched and squeezed; returns its number among the parts.
+    pub(crate) fn plot(
+        &mut self,
+        height_px: f64,
+        draw: impl FnOnce(&mut Drawing, Frame) + 'a,
+    ) -> usize {
+        self.part(Height::Elastic(height_px, f64::INFINITY), draw)
+    }
+
+    /// Adds the drawing of a structure, which can be stretched to the height at which it fills the width.
+    pub(crate) fn structure(
+        &mut self,
+        height_px: f64,
+        most_px: f64,
+        draw: impl FnOnce(&mut Drawing, Frame) + 'a,
+    ) {
+        self.part(Height::Elastic(height_px, most_px), draw);
+    }
+
+    /// Adds a centred text, in as many lines as it needs, whose first baseline is `above_px` below the last part.
+    pub(crate) fn caption(&mut self, above_px: f64, text: &str) {
+        self.captions(above_px, &[text]);
+    }
+
+    /// Adds centred texts side by side.
+    pub(crate) fn captions(&mut self, above_px: f64, texts: &[&str]) {
+        let cell_px = self.figure.width_px / texts.len() as f64;
+        let margin_px = if texts.len() == 1 { 20.0 } else { 16.0 };
+        let cells = texts.iter().enumerate().map(|(index, text)| {
+            let middle = (index as f64 + 0.5) * cell_px;
+            (middle, Text::lines(text, cell_px - margin_px))
+        });
+        self.paragraphs(above_px, cells.collect());
+    }
+
+    /// Adds lines around each of these middles.
+    fn paragraphs(&mut self, above_px: f64, paragraphs: Vec<(f64, Vec<Text>)>) {
+        let most = paragraphs.iter().map(|(_, lines)| lines.len()).max();
+        let below_first = LINE_PX * most.unwrap_or(0).saturating_sub(1) as f64;
+        let height_px = above_px + below_first + BELOW_TEXT_PX;
+        self.fixed(height_px, move |drawing, frame| {
+            for (middle, lines) in paragraphs {
+                let mut at = Vector2::new(middle, frame.top + above_px);
+                for line in lines {
+                    drawing.label(at, Anchor::Middle, 0.0, line);
+                    at.y += LINE_PX;
+                }
+            }
+        });
+    }
+
+    /// Adds a legend from `left` on, in as many rows as it needs; nothing without entries.
+    pub(crate) fn legend(&mut self, left: f64, keys: Vec<Key>) {
+        if keys.is_empty() {
+            return;
+        }
+        let right = self.figure.width_px - 15.0;
+        let mut at = Vector2::new(left, 0.5 * LEGEND_ROW_PX);
+        let mut placed = Vec::new();
+        for Key { text, sign } in keys {
+            let advance = SIGN_PX + 6.0 + Text::from(&text).px() + 18.0;
+            if at.x > left && at.x + advance > right {
+                at = Vector2::new(left, at.y + LEGEND_ROW_PX);
+            }
+            // A text wider than the picture continues on the next line.
+            let lines = Text::lines(&text, (right - at.x - SIGN_PX - 6.0).max(TEXT_PX));
+            let more = LINE_PX * lines.len().saturating_sub(1) as f64;
+            placed.push((at, sign, lines));
+            at += Vector2::new(advance, more);
+        }
+        self.fixed(at.y + 0.5 * LEGEND_ROW_PX, move |drawing, frame| {
+            for (at, sign, lines) in placed {
+                let at = at + Vector2::new(0.0, frame.top);
+                sign.draw(drawing, at);
+                let mut at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
+                for line in lines {
+                    drawing.label(at, Anchor::Start, 0.0, line);
+                    at.y += LINE_PX;
+                }
+            }
+        });
+    }
+
+    /// Draws the picture, as high as the figure wants it and its texts allow.
+    pub(crate) fn drawn(self) -> Drawn {
+        let Self { figure, parts } = self;
+        let height = |stretch: f64| parts.iter().map(|(height, _)| height.at(stretch)).sum();
+        let stretch = stretch(&height, figure.wanted_px(height(1.0)));
+        let (mut drawing, mut frames, mut top) = (Drawing::default(), Vec::new(), 0.0);
+        for (height, draw) in parts {
+            let frame = Frame {
+                left: 0.0,
+                top,
+                width: figure.width_px,
+                height: height.at(stretch),
+            };
+            frames.push(frame);
+            top += frame.height;
+            draw(&mut drawing, frame);
+        }
+        Drawn {
+            svg: drawing.finish([figure.width_px, top], figure.width_mm),
+            height_px: top,
+            frames,
+        }
+    }
+
+    /// The file of the picture.
+    pub(crate) fn finish(self) -> String {
+        self.drawn().svg
+    }
+}
+
+/// The stretch at which an ascending height gets near a wanted one.
+fn stretch(height: &dyn Fn(f64) -> f64, wanted_px: f64) -> f64 {
+    if height(1.0) == wanted_px {
+        return 1.0;
+    }
+    let (mut low, mut high) = (LEAST_STRETCH, MOST_STRETCH);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if height(middle) < wanted_px {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// An entry of a legend.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    pub(crate) text: String,
+    pub(crate) sign: Sign,
+}
+
+impl Key {
+    pub(crate) fn new(text: impl Into<String>, sign: Sign) -> Self {
+        let text = text.into();
+        Self { text, sign }
+    }
+
+    pub(crate) fn line(text: impl Into<String>, stroke: Stroke) -> Self {
+        Self::new(text, Sign::Line(stroke))
+    }
+}
+
+/// The sign of an entry of a legend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Sign {
+    /// A line.
+    Line(Stroke),
+    /// A line on an area of this colour, with the name of its mark: on dark pages both keep their colours.
+    LineOn(&'static str, &'static str, Stroke),
+    /// An area of this colour and opacity.
+    Band(&'static str, f64),
+    /// A circle of this radius in pixels.
+    Circle(f64, Stroke),
+    /// A short upright line.
+    Tick(Stroke),
+}
+
+/// Width of a sign in a legend.
+const SIGN_PX: f64 = 24.0;
+/// Height of a row of a legend.
+const LEGEND_ROW_PX: f64 = 24.0;
+
+impl Sign {
+    /// Draws it from the middle of its left side.
+    fn draw(self, drawing: &mut Drawing, left: Vector2<f64>) {
+        let ends = [left, left + Vector2::new(SIGN_PX, 0.0)];
+        let middle = 0.5 * (ends[0] + ends[1]);
+        let frame = Frame {
+            left: left.x,
+            top: left.y - 7.0,
+            width: SIGN_PX,
+            height: 14.0,
+        };
+        match self {
+            Self::Line(stroke) => drawing.curve("", ends, stroke),
+            Self::LineOn(fill, name, stroke) => {
+                drawing.band("key", &frame, fill, 1.0);
+                drawing.curve(&format!("key {name}"), ends, stroke);
+            }
+            Self::Band(fill, opacity) => {
+                drawing.band("key", &frame, fill, opacity);
+                drawing.outline(&frame, Stroke::new(color::GREY, 0.6, ""));
+            }
+            Self::Circle(radius, stroke) => drawing.circle("", middle, radius, stroke),
+            Self::Tick(stroke) => {
+                let half = Vector2::new(0.0, 5.0);
+                drawing.line(middle - half, middle + half, stroke);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::figure;
+    use super::*;
+
+    /// The part of a picture between two texts.
+    fn between<'p>(picture: &'p str, before: &str, after: &str) -> &'p str {
+        let (_, rest) = picture.split_once(before).unwrap();
+        rest.split_once(after).unwrap().0
+    }
+
+    fn height_px(sheet: Sheet<'_>) -> f64 {
+        sheet.drawn().height_px
+    }
+
+    #[test]
+    fn text_is_8_points_at_the_width_of_a_figure() {
+        for (text, width_mm) in [("85mm", 85.0), ("17 cm", 170.0), ("3.5in", 88.9)] {
+            let figure: Figure = text.parse().unwrap();
+            let mut sheet = Sheet::new(figure, "");
+            sheet.gap(figure.width_px - 4.0);
+            let picture = sheet.finish();
+            // A square sheet is as high as it is wide.
+            assert_eq!(between(&picture, "width=\"", "mm"), width_mm.to_string());
+            assert_eq!(
+                between(&picture, "height=\"", "mm"),
+                format!("{width_mm:.3}")
+            );
+            for text_pt in [7.0, 8.0, 9.5] {
+                let figure = figure.with_text_pt(text_pt).unwrap();
+                let points = TEXT_PX / figure.width_px * width_mm / 25.4 * 72.0;
+                assert!((points - text_pt).abs() < 1e-12);
+            }
+            let wrong = figure.with_text_pt(14.0).is_err();
+            assert_eq!(wrong, width_mm < 100.0);
+        }
+        for wrong in ["85", "5mm", "-85mm", "NaNmm", "infmm", "85 px", ""] {
+            assert!(wrong.parse::<Figure>().is_err(), "{wrong}");
+        }
+        assert!(Figure::SCREEN.with_text_pt(8.0).is_err());
+    }
+
+    #[test]
+    fn a_picture_has_the_height_of_its_figure() {
+        let height_mm = |figure: Figure| {
+            // Two plots with a gap, and text that is not stretched.
+            let mut sheet = Sheet::new(figure, "");
+            sheet.plot(figure.height_px(130.0), |_, _| ());
+            sheet.gap(90.0);
+            sheet.plot(figure.height_px(260.0), |_, _| ());
+            let picture = sheet.finish();
+            between(&picture, "height=\"", "mm").parse::<f64>().unwrap()
+        };
+        let figure: Figure = "120mm".parse().unwrap();
+        for wanted_mm in [40.0, 70.0, 180.0] {
+            let height = format!("{wanted_mm} mm").parse().ok();
+            assert!((height_mm(Figure { height, ..figure }) - wanted_mm).abs() < 1e-3);
+        }
+        // It cannot be lower than its text.
+        let height = "20mm".parse().ok();
+        assert!(height_mm(Figure { height, ..figure }) > 20.0);
+        for wrong in ["70", "5mm", "-7cm", "8000mm"] {
+            assert!(wrong.parse::<figure::Height>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn titles_and_legends_take_the_rows_they_need() {
+        let narrow: Figure = "85mm".parse().unwrap();
+        let title =
+            "An arch of thirty-six voussoirs on two piers under the second of seven records";
+        let [short, long] =
+            [Figure::SCREEN, narrow].map(|figure| height_px(Sheet::new(figure, title)));
+        assert_eq!(long, short + LINE_PX);
+        let stroke = Stroke::new(color::BLUE, 1.0, "");
+        let rows = |figure: Figure, texts: &[&str]| {
+            let mut sheet = Sheet::new(figure, "");
+            sheet.legend(
+                85.0,
+                texts.iter().map(|text| Key::line(*text, stroke)).collect(),
+            );
+            (height_px(sheet) - 4.0) / LEGEND_ROW_PX
+        };
+        let texts = ["left", "middle", "right", "sways right", "sways left"];
+        assert_eq!(rows(Figure::SCREEN, &texts), 1.0);
+        assert_eq!(rows(narrow, &texts), 2.0);
+        let long = ["a text of a legend that is wider than the picture of a column is"; 2];
+        assert_eq!(
+            rows(narrow, &long),
+            2.0 * (LEGEND_ROW_PX + LINE_PX) / LEGEND_ROW_PX
+        );
+    }
+}
