@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, Scale};
 use super::figure::Figure;
-use super::sheet::{Key, Sheet};
+use super::sheet::{Height, Key, Sheet};
 use super::svg::{Drawing, Frame, Stroke};
 
 /// Distance of a plot to the left side of the picture, with room for the label of its y axis.
@@ -83,7 +83,8 @@ impl Chart {
     /// Adds plot and axes to a picture; returns the number of the plot among its parts.
     pub(crate) fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
         let figure = sheet.figure;
-        sheet.plot(figure.height_px(self.height_px), move |drawing, part| {
+        let height = Height::Plot(figure.height_px(self.height_px));
+        sheet.part(height, move |drawing, part| {
             let left_px = if self.is_panel {
                 PANEL_LEFT_PX
             } else {

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::figure::Figure;
 use super::scene::{Mark, Piece, Scene};
-use super::sheet::Sheet;
+use super::sheet::{Height, Sheet};
 use super::svg::{Anchor, Drawing, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::dynamics::history::OpenHinge;
@@ -75,7 +75,8 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let most_px = width_px / size_m.x * size_m.y;
     let mut sheet = Sheet::new(figure, title);
     sheet.gap(12.0 + above_px);
-    sheet.structure(figure.height_px(520.0), most_px, |drawing, part| {
+    let height = Height::Structure(figure.height_px(520.0), most_px);
+    sheet.part(height, |drawing, part| {
         let scale = (part.height / size_m.y).max(1e-9);
         let left_px = left_px + 0.5 * (width_px - scale * size_m.x);
         let (poses, hinges) = &scene.stands;

@@ -25,18 +25,21 @@ type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
 
 /// The height of a part in pixels.
 #[derive(Clone, Copy, Debug)]
-enum Height {
+pub(crate) enum Height {
     /// Texts and gaps.
     Fixed(f64),
-    /// A height that is stretched and squeezed so that the picture gets its own, and the largest one.
-    Elastic(f64, f64),
+    /// A plot, which is stretched and squeezed so that the picture gets its own height.
+    Plot(f64),
+    /// The drawing of a structure, which is stretched to the second height at most, where it fills the width.
+    Structure(f64, f64),
 }
 
 impl Height {
     fn at(self, stretch: f64) -> f64 {
         match self {
             Self::Fixed(height_px) => height_px,
-            Self::Elastic(height_px, most_px) => (stretch * height_px).min(most_px),
+            Self::Plot(height_px) => stretch * height_px,
+            Self::Structure(height_px, most_px) => (stretch * height_px).min(most_px),
         }
     }
 }
@@ -68,38 +71,19 @@ impl<'a> Sheet<'a> {
         sheet
     }
 
-    fn part(&mut self, height: Height, draw: impl FnOnce(&mut Drawing, Frame) + 'a) -> usize {
+    /// Adds a part; returns its number.
+    pub(crate) fn part(
+        &mut self,
+        height: Height,
+        draw: impl FnOnce(&mut Drawing, Frame) + 'a,
+    ) -> usize {
         self.parts.push((height, Box::new(draw)));
         self.parts.len() - 1
     }
 
-    /// Adds a part of this height.
-    pub(crate) fn fixed(&mut self, height_px: f64, draw: impl FnOnce(&mut Drawing, Frame) + 'a) {
-        self.part(Height::Fixed(height_px), draw);
-    }
-
     /// Adds a gap.
     pub(crate) fn gap(&mut self, height_px: f64) {
-        self.fixed(height_px, |_, _| ());
-    }
-
-    /// Adds a plot, which can be stretched and squeezed; returns its number among the parts.
-    pub(crate) fn plot(
-        &mut self,
-        height_px: f64,
-        draw: impl FnOnce(&mut Drawing, Frame) + 'a,
-    ) -> usize {
-        self.part(Height::Elastic(height_px, f64::INFINITY), draw)
-    }
-
-    /// Adds the drawing of a structure, which can be stretched to the height at which it fills the width.
-    pub(crate) fn structure(
-        &mut self,
-        height_px: f64,
-        most_px: f64,
-        draw: impl FnOnce(&mut Drawing, Frame) + 'a,
-    ) {
-        self.part(Height::Elastic(height_px, most_px), draw);
+        self.part(Height::Fixed(height_px), |_, _| ());
     }
 
     /// Adds a centred text, in as many lines as it needs, whose first baseline is `above_px` below the last part.
@@ -123,7 +107,7 @@ impl<'a> Sheet<'a> {
         let most = paragraphs.iter().map(|(_, lines)| lines.len()).max();
         let below_first = LINE_PX * most.unwrap_or(0).saturating_sub(1) as f64;
         let height_px = above_px + below_first + BELOW_TEXT_PX;
-        self.fixed(height_px, move |drawing, frame| {
+        self.part(Height::Fixed(height_px), move |drawing, frame| {
             for (middle, lines) in paragraphs {
                 let mut at = Vector2::new(middle, frame.top + above_px);
                 for line in lines {
@@ -153,17 +137,20 @@ impl<'a> Sheet<'a> {
             placed.push((at, sign, lines));
             at += Vector2::new(advance, more);
         }
-        self.fixed(at.y + 0.5 * LEGEND_ROW_PX, move |drawing, frame| {
-            for (at, sign, lines) in placed {
-                let at = at + Vector2::new(0.0, frame.top);
-                sign.draw(drawing, at);
-                let mut at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
-                for line in lines {
-                    drawing.label(at, Anchor::Start, 0.0, line);
-                    at.y += LINE_PX;
+        self.part(
+            Height::Fixed(at.y + 0.5 * LEGEND_ROW_PX),
+            move |drawing, frame| {
+                for (at, sign, lines) in placed {
+                    let at = at + Vector2::new(0.0, frame.top);
+                    sign.draw(drawing, at);
+                    let mut at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
+                    for line in lines {
+                        drawing.label(at, Anchor::Start, 0.0, line);
+                        at.y += LINE_PX;
+                    }
                 }
-            }
-        });
+            },
+        );
     }
 
     /// Draws the picture, as high as the figure wants it and its texts allow.
@@ -328,9 +315,9 @@ mod tests {
         let height_mm = |figure: Figure| {
             // Two plots with a gap, and text that is not stretched.
             let mut sheet = Sheet::new(figure, "");
-            sheet.plot(figure.height_px(130.0), |_, _| ());
+            sheet.part(Height::Plot(figure.height_px(130.0)), |_, _| ());
             sheet.gap(90.0);
-            sheet.plot(figure.height_px(260.0), |_, _| ());
+            sheet.part(Height::Plot(figure.height_px(260.0)), |_, _| ());
             let picture = sheet.finish();
             between(&picture, "height=\"", "mm").parse::<f64>().unwrap()
         };

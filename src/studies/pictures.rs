@@ -19,7 +19,7 @@ use crate::output::elevation::{
     self, BODIES, FILL, FILL_LINE, draw_dimensions, draw_load, room_px,
 };
 use crate::output::scene::Scene;
-use crate::output::sheet::Sheet;
+use crate::output::sheet::{Height, Sheet};
 use crate::output::svg::{Anchor, Drawing, Stroke, color};
 use crate::output::text::Text;
 use crate::scenario::DimensionSide;
@@ -386,7 +386,7 @@ pub fn limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>) 
     let below_px = of.room_px(DimensionSide::Below);
     let mut sheet = Sheet::new(figure, &title);
     sheet.gap(ABOVE_PX);
-    sheet.structure(arch_px, arch_px, |drawing, part| {
+    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
         let place = |cell: f64| of.place(cell * cell_px + shift, part.top, part.height);
         still(drawing, &place(0.5));
         if is_wide {
@@ -399,7 +399,7 @@ pub fn limit(figure: Figure, chain: &Chain, first: Sway, scene: Option<&Scene>) 
     } else {
         sheet.caption(34.0, &texts[0]);
         sheet.gap(ABOVE_PX);
-        sheet.structure(arch_px, arch_px, |drawing, part| {
+        sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
             let place = of.place(0.5 * cell_px + shift, part.top, part.height);
             place.mechanism(drawing, link, first);
         });
@@ -456,7 +456,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: Option<&Scene>) ->
     sheet.gap(ABOVE_PX);
     let half_px = 0.5 * figure.width_px;
     let arch_px = of.height_px((0.8 * half_px).min(half_px - 2.0 * LETTER_PX));
-    sheet.structure(arch_px, arch_px, |drawing, part| {
+    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
         let place = |cell: f64| of.place(cell * half_px, part.top, part.height);
         place(0.5).mechanism(drawing, before, sway_before);
         place(1.5).mechanism(drawing, after, sway_after);
@@ -472,7 +472,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: Option<&Scene>) ->
     let width_px = (0.71 * figure.width_px).min(figure.width_px - left - right);
     let middle = 0.5 * (figure.width_px + left - right);
     let arch_px = of.height_px(width_px);
-    sheet.structure(arch_px, arch_px, |drawing, part| {
+    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
         let place = of.place(middle, part.top, part.height);
         if is_wide {
             place.dimensions(drawing);

@@ -188,7 +188,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     let picture = draw("Title", &map, &rows, look);
     assert!(picture.contains("another outcome in a repetition"));
     let hatch = picture.lines().find(|line| line.contains("\"doubtful\""));
-    assert_eq!(hatch.unwrap().matches('L').count(), doubtful);
+    assert_eq!(hatch.unwrap().matches('M').count(), doubtful);
 
     // Without it less is repeated: cells that overturn at once are not, though steps this long blur their edge too.
     let plain = parsed(&text(""));

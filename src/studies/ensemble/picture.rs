@@ -13,7 +13,7 @@ use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
 use crate::output::chart::{Chart, LEFT_PX, Mark};
 use crate::output::panels::{MAIN, Panels, Subject, around};
-use crate::output::sheet::{Key, Sheet, Sign};
+use crate::output::sheet::{Height, Key, Sheet, Sign};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::studies::threshold::first_edge::FirstEdge;
 
@@ -184,7 +184,8 @@ pub(super) fn matters<A>(figure: Figure, told: &Told<'_, A>, decides: &[Decides<
             format!("share in {what}, alone, with its 95 % interval; (r) rank correlation");
         sheet.caption(14.0, &caption);
         sheet.gap(6.0);
-        sheet.fixed(ROW_PX * of.len() as f64, move |drawing, part| {
+        let height = Height::Fixed(ROW_PX * of.len() as f64);
+        sheet.part(height, move |drawing, part| {
             let axes = Axes {
                 frame: figure.right_of(LEFT_PX, part),
                 x: Scale::exactly(0.0, 1.0, 5),

@@ -29,11 +29,7 @@ impl Film {
     pub(super) fn push(&mut self, sample: &Sample) {
         if self.samples.is_multiple_of(self.every) {
             if self.frames.len() == self.most {
-                let mut index = 0;
-                self.frames.retain(|_| {
-                    index += 1;
-                    index % 2 == 1
-                });
+                self.frames = self.frames.drain(..).step_by(2).collect();
                 self.every *= 2;
             }
             if self.samples.is_multiple_of(self.every) {

@@ -8,7 +8,7 @@ use crate::dynamics::history::{Sample, State};
 use crate::output::Figure;
 use crate::output::elevation::{BODIES, Place, STONE, TIE, View};
 use crate::output::scene::{Mark, Scene};
-use crate::output::sheet::Sheet;
+use crate::output::sheet::{Height, Sheet};
 use crate::output::svg::{Anchor, Drawing, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
@@ -138,7 +138,7 @@ impl Snapshots {
         sheet.gap(14.0);
         for samples in shown.chunks(columns) {
             let tall_px = 1.1 * scale * height_m;
-            sheet.structure(tall_px, tall_px, move |drawing, part| {
+            sheet.part(Height::Structure(tall_px, tall_px), move |drawing, part| {
                 for (column, sample) in (0_u32..).zip(samples) {
                     let middle = (f64::from(column) + 0.5) * cell_px;
                     let place = Place {

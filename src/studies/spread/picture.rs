@@ -9,7 +9,7 @@ use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
 use crate::output::elevation::{HINGE, HINGE_PX, Place, STONE, View};
 use crate::output::scene::Scene;
-use crate::output::sheet::{Key, Sheet};
+use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 
 /// Pictures of the arch side by side, at most, and how wide they are at least.
@@ -31,13 +31,16 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Sc
             .filter_map(|path| Cell::new(&spread.row, scene, path, cell_px))
             .collect();
         let height_px = cells.iter().map(Cell::height_px).fold(0.0, f64::max);
-        sheet.structure(height_px, height_px, move |drawing, part| {
-            for (column, cell) in (0_u32..).zip(cells) {
-                let middle = (f64::from(column) + 0.5) * cell_px;
-                let foot = Vector2::new(middle, part.top + part.height);
-                cell.draw(drawing, foot, part.height / height_px);
-            }
-        });
+        sheet.part(
+            Height::Structure(height_px, height_px),
+            move |drawing, part| {
+                for (column, cell) in (0_u32..).zip(cells) {
+                    let middle = (f64::from(column) + 0.5) * cell_px;
+                    let foot = Vector2::new(middle, part.top + part.height);
+                    cell.draw(drawing, foot, part.height / height_px);
+                }
+            },
+        );
         sheet.gap(58.0);
     }
     let how = "to scale; dashed: as built; circles: hinges; blue: line of thrust";

@@ -12,7 +12,7 @@ use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
 use crate::output::scene::{Piece, Scene};
-use crate::output::sheet::{Key, Sheet};
+use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 use crate::scenario::DimensionSide;
 use crate::scenario::{LimitState, Structure};
@@ -34,7 +34,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
     let mut sheet = Sheet::new(figure, "");
     sheet.gap(26.0);
     let tall_px = scale * size.y;
-    sheet.structure(tall_px, tall_px, |drawing, part| {
+    sheet.part(Height::Structure(tall_px, tall_px), |drawing, part| {
         let place = Place {
             middle_m: Vector2::new(0.5 * (low.x + high.x), high.y),
             at: Vector2::new(left + 0.5 * width_px, part.top),
@@ -122,13 +122,11 @@ fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
     {
         let scene = Scene::of_row(&row);
         let blocks = scene.pieces(&[]).into_iter().zip(&mechanism.body_of_block);
-        let found: Vec<Piece> = blocks
-            .map(|(piece, body)| Piece {
-                body: *body,
-                outline_m: piece.outline_m,
-            })
-            .collect();
-        return found;
+        let moving = blocks.map(|(piece, body)| Piece {
+            body: *body,
+            outline_m: piece.outline_m,
+        });
+        return moving.collect();
     }
     let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
         hinge: placed.hinge,
