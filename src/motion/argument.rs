@@ -12,7 +12,7 @@ pub struct ArgumentError {
     pub argument: &'static str,
     /// Its value.
     pub value: f64,
-    /// What is allowed instead.
+    /// The allowed range.
     pub allowed: String,
 }
 

@@ -49,7 +49,7 @@ pub fn bisect(low: f64, high: f64, width: Width, mut holds: impl FnMut(f64) -> b
     ends
 }
 
-/// As [`bisect`], for a property whose evaluation may fail.
+/// Bisects like [`bisect`], for a property whose evaluation may fail.
 ///
 /// # Errors
 /// Those of the property.

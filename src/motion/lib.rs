@@ -10,7 +10,7 @@ pub mod bisection;
 pub mod dynamics;
 pub mod mechanics;
 
-/// What tests and benchmarks reach below the models of motion. It is not for users, and may change with any release.
+/// Parts below the models of motion, for tests and benchmarks. They are not for users, and may change with any release.
 #[doc(hidden)]
 pub mod internals {
     pub mod complementarity {

@@ -1,7 +1,7 @@
 //! Equivalent blocks and the dimensionless view, compared with the motions that they represent.
 
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
-use archrock::mechanics::equivalent::equivalent;
+use archrock::mechanics::equivalent::equivalent_towards;
 use archrock::studies::run::Scales;
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, ImpactModel, Initial, MechanismModel, Model as _, Pulse,
@@ -24,7 +24,7 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
     for (thickness_ratio, embrace_deg) in ARCHES {
         let arch = arch(thickness_ratio, embrace_deg, 3.0);
         let critical_rad = arch.link(0).unwrap().critical_rad;
-        let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
+        let blocks = equivalent_towards(&arch, Sway::Right, GRAVITY_M_S2).unwrap();
         let p_c = blocks.at_critical.unwrap().frequency_rad_s;
         let still = GroundMotion::still();
         let distance = 1e-5;
@@ -55,7 +55,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
     for (thickness_ratio, embrace_deg) in ARCHES {
         let arch = arch(thickness_ratio, embrace_deg, 3.0);
         let link = arch.link(0).unwrap();
-        let blocks = equivalent(&arch, GRAVITY_M_S2).unwrap();
+        let blocks = equivalent_towards(&arch, Sway::Right, GRAVITY_M_S2).unwrap();
         let at_zero = link.mechanism.coefficients(0.0);
         let still = GroundMotion::still();
         // n^2 from half a hop: after release at q, it closes with the rate v after atanh(n v / k) / n.

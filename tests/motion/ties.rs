@@ -359,7 +359,7 @@ fn a_block_slides_against_its_tie() {
     // So long that it stays level.
     let tie = to_the_left(4.0, 0.4, 1e5, stiffness_n_m, 0.0);
     let row = Row::stack(&[drum], 1.0, 2000.0).unwrap();
-    let row = row.with_supports_that_go_on([true; 2]);
+    let row = row.with_supports_that_extend([true; 2]);
     let row = row.with_ties(vec![tie], GRAVITY_M_S2).unwrap();
     let (history, samples) = run_sampled(
         &slipping(row, coefficient),

@@ -897,7 +897,7 @@ fn pedestals() {
             .structure()
             .free_hinges(RowOptions::default())
             .unwrap();
-        model.row().supports_go_on()
+        model.row().supports_extend()
     };
     let free = "[free_hinges]\nfriction_coefficient = 0.7\n";
     let column = |pedestal: &str| format!("{COLUMN}{pedestal}drums = 3\n{free}");

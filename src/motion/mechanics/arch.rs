@@ -157,7 +157,7 @@ impl Arch {
         })
     }
 
-    /// The same arch with another mean radius, in metres: its thickness grows with it.
+    /// This arch with another mean radius, in metres: its thickness grows with it.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -168,7 +168,7 @@ impl Arch {
         })
     }
 
-    /// The same arch with another thickness, in mean radii.
+    /// This arch with another thickness, in mean radii.
     ///
     /// # Errors
     /// When it is not from 1e-6 to below 2.
@@ -180,7 +180,7 @@ impl Arch {
         .reshaped()
     }
 
-    /// The same arch with another embrace angle, in degrees.
+    /// This arch with another embrace angle, in degrees.
     ///
     /// # Errors
     /// When it is outside 1 to 180.
@@ -192,7 +192,7 @@ impl Arch {
         .reshaped()
     }
 
-    /// The same arch cut into equal voussoirs, so that hinges open at their joints only.
+    /// This arch cut into equal voussoirs, so that hinges open at their joints only.
     ///
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
@@ -211,7 +211,7 @@ impl Arch {
         .reshaped()
     }
 
-    /// The same arch with another depth out of plane, in metres.
+    /// This arch with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -222,7 +222,7 @@ impl Arch {
         })
     }
 
-    /// The same arch with another density, in kg/m3.
+    /// This arch with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.

@@ -31,7 +31,7 @@ pub enum RowError {
     /// A number is not finite, or not in its range.
     #[error("{name} of {part} {index} is {value}: {allowed}")]
     Value {
-        /// What the number is, with its unit.
+        /// Name of the number, with its unit.
         name: &'static str,
         /// Block or joint.
         part: &'static str,
@@ -39,7 +39,7 @@ pub enum RowError {
         index: usize,
         /// The number.
         value: f64,
-        /// What it may be.
+        /// Its allowed range.
         allowed: &'static str,
     },
     /// A dimension of the whole row is out of range.
@@ -121,14 +121,14 @@ pub struct Row {
     joints: Vec<Joint>,
     supports: Supports,
     size_m: f64,
-    /// What the blocks look like, from their corners.
+    /// Polygons that the blocks are drawn as.
     outlines_m: Vec<Vec<Vector2<f64>>>,
     /// `e x n` of every joint, with `e` the unit vector along the face and `n` the normal towards the right block.
     handedness: f64,
     /// Whether the left and the right support extend beyond their joints.
-    supports_go_on: [bool; 2],
+    supports_extend: [bool; 2],
     ties: Vec<Tie>,
-    /// What their forces are weighed with where loads are in units of gravity.
+    /// The gravity that converts forces of ties where loads are in units of gravity.
     gravity_m_s2: f64,
 }
 
@@ -189,13 +189,13 @@ impl Row {
             size_m,
             outlines_m,
             handedness,
-            supports_go_on: [false; 2],
+            supports_extend: [false; 2],
             ties: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
         })
     }
 
-    /// The same row with these ties and no others, under this gravity.
+    /// This row with these ties and no others, under this gravity.
     ///
     /// # Errors
     /// When a tie is none: with its index.
@@ -213,14 +213,14 @@ impl Row {
         Ok(self)
     }
 
-    /// The same row without its ties.
+    /// This row without its ties.
     #[must_use]
     pub fn without_ties(mut self) -> Self {
         self.ties.clear();
         self
     }
 
-    /// The same row, drawn with other outlines of its blocks: closed polygons, in metres.
+    /// This row drawn with other outlines of its blocks: closed polygons, in metres.
     #[must_use]
     pub fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
         if outlines_m.len() == self.blocks.len() {
@@ -230,17 +230,17 @@ impl Row {
         }
     }
 
-    /// The same row, whose left and right supports extend beyond their joints or not (a stack has only the left one, its base). A
+    /// This row with left and right supports that extend beyond their joints or not (a stack has only the left one, its base). A
     /// support that extends, as the ground does around a base, carries the block however far it slides; otherwise the block can slide
     /// off. Where joints do not slip the two are the same.
     #[must_use]
-    pub const fn with_supports_that_go_on(mut self, sides: [bool; 2]) -> Self {
+    pub const fn with_supports_that_extend(mut self, sides: [bool; 2]) -> Self {
         let right = matches!(self.supports, Supports::Both);
-        self.supports_go_on = [sides[0], sides[1] && right];
+        self.supports_extend = [sides[0], sides[1] && right];
         self
     }
 
-    /// The same row with a body fixed to a block.
+    /// This row with a body fixed to a block.
     #[must_use]
     pub fn carrying(mut self, block: usize, body: &Block) -> Self {
         if let Some(block) = self.blocks.get_mut(block) {
@@ -256,7 +256,7 @@ impl Row {
         if self.supports == Supports::Left {
             return None;
         }
-        let [left, right] = self.supports_go_on;
+        let [left, right] = self.supports_extend;
         let outlines_m = self.outlines_m.iter().rev();
         let ties = self.ties.iter();
         Some(Self {
@@ -265,7 +265,7 @@ impl Row {
             outlines_m: outlines_m
                 .map(|outline| outline.iter().rev().copied().map(mirrored).collect())
                 .collect(),
-            supports_go_on: [right, left],
+            supports_extend: [right, left],
             ties: ties.map(|tie| tie.mirrored(self.blocks.len())).collect(),
             ..*self
         })
@@ -361,7 +361,7 @@ impl Row {
     /// `base_width_m` to `top_width_m`.
     ///
     /// # Errors
-    /// As [`Row::stack`].
+    /// Those of [`Row::stack`].
     pub fn tapered_stack(
         heights_m: &[f64],
         base_width_m: f64,
@@ -399,7 +399,7 @@ impl Row {
         &self.joints
     }
 
-    /// What carries the row.
+    /// The supports of the row.
     #[must_use]
     pub const fn supports(&self) -> Supports {
         self.supports
@@ -407,8 +407,8 @@ impl Row {
 
     /// Whether the left and the right support extend beyond their joints.
     #[must_use]
-    pub const fn supports_go_on(&self) -> [bool; 2] {
-        self.supports_go_on
+    pub const fn supports_extend(&self) -> [bool; 2] {
+        self.supports_extend
     }
 
     /// The length, in metres, that scales energies and steps.

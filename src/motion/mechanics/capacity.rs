@@ -202,7 +202,7 @@ pub struct Capacity {
     pub to_oscillator: f64,
     /// From rest to the unstable equilibrium, at equal steps of the coordinate, and where ties yield or break.
     pub curve: Vec<CurvePoint>,
-    /// What its ties do on the way; none where there are none.
+    /// Where its ties give way; empty without ties.
     pub ties: Vec<TieOnTheWay>,
 }
 
@@ -318,7 +318,7 @@ impl Capacity {
         Ok(capacity)
     }
 
-    /// The same with points where ties yield, and just before and after they break.
+    /// This capacity with points where ties yield, and just before and after they break.
     #[must_use]
     pub fn with_ties(
         mut self,

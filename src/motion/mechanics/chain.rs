@@ -172,13 +172,13 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 
     /// Horizontal acceleration at which it starts to rock from rest to a side, in units of gravity.
     fn incipient_towards_g(&self, sway: Sway) -> f64;
-    /// The same to the right; for a structure that is its own mirror image, to either side.
+    /// Incipient acceleration to the right, in units of gravity; for a structure that is its own mirror image, to either side.
     fn incipient_g(&self) -> f64 {
         self.incipient_towards_g(Sway::Right)
     }
     /// Thrust excess and friction demand of one of its mechanisms in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
-    /// The same at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
+    /// Thrust excess and friction demand at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
     /// The line of thrust of one of its mechanisms in motion, section by section, where it is known: its outward distance
     /// from the axis over the thickness, from left to right in the mechanism's frame. In a column the sections go from
@@ -199,7 +199,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// The mechanism after a number of impacts and a first sway to this side; `None` when an impact before it stops
     /// the structure.
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
-    /// The same after a first sway to the right; for a structure that is its own mirror image, to either side.
+    /// The mechanism after a number of impacts and a first sway to the right; for a structure that is its own mirror image, to either side.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
         self.link_from(Sway::Right, impacts)
     }

@@ -150,7 +150,7 @@ impl Column {
         })
     }
 
-    /// The same column cut into equal drums.
+    /// This column cut into equal drums.
     ///
     /// # Errors
     /// When there is none, or more than a row of blocks may have.
@@ -164,7 +164,7 @@ impl Column {
         })
     }
 
-    /// The same column cut into drums of these heights in metres, from the base up.
+    /// This column cut into drums of these heights in metres, from the base up.
     ///
     /// # Errors
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
@@ -188,7 +188,7 @@ impl Column {
         })
     }
 
-    /// The same column with another width at the top, in metres: it changes in a straight line.
+    /// This column with another width at the top, in metres: it changes in a straight line.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -199,14 +199,14 @@ impl Column {
         })
     }
 
-    /// The same column on a pedestal as wide as its base, off which it falls if it slips too far; if `false`, on ground that
+    /// This column on a pedestal as wide as its base, off which it falls if it slips too far; if `false`, on ground that
     /// extends beyond the base.
     #[must_use]
     pub fn on_pedestal(self, pedestal: bool) -> Self {
         Self { pedestal, ..self }
     }
 
-    /// The same column with these ties, under this gravity: it is then a row of blocks, also where it is one prism.
+    /// This column with these ties, under this gravity: it is then a row of blocks, also if it is one prism.
     ///
     /// # Errors
     /// When a tie is none: with its index.
@@ -223,12 +223,6 @@ impl Column {
     #[must_use]
     pub fn ties(&self) -> &[Tie] {
         self.ties.as_ref().map_or(&[], |(ties, _)| ties)
-    }
-
-    /// Whether it stands on a pedestal as wide as its base.
-    #[must_use]
-    pub const fn is_on_pedestal(&self) -> bool {
-        self.pedestal
     }
 
     /// Half the diagonal of its outline, in metres, as if it were as wide at the top as at the base.
@@ -250,7 +244,7 @@ impl Column {
             self.depth_m(),
             self.density_kg_m3(),
         )?;
-        let row = row.with_supports_that_go_on([!self.is_on_pedestal(), false]);
+        let row = row.with_supports_that_extend([!self.pedestal, false]);
         Ok(match &self.ties {
             Some((ties, gravity_m_s2)) => row
                 .with_ties(ties.clone(), *gravity_m_s2)
@@ -280,7 +274,7 @@ impl Column {
         self.top_width_m.unwrap_or(self.width_m)
     }
 
-    /// The same column with another depth out of plane, in metres.
+    /// This column with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -291,7 +285,7 @@ impl Column {
         })
     }
 
-    /// The same column with another density, in kg/m3.
+    /// This column with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.

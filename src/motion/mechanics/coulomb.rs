@@ -16,11 +16,11 @@
 //! Where they jump, as at an impact, it leaves rates, which another solution from these impulses removes.
 
 mod interior;
+mod pivoting;
 
-use nalgebra::{DMatrix, Matrix3, RowVector3, Vector2, Vector3};
+use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
 use super::blocks::Row;
-use super::complementarity;
 use super::slip::{Contact, Faces, Position};
 
 /// Weight of the proximal term, as a fraction of the diagonal.
@@ -35,14 +35,12 @@ const BOUNDED_STEPS: usize = 60;
 const BOUND_PASSES: usize = 5;
 /// Bounds that change by less than this fraction of the largest one have settled.
 const SAME_BOUND: f64 = 1e-10;
-/// Joints up to which Lemke's method, whose work grows with their cube, is the last resort.
-const COMPLEMENTED: usize = 80;
 /// A step has to achieve this fraction of the descent that the slope predicts.
 const DESCENT: f64 = 1e-4;
 /// The shortest step of the line search, as a fraction of Newton's.
 const LEAST_PART: f64 = 1e-6;
 
-/// What a joint does along itself.
+/// The state of a joint along itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
     /// Both ends are free: there is no friction.
@@ -53,12 +51,12 @@ pub enum Along {
     Slip(f64),
 }
 
-/// What a joint does.
+/// The mode of a joint: which ends are pressed, and whether it slips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// Whether its ends are pressed, intrados and extrados.
     pub pressed: [bool; 2],
-    /// What it does along itself.
+    /// Its state along itself.
     pub along: Along,
 }
 
@@ -126,7 +124,7 @@ pub struct Program {
     next: Vec<Matrix3<f64>>,
     /// Rates without impulses.
     drive: Vec<Vector3<f64>>,
-    /// What the joints do in the last solution.
+    /// Modes of the joints in the last solution.
     pub modes: Vec<Mode>,
     /// Impulses in N s at the ends and along every joint, in the last solution.
     pub impulses: Vec<Vector3<f64>>,
@@ -298,13 +296,7 @@ impl Program {
     fn newton(&mut self, passes: usize, one: bool, tolerance: f64, count: &mut usize) -> bool {
         for _ in 0..passes {
             for (equations, mode) in self.equations.iter_mut().zip(&self.modes) {
-                let end = |pressed| {
-                    if pressed {
-                        Equation::Still
-                    } else {
-                        Equation::Given(0.0)
-                    }
-                };
+                let end = |pressed| [Equation::Given(0.0), Equation::Still][usize::from(pressed)];
                 *equations = [
                     end(mode.pressed[0]),
                     end(mode.pressed[1]),
@@ -447,7 +439,7 @@ impl Program {
         before.map_or(Matrix3::zeros(), |before| self.next[before].transpose())
     }
 
-    /// What the proximal term adds to the compliance of a row of a joint.
+    /// The proximal addition to the compliance of a row of a joint.
     fn proximal(&self, joint: usize, row: usize) -> f64 {
         PROXIMAL * self.own[joint][(row, row)]
     }
@@ -518,92 +510,6 @@ impl Program {
         }
         self.impulses.copy_from_slice(&impulses);
         self.read_modes();
-    }
-
-    /// Modes and impulses by Lemke's method; false where the row is too long for it, or it fails.
-    fn pivoted(&mut self, tolerance: f64, passes: &mut usize) -> bool {
-        if self.modes.len() > COMPLEMENTED || !self.complement() {
-            return false;
-        }
-        let modes = self.modes.clone();
-        if !self.newton(PASSES, false, tolerance, passes) {
-            // Modes on the verge of others do not confirm themselves, but the impulses are right.
-            self.impulses.copy_from_slice(&self.kept);
-            self.modes = modes;
-        }
-        true
-    }
-
-    /// Modes from Coulomb's law as a complementarity problem. `N` is complementary to the rates of the ends, friction to either
-    /// side to a speed `g` plus or minus the rate along the joint, and `g` to what is left of the bound. False when Lemke's
-    /// method fails.
-    fn complement(&mut self) -> bool {
-        const SIZE: usize = 5;
-        let joints = self.own.len();
-        let n = SIZE * joints;
-        // Row of the joint that an unknown belongs to, and its sign there; none for the speed.
-        let part = |unknown: usize| match unknown % SIZE {
-            row @ 0..=2 => Some((row, 1.0)),
-            3 => Some((2, -1.0)),
-            _ => None,
-        };
-        let root = |joint: usize, row: usize| self.own[joint][(row, row)].sqrt();
-        let mut matrix = DMatrix::zeros(n, n);
-        let mut constant = vec![0.0; n];
-        for joint in 0..joints {
-            for unknown in SIZE * joint..SIZE * (joint + 1) {
-                let Some((row, sign)) = part(unknown) else {
-                    let along = root(joint, 2);
-                    for end in 0..2 {
-                        matrix[(unknown, SIZE * joint + end)] =
-                            self.coefficient * along / root(joint, end);
-                    }
-                    for side in [2, 3] {
-                        matrix[(unknown, SIZE * joint + side)] = -1.0;
-                        matrix[(SIZE * joint + side, unknown)] = 1.0;
-                    }
-                    continue;
-                };
-                let proximal = PROXIMAL * self.own[joint][(row, row)] * self.before[joint][row];
-                constant[unknown] = sign * (self.drive[joint][row] - proximal) / root(joint, row);
-                let near = [
-                    joint
-                        .checked_sub(1)
-                        .map(|other| (other, self.next[other].transpose())),
-                    Some((joint, self.own[joint])),
-                    Some((joint + 1, self.next[joint])).filter(|(other, _)| *other < joints),
-                ];
-                for (other, compliance) in near.into_iter().flatten() {
-                    for column in SIZE * other..SIZE * (other + 1) {
-                        if let Some((other_row, other_sign)) = part(column) {
-                            let own = other == joint && other_row == row;
-                            let entry = compliance[(row, other_row)]
-                                * if own { 1.0 + PROXIMAL } else { 1.0 };
-                            matrix[(unknown, column)] = sign * other_sign * entry
-                                / (root(joint, row) * root(other, other_row));
-                        }
-                    }
-                }
-            }
-        }
-        let Some(solution) = complementarity::solve(&matrix, &constant) else {
-            return false;
-        };
-        for (joint, found) in solution.chunks(SIZE).enumerate() {
-            let along = match (found[4] > 0.0, found[2] > found[3]) {
-                (false, _) => Along::Stick,
-                (true, true) => Along::Slip(1.0),
-                (true, false) => Along::Slip(-1.0),
-            };
-            self.modes[joint] = Mode {
-                pressed: [found[0] > 0.0, found[1] > 0.0],
-                along,
-            }
-            .settled();
-            let impulse = Vector3::new(found[0], found[1], found[2] - found[3]);
-            self.kept[joint] = impulse.component_div(&self.own[joint].diagonal().map(f64::sqrt));
-        }
-        true
     }
 
     /// Largest difference of a bound from what the impulses allow, as a fraction of the largest bound.

@@ -44,12 +44,6 @@ pub struct Equivalent {
     pub at_critical: Option<Block>,
 }
 
-/// The blocks equivalent to the mechanism that starts `structure` to the right under gravity.
-#[must_use]
-pub fn equivalent<C: MechanismChain>(structure: &C, gravity_m_s2: f64) -> Option<Equivalent> {
-    equivalent_towards(structure, Sway::Right, gravity_m_s2)
-}
-
 /// The blocks equivalent to the mechanism that starts `structure` to a side under gravity.
 #[must_use]
 pub fn equivalent_towards<C: MechanismChain>(
@@ -98,7 +92,7 @@ mod tests {
         for (height_m, width_m) in [(1e3, 1e-3), (4.0, 0.8), (1.0, 1.0), (1.0, 3.0)] {
             let column = Column::new(height_m, width_m).unwrap();
             let model = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
-            let blocks = equivalent(&model, 1.62).unwrap();
+            let blocks = equivalent_towards(&model, Sway::Right, 1.62).unwrap();
             assert!((blocks.slenderness_rad - column.slenderness_rad()).abs() < 1e-15);
             let half_diagonal_m = 0.5 * (height_m * height_m + width_m * width_m).sqrt();
             for block in [blocks.at_rest.unwrap(), blocks.at_critical.unwrap()] {

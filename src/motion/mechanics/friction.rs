@@ -6,12 +6,11 @@
 //! so the push is an upper bound of what the row bears. It is exact where no joint of the mechanism slips.
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
-};
+use clarabel::solver::{DefaultSettings, SolverStatus};
 use thiserror::Error;
 
 use super::blocks::Row;
+use super::cone_program::{self, Entries};
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stance::Stance;
@@ -26,7 +25,7 @@ const LARGEST_COEFFICIENT: f64 = 100.0;
 /// A shortage of friction below this many times the weight at every joint counts as none.
 const LEAST_SHORTAGE: f64 = 1e-8;
 
-/// What a joint does in a mechanism.
+/// A joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yield {
     /// Which joint.
@@ -42,7 +41,7 @@ pub struct Yield {
 pub struct FrictionOnset {
     /// Ground acceleration, without its sign, in units of gravity: the associated bound.
     pub acceleration_g: f64,
-    /// What the joints of the mechanism do, from left to right.
+    /// Joints that open or slip, from left to right.
     pub yields: Vec<Yield>,
 }
 
@@ -85,10 +84,10 @@ pub fn onset(
     onset_at(row, &Stance::undeformed(row), coefficient, sway)
 }
 
-/// The same where its blocks are there, and its ties pull as they do there.
+/// The largest horizontal push that a row bears where it stands, with the ties pulling as they do there.
 ///
 /// # Errors
-/// As [`onset`].
+/// Those of [`onset`].
 pub fn onset_at(
     row: &Row,
     stance: &Stance,
@@ -101,7 +100,7 @@ pub fn onset_at(
     onset_of_standing(row, stance, coefficient, sway)
 }
 
-/// The same for a row that is known to stand there with this coefficient. Joints that are open press at the corner that touches alone.
+/// The largest push of a row that is known to stand there with this coefficient. Open joints press only at the corner that touches.
 pub(crate) fn onset_of_standing(
     row: &Row,
     stance: &Stance,
@@ -127,10 +126,10 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
     stands_at(row, &Stance::undeformed(row), coefficient)
 }
 
-/// The same where its blocks are there. Joints that are open press at the corner that touches alone.
+/// Whether a row carries its own weight where it stands. Open joints press only at the corner that touches.
 ///
 /// # Errors
-/// As [`stands`].
+/// Those of [`stands`].
 pub fn stands_at(row: &Row, stance: &Stance, coefficient: f64) -> Result<bool, FrictionError> {
     match Program::new(row, stance, coefficient, Goal::Shortage).solve(1.0)? {
         Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
@@ -187,37 +186,38 @@ struct Program {
     joints: usize,
 }
 
+/// Weights of the blocks less the pulls of ties, three numbers for each: what the forces at its joints have to balance.
+fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
+    let (size_m, mass_kg, centres_m) = (row.size_m(), row.mass_kg(), &stance.placement.centres_m);
+    let weights = row.blocks().iter().map(|block| block.mass_kg / mass_kg);
+    let mut loads: Vec<f64> = weights.flat_map(|weight| [0.0, weight, 0.0]).collect();
+    for (line, force_n) in stance.lines(row).zip(stance.forces_n()) {
+        let pull = line.along * (force_n / (row.gravity_m_s2() * mass_kg));
+        for (end, pull) in [pull, -pull].into_iter().enumerate() {
+            if let Some(number) = line.ends[end] {
+                let moment = (line.ends_m[end] - centres_m[number]).perp(&pull) / size_m;
+                for (axis, value) in [pull.x, pull.y, moment].into_iter().enumerate() {
+                    loads[3 * number + axis] -= value;
+                }
+            }
+        }
+    }
+    loads
+}
+
 impl Program {
     fn new(row: &Row, stance: &Stance, coefficient: f64, goal: Goal) -> Self {
         let placement = &stance.placement;
         let (blocks, joints) = (row.blocks().len(), row.joints().len());
         let centres_m = &placement.centres_m;
         let equations = 3 * blocks + placement.open_corners();
-        let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
-        let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let mut put = |row: usize, column: usize, value: f64| {
-            rows.push(row);
-            columns.push(column);
-            values.push(value);
-        };
-        let mut right = Vec::with_capacity(equations + 4 * joints);
-        for (index, block) in row.blocks().iter().enumerate() {
-            let weight = block.mass_kg / mass_kg;
-            if goal == Goal::Push {
-                put(3 * index, 0, weight);
-            }
-            right.extend([0.0, weight, 0.0]);
-        }
-        // What the ties pull with there.
-        for (line, force_n) in stance.lines(row).zip(stance.forces_n()) {
-            let pull = line.along * (force_n / (row.gravity_m_s2() * mass_kg));
-            for (end, pull) in [pull, -pull].into_iter().enumerate() {
-                if let Some(number) = line.ends[end] {
-                    let moment = (line.ends_m[end] - centres_m[number]).perp(&pull) / size_m;
-                    for (axis, value) in [pull.x, pull.y, moment].into_iter().enumerate() {
-                        right[3 * number + axis] -= value;
-                    }
-                }
+        let size_m = row.size_m();
+        let mut entries = Entries::default();
+        let mut put = |row, column, value| entries.put(row, column, value);
+        let mut right = loads(row, stance);
+        if goal == Goal::Push {
+            for (index, block) in row.blocks().iter().enumerate() {
+                put(3 * index, 0, block.mass_kg / row.mass_kg());
             }
         }
         for (index, gaps) in placement.gaps_m.iter().enumerate() {
@@ -269,7 +269,7 @@ impl Program {
         }
         let (height, width) = (equations + 4 * joints, 1 + 3 * joints);
         Self {
-            matrix: CscMatrix::new_from_triplets(height, width, rows, columns, values),
+            matrix: entries.matrix(height, width),
             right,
             equations,
             joints,
@@ -285,17 +285,9 @@ impl Program {
             verbose: false,
             ..DefaultSettings::default()
         };
-        let mut solver = DefaultSolver::new(
-            &CscMatrix::zeros((width, width)),
-            &objective,
-            &self.matrix,
-            &self.right,
-            &[ZeroConeT(self.equations), NonnegativeConeT(4 * self.joints)],
-            settings,
-        )
-        .expect("the dimensions fit and the settings are valid");
-        solver.solve();
-        let solution = &solver.solution;
+        let matrices = [&CscMatrix::zeros((width, width)), &self.matrix];
+        let solution =
+            cone_program::solve(matrices, &objective, &self.right, self.equations, settings);
         match solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {}
             SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {

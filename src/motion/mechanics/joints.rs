@@ -71,7 +71,7 @@ pub struct Placement {
     pub centres_m: Vec<Vector2<f64>>,
     /// Where the joints press.
     pub frames: Vec<Frame>,
-    /// What rounding leaves at the last open joint of an arch; `None` for stacks, and while all joints are shut.
+    /// The mismatch by rounding at the last open joint of an arch; `None` for stacks, and while all joints are shut.
     pub closure: Option<Closure>,
 }
 

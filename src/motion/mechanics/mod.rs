@@ -6,6 +6,7 @@ pub mod capacity;
 pub mod chain;
 pub mod column;
 pub(crate) mod complementarity;
+mod cone_program;
 pub(crate) mod contact;
 pub(crate) mod coulomb;
 pub mod elastic_joint;

@@ -58,7 +58,7 @@ pub struct Section {
     pub angle_rad: Option<f64>,
 }
 
-/// What a structure consists of.
+/// The parts and places of a structure.
 pub trait Parts {
     /// Its parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;

@@ -39,7 +39,7 @@ const STEP: f64 = 1e-3;
 const EVEN: f64 = 0.05;
 /// up to this one.
 const LONGEST_STEP: f64 = 0.064;
-/// What gives way is pushed on by these parts of size, radian, or gravity, one after the other until it has found other hinges.
+/// A row that gives way is pushed on by these parts of size, radian, or gravity, one after the other until it has found other hinges.
 const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
 /// Pushes by which a symmetric row chooses a side, in units of gravity.
 const TILTS_G: [f64; 3] = [0.0, 1e-6, 1e-4];
@@ -130,7 +130,7 @@ impl Movements {
     }
 }
 
-/// What a row is subject to: where its supports are, and the force on a unit of its mass, in units of gravity.
+/// The condition of a row: where its supports are, and the force on a unit of its mass, in units of gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
     /// Where the left and the right support are.
@@ -148,7 +148,7 @@ pub struct Snap {
     pub before: Option<Vec<Hinge>>,
     /// The hinges after; none where it fell.
     pub after: Option<Vec<Hinge>>,
-    /// What made them give way, where the row had hinges: joints whose line of thrust reached an edge, or that shut.
+    /// Causes, if the row had hinges: joints whose line of thrust reached an edge, or that shut.
     pub causes: Vec<Hinge>,
 }
 
@@ -173,7 +173,7 @@ pub enum SettlingError {
     /// Velocities were not found.
     #[error(transparent)]
     Contact(#[from] ContactError),
-    /// What ties pull with was not found.
+    /// The forces of ties were not found.
     #[error(
         "what the ties pull with was not found where the row gives way: give them less stiffness, or other places"
     )]
@@ -214,11 +214,11 @@ pub struct Follower<'a> {
     pub row: &'a Row,
     descent: Descent<'a>,
     hinges: Option<Pins>,
-    /// What it is subject to.
+    /// Its condition.
     pub condition: Condition,
     /// Where its blocks are, and what its ties remember.
     pub stance: Stance,
-    /// What gave way so far.
+    /// Hinges that gave way so far.
     pub snaps: Vec<Snap>,
     /// By how much its hinges may fail to hold it: forces over the weight and openings in radians below this are rounding.
     slack: f64,
@@ -276,7 +276,7 @@ impl<'a> Follower<'a> {
         self.state_in(&self.condition)
     }
 
-    /// The same in another condition, on the present hinges.
+    /// Its forces and rotations in another condition, on the present hinges.
     fn state_in(&self, condition: &Condition) -> Option<State> {
         let hinges = self.hinges.as_ref()?;
         hinges.state(self.row, condition, &self.stance)
@@ -491,7 +491,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// The same where the state that they have in that condition is known.
+    /// Places the row on its hinges in a condition in which their state is known.
     fn stand(&mut self, condition: &Condition, state: State) {
         self.condition = *condition;
         self.stance.placement.move_supports(condition.supports);

@@ -55,7 +55,7 @@ impl Position {
         Self::new(support.translation, support.rotation_rad())
     }
 
-    /// The same, moved.
+    /// This position moved.
     #[must_use]
     pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl Faces {
             let block = block.and_then(|block| row.blocks().get(block));
             block.map_or(Vector2::zeros(), |block| block.centre_m)
         };
-        let [first, last] = row.supports_go_on();
+        let [first, last] = row.supports_extend();
         let ends = row.joints().len() - 1;
         let faces = |(index, joint): (usize, &Joint)| Self {
             on_support: match index {
@@ -270,7 +270,7 @@ mod tests {
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();
         let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0).unwrap();
-        let row = row.with_supports_that_go_on([true; 2]);
+        let row = row.with_supports_that_extend([true; 2]);
         for joint in [1, 0, 3] {
             check_gradients(&row, joint);
         }

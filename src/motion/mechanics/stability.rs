@@ -86,30 +86,25 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     onset_at(row, &Stance::undeformed(row), sway)
 }
 
-/// The same where some joints are open already, as where supports have moved: those press at their corners alone, and may go on
+/// The least horizontal ground acceleration that starts a row where it stands, on supports that may have moved. Open joints press at one corner, and may go on
 /// opening or shut again. Its ties pull as they do there.
 ///
 /// # Errors
-/// As [`onset`].
+/// Those of [`onset`].
 pub fn onset_at(
     row: &Row,
     stance: &Stance,
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
-    let mut trial = Trial::new(row, stance);
-    match trial.pushed(sway)? {
-        Push::Moves(onset) => Ok(Some(onset)),
-        Push::MovesNothing => Ok(None),
-        Push::Falls => Err(StabilityError::CannotStand(trial.openings())),
-    }
+    Trial::new(row, stance).pushed(sway)
 }
 
-/// What a row bears whose ties yield.
+/// The limit of a row whose ties yield.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TiedLimit {
     /// The push and the mechanism that it starts, under these forces.
     pub onset: RowOnset,
-    /// What the ties pull with then, in N.
+    /// Forces of the ties then, in N.
     pub forces_n: Vec<f64>,
 }
 
@@ -237,9 +232,7 @@ impl Plane {
             weight: weight / largest,
         }
     }
-}
 
-impl Plane {
     /// The push that it leaves with these forces, if it bounds any.
     fn bound_g(&self, forces: &[f64]) -> Option<f64> {
         let pulled = self.pulls.iter().zip(forces);
@@ -371,16 +364,6 @@ impl Highest {
     }
 }
 
-/// What a push does.
-enum Push {
-    /// So much of it starts the row.
-    Moves(RowOnset),
-    /// None starts it.
-    MovesNothing,
-    /// The row falls without it.
-    Falls,
-}
-
 /// Integral of the velocities over the masses.
 fn work(row: &Row, centres_m: &[Vector2<f64>], velocities: &[Twist]) -> Vector2<f64> {
     let blocks = row.blocks().iter().zip(centres_m).zip(velocities);
@@ -398,7 +381,7 @@ struct Trial<'a> {
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
     lines: Vec<TieLine>,
-    /// What the ties pull with, over gravity.
+    /// Forces of the ties, over gravity.
     ties_kg: Vec<f64>,
 }
 
@@ -424,9 +407,9 @@ impl<'a> Trial<'a> {
     }
 
     /// The least push to a side that starts the row.
-    fn pushed(&mut self, sway: Sway) -> Result<Push, ContactError> {
+    fn pushed(&mut self, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
         if self.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
-            return Ok(Push::Falls);
+            return Err(StabilityError::CannotStand(self.openings()));
         }
         let mut load = Vector2::new(sway.sign(), 0.0);
         let mut found: Option<RowOnset> = None;
@@ -453,7 +436,7 @@ impl<'a> Trial<'a> {
             load = Vector2::new(sway.sign() * acceleration_g, -1.0);
             with_ties = true;
         }
-        Ok(found.map_or(Push::MovesNothing, Push::Moves))
+        Ok(found)
     }
 
     /// Integral of the velocities over the masses, if the row moves under a load per unit mass.

@@ -11,7 +11,7 @@ use crate::mechanics::geometry::pose::Pose;
 pub struct Stance {
     /// Where its blocks are.
     pub placement: Placement,
-    /// What its ties remember.
+    /// Memory of its ties.
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
@@ -31,7 +31,7 @@ impl Stance {
         lines(row, &self.placement.support_poses, |block| poses[block])
     }
 
-    /// What its ties pull with, in N.
+    /// Forces of its ties, in N.
     pub fn forces_n(&self) -> impl Iterator<Item = f64> {
         self.ties.iter().map(|tie| tie.force_n.0[0])
     }

@@ -33,16 +33,6 @@ impl Sway {
         }
     }
 
-    /// The side to which a horizontal ground acceleration pushes a structure: opposite to the acceleration.
-    #[must_use]
-    pub fn pushed_by(ground_acceleration: f64) -> Self {
-        if ground_acceleration.is_sign_negative() {
-            Self::Right
-        } else {
-            Self::Left
-        }
-    }
-
     /// +1 to the right, -1 to the left: the sign of x in the frame in which this sway goes right.
     #[must_use]
     pub const fn sign(self) -> f64 {

@@ -35,11 +35,11 @@ pub struct Tie {
     pub ends: [Anchor; 2],
     /// Force in N for each metre that it is stretched.
     pub stiffness_n_m: f64,
-    /// What it pulls with in the undeformed structure, in N.
+    /// Its force in the undeformed structure, in N.
     pub prestress_n: f64,
-    /// What it pulls with at most, in N; infinite where it does not yield.
+    /// Its largest force, in N; infinite if it does not yield.
     pub yield_force_n: f64,
-    /// What it has stretched when it breaks, over its unstressed length; infinite where it does not break.
+    /// Its stretch when it breaks, over its unstressed length; infinite if it does not break.
     pub breaks_at_strain: f64,
 }
 
@@ -178,7 +178,7 @@ impl Tie {
         }
     }
 
-    /// The same with its ends mirrored about the y axis, in a row of so many blocks that is mirrored too.
+    /// This tie with its ends mirrored about the y axis, in a row of so many blocks that is mirrored too.
     pub(super) fn mirrored(&self, blocks: usize) -> Self {
         let mirror = |anchor: Anchor| Anchor {
             block: anchor.block.map(|block| blocks - 1 - block),
@@ -212,7 +212,7 @@ pub fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
 /// Ties shorter than this part of the size have no direction.
 const LEAST_LENGTH_RATIO: f64 = 1e-9;
 
-/// What a tie does to the bodies at its ends, now.
+/// The stretch and the direction of a tie.
 #[derive(Clone, Copy, Debug)]
 pub struct TieSpan<R> {
     /// By how much it is longer than without stress, in m.
@@ -258,7 +258,7 @@ pub struct TieLine {
 }
 
 impl TieLine {
-    /// What the blocks at its ends, with their centres there, gain under an impulse of it: in velocity of the centre and in rate of
+    /// Gains of the blocks at its ends, with their centres there, under an impulse of it: in velocity of the centre and in rate of
     /// rotation.
     pub fn pull(
         &self,
@@ -318,7 +318,7 @@ pub fn pull_blocks<'a>(
 }
 
 impl Tie {
-    /// What it pulls with, in N, where it has yielded so much before and is now stretched so far beyond its unstressed length, and does not
+    /// Its force in N, if it has yielded so much before, is now stretched so far beyond its unstressed length, and does not
     /// break.
     #[must_use]
     pub fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
@@ -327,12 +327,12 @@ impl Tie {
     }
 }
 
-/// What a tie remembers.
+/// Memory of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieMemory<R> {
     /// By how much it is longer than without stress, in m.
     pub stretch_m: R,
-    /// What it pulls with, in N.
+    /// Its force, in N.
     pub force_n: R,
     /// The most that it has pulled with, in N.
     pub peak_n: R,
@@ -340,7 +340,7 @@ pub struct TieMemory<R> {
     pub yielded_m: R,
     /// 1 until it breaks, then 0.
     pub intact: R,
-    /// What it has taken for good so far, by yielding and by what was in it as it broke, in J.
+    /// Energy taken for good so far, by yielding and by breaking, in J.
     pub taken_j: R,
 }
 
@@ -398,7 +398,7 @@ impl<R: Real> TieMemory<R> {
         self.intact = intact;
     }
 
-    /// What it holds when its ends are where they are in the undeformed structure.
+    /// Memory of a tie whose ends are where they are in the undeformed structure.
     #[must_use]
     pub fn undeformed(tie: &Tie) -> Self {
         Self::stretched(tie, 0.0, R::of(tie.prestress_n / tie.stiffness_n_m))
@@ -413,7 +413,7 @@ impl<R: Real> TieMemory<R> {
 }
 
 impl TieMemory<Lanes<1>> {
-    /// The same once it is stretched so far, slowly; it takes nothing.
+    /// Memory of the tie once it is stretched so far, slowly; it takes no energy.
     #[must_use]
     pub fn then(&self, tie: &Tie, stretch_m: f64) -> Self {
         let stretch_m = Lanes([stretch_m]);

@@ -80,7 +80,7 @@ impl Participation {
     }
 }
 
-/// What virtual displacements are multiplied by so that the centre of all masses moves by one.
+/// The factor on virtual displacements with which the centre of all masses moves by one.
 #[must_use]
 pub fn per_displacement_of_centre(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();

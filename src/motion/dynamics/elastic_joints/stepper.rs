@@ -226,7 +226,7 @@ impl<'a> Lane<'a> {
 
 impl<'a, const L: usize> Group<'a, L> {
     pub(super) fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
-        let [left, right] = row.supports_go_on();
+        let [left, right] = row.supports_extend();
         let last = row.joints().len() - 1;
         // At the right support the block is the left one.
         let slides = match row.supports() {

@@ -617,7 +617,7 @@ impl<'a> SlidingStepper<'a> {
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground; from between the
     /// feet, where these part.
     fn displacement(&self) -> f64 {
-        let on_ground = match (self.row.supports(), self.row.supports_go_on()) {
+        let on_ground = match (self.row.supports(), self.row.supports_extend()) {
             (Supports::Left, [base, _]) => [base; 2],
             (Supports::Both, both) => both,
         };

@@ -37,7 +37,7 @@ struct Pairs {
 }
 
 /// A step of the unknowns of a joint from which slip and speed have been eliminated.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Eliminated {
     /// Changes of the friction to either side, and of the speed, without a change of the rate and the pressure.
     constant: [f64; 3],
@@ -152,7 +152,7 @@ impl Pairs {
         Vector3::new(self.own[0], self.own[1], self.own[2] - self.own[3])
     }
 
-    /// What the joint does; its compliance converts impulses to rates, to compare the two.
+    /// The mode of the joint; its compliance converts impulses to rates, to compare the two.
     fn mode(&self, compliance: &Vector3<f64>) -> Mode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
@@ -199,8 +199,6 @@ impl Program {
             joints
         ];
         let mut errors = vec![[0.0; 5]; joints];
-        let mut rests = vec![Eliminated::default(); joints];
-        let mut changes = pairs.clone();
         // Mean of the products, and the errors, at the start.
         let mut first: Option<[f64; 2]> = None;
         let mut centring = 0.5;
@@ -240,40 +238,8 @@ impl Program {
             }
             let floor = FLOOR * mean_first * (wrong / wrong_first).min(1.0);
             let target = (centring * mean).max(floor).min(2.0 * mean);
-            let mut matrices = Vec::with_capacity(joints);
-            for joint in 0..joints {
-                let (matrix, right, rest) =
-                    pairs[joint].eliminated(&errors[joint], target, self.coefficient);
-                rests[joint] = rest;
-                matrices.push((matrix, right));
-            }
-            self.sweep(|program, joint| {
-                let mut matrix = program.own[joint] + matrices[joint].0;
-                for row in 0..3 {
-                    matrix[(row, row)] += program.proximal(joint, row);
-                }
-                Balance {
-                    matrix,
-                    coupling: program.coupling(joint),
-                    onward: program.next[joint],
-                    right: matrices[joint].1,
-                }
-            });
             *passes += 1;
-            let mut part = 1.0_f64;
-            for joint in 0..joints {
-                let change = &self.target[joint];
-                // Computed from the changes themselves: the difference of two rates is only rounding in the end.
-                let slip =
-                    self.response(joint, &self.target).z + self.proximal(joint, 2) * change.z;
-                let along = (change, slip);
-                let (own, rest) = (&pairs[joint], &rests[joint]);
-                changes[joint] = own.changes(rest, &errors[joint], target, self.coefficient, along);
-                part = part.min(REACH * own.room(&changes[joint]));
-            }
-            for (pairs, change) in pairs.iter_mut().zip(&changes) {
-                pairs.go(change, part);
-            }
+            let part = self.go_towards(target, &errors, &mut pairs);
             centring = match part {
                 0.9.. => 0.03,
                 0.5.. => 0.2,
@@ -282,6 +248,44 @@ impl Program {
             };
         }
         false
+    }
+
+    /// Goes by a step of Newton's method, as far as all numbers stay positive; returns which part of it that is.
+    fn go_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
+        let coefficient = self.coefficient;
+        let joints = pairs.iter().zip(errors);
+        let eliminated: Vec<_> = joints
+            .map(|(pairs, errors)| pairs.eliminated(errors, target, coefficient))
+            .collect();
+        self.sweep(|program, joint| {
+            let (matrix, right, _) = &eliminated[joint];
+            let mut matrix = program.own[joint] + matrix;
+            for row in 0..3 {
+                matrix[(row, row)] += program.proximal(joint, row);
+            }
+            Balance {
+                matrix,
+                coupling: program.coupling(joint),
+                onward: program.next[joint],
+                right: *right,
+            }
+        });
+        let changes = (0..pairs.len()).map(|joint| {
+            let change = &self.target[joint];
+            // Computed from the changes themselves: the difference of two rates is only rounding in the end.
+            let slip = self.response(joint, &self.target).z + self.proximal(joint, 2) * change.z;
+            let rest = &eliminated[joint].2;
+            pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
+        });
+        let changes: Vec<Pairs> = changes.collect();
+        let rooms = pairs.iter().zip(&changes);
+        let part = rooms
+            .map(|(pairs, change)| REACH * pairs.room(change))
+            .fold(1.0, f64::min);
+        for (pairs, change) in pairs.iter_mut().zip(&changes) {
+            pairs.go(change, part);
+        }
+        part
     }
 
     /// Takes over the modes, and impulses that they allow.

@@ -105,7 +105,7 @@ impl Section {
     }
 }
 
-/// What a joint remembers of the step before.
+/// Memory of a joint from the step before.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory<R> {
     /// Penetrations at the edges, in m.
@@ -122,7 +122,7 @@ pub struct Memory<R> {
     viscous_shear_n: R,
 }
 
-/// What a place along a joint remembers.
+/// Memory of a place along a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Fibre<R> {
     /// By how much it is crushed, in m.
@@ -163,7 +163,7 @@ pub struct Rubbing<R> {
 /// A joint between two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticJoint {
-    /// What it joins.
+    /// The geometry of the joint.
     pub link: Link,
     /// Stiffness of the closed joint against penetration, in N/m.
     pub normal_n_m: f64,
@@ -175,7 +175,7 @@ pub struct ElasticJoint {
     pub area_m2: f64,
 }
 
-/// What all joints of a structure have in common.
+/// The law that all joints of a structure share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Law {
     pub section: Section,
@@ -440,7 +440,7 @@ fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
     amount(positive_part(ends), both!(end: ends[end].max(zero)))
 }
 
-/// The same for another linear function, over the part where both press.
+/// Six times the forces at the ends due to another linear stress, over the part where both press.
 #[inline(always)]
 fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));

@@ -44,7 +44,7 @@ impl<R: Real> Place<R> {
     }
 }
 
-/// What a joint joins, undeformed: the first body is before the joint, the second one after it.
+/// The geometry of a joint, undeformed: the first body is before the joint, the second one after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
     /// The indices of the two bodies.

@@ -17,13 +17,13 @@ type Alone = Lanes<1>;
 pub struct Rest {
     /// Displacements (m) and rotations (rad) of the bodies.
     pub moved: Vec<[f64; 3]>,
-    /// The same by the weight alone, on supports where they were built.
+    /// Displacements and rotations by the weight alone, on supports where they were built.
     pub bent: Vec<[f64; 3]>,
-    /// What the joints remember.
+    /// Memory of the joints.
     pub memories: Vec<Memory<Alone>>,
-    /// What the places along the joints remember, joint by joint.
+    /// Memory of the places along the joints, joint by joint.
     pub fibres: Vec<Fibre<Alone>>,
-    /// What the ties remember.
+    /// Memory of the ties.
     pub ties: Vec<TieMemory<Alone>>,
     /// Unbalanced force over the weight.
     pub unbalanced: f64,
@@ -409,7 +409,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The same with ties that remember this.
+    /// The search with ties of this memory.
     fn with_ties(mut self, ties: &[TieMemory<Alone>]) -> Self {
         self.yielded_m = ties.iter().map(|tie| tie.yielded_m.0[0]).collect();
         self

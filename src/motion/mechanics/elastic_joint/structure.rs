@@ -35,7 +35,7 @@ pub struct Materials {
 /// The stiffness of the joints of a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
-    /// The same for all.
+    /// One stiffness for all joints.
     Uniform(JointStiffness),
     /// Blocks and mortar in series: `1/kn = t_m/E_m + L/E_b`, with the distance `L` between the centres of the two blocks across the
     /// joint; at a support, from the centre of the block to the joint.
@@ -132,7 +132,7 @@ impl ElasticProperties {
         }
     }
 
-    /// The same with all stiffness multiplied.
+    /// These properties or this structure with all stiffness multiplied.
     #[must_use]
     pub fn stiffness_times(mut self, factor: f64) -> Self {
         match &mut self.stiffness {
@@ -183,7 +183,7 @@ pub struct ElasticStructure {
     pub joints: Vec<ElasticJoint>,
     /// The ties.
     pub ties: Vec<BoundTie>,
-    /// What they add to the square of the highest frequency, at most.
+    /// The most that ties add to the square of the highest frequency.
     ties_square_frequency: f64,
     /// The law of its joints.
     pub(crate) law: Law,
@@ -278,7 +278,7 @@ impl ElasticStructure {
         }
     }
 
-    /// The same with supports that have moved by these displacements (m) and rotations (rad), those of a row about the middle of its
+    /// This structure on supports moved by these displacements (m) and rotations (rad), those of a row about the middle of its
     /// first and last joint.
     #[must_use]
     pub const fn on_supports(mut self, moved: [[f64; 3]; 2]) -> Self {
@@ -298,13 +298,13 @@ impl ElasticStructure {
         self.supports != [[0.0; 3]; 2]
     }
 
-    /// The same with supports that have moved as the left one has, without turning.
+    /// This structure with both supports moved as the left one has, without rotation.
     pub(super) fn moved_along(&self) -> ([f64; 2], Self) {
         let [x, y, _] = self.supports[0];
         ([x, y], self.clone().on_supports([[x, y, 0.0]; 2]))
     }
 
-    /// The same when its supports have gone this part of their way from where they moved along.
+    /// This structure when its supports have gone this part of their way from where they moved along.
     pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
         let from = self.moved_along().1.supports;
         let between = |side: usize| {
@@ -334,28 +334,28 @@ impl ElasticStructure {
         self.law.section.fibres()
     }
 
-    /// The same without bounds of friction.
+    /// This structure without bounds of friction.
     pub(super) fn without_slip(&self) -> Self {
         let mut other = self.clone();
         other.law.friction = [0.0, f64::INFINITY];
         other
     }
 
-    /// The same without crushing.
+    /// This structure without crushing.
     pub(super) fn without_crushing(&self) -> Self {
         let mut other = self.clone();
         other.law.crushes = false;
         other
     }
 
-    /// The same with continuous contact, without crushing.
+    /// This structure with continuous contact, without crushing.
     pub(super) fn continuous(&self) -> Self {
         let mut other = self.without_crushing();
         other.law.section = Section::Whole;
         other
     }
 
-    /// The same with all stiffness multiplied.
+    /// These properties or this structure with all stiffness multiplied.
     pub(super) fn stiffness_times(&self, factor: f64) -> Self {
         let mut other = self.clone();
         for joint in &mut other.joints {
@@ -369,7 +369,7 @@ impl ElasticStructure {
         other
     }
 
-    /// What a joint bears with its bodies at these places, and its action on them; its memory is updated. `damping` is the damping time over
+    /// Forces of a joint with its bodies at these places, and its action on them; its memory is updated. `damping` is the damping time over
     /// the length of the step.
     #[inline(always)]
     pub fn act<R: Real>(

@@ -53,7 +53,7 @@ impl BoundTie {
         self.tie.span([first, second])
     }
 
-    /// What it does as it pulls so hard.
+    /// The action of the tie on its bodies with this force.
     #[inline(always)]
     #[must_use]
     pub fn action<R: Real>(

@@ -13,14 +13,13 @@
 //! if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
 
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
-};
+use clarabel::solver::{DefaultSettings, SolverStatus};
 use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::SectionResultant;
+use crate::mechanics::cone_program::{self, Entries};
 use crate::mechanics::geometry::field::{Field, Twist};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
@@ -34,7 +33,7 @@ pub const DEFAULT_JOINTS: usize = 720;
 pub struct Projection {
     /// Restitution coefficient: kinetic energy after over before.
     pub restitution: f64,
-    /// What happens at each joint, from the left springing to the right one.
+    /// Rates and impulses of each joint, from the left springing to the right one.
     pub joints: Vec<Joint>,
 }
 
@@ -139,18 +138,11 @@ pub fn project(
         .windows(2)
         .map(|ends| orthonormal_twists(profile, ends[0], ends[1]))
         .collect();
-    let mut target = Vec::with_capacity(3 * bodies.len());
-    let mut passed = before.momentum_to(profile, joints_rad[0]);
-    for (twists, end) in bodies.iter().zip(&joints_rad[1..]) {
-        let reached = before.momentum_to(profile, *end);
-        let momentum = reached - passed;
-        target.extend(twists.map(|twist| twist.power(&momentum) / scale));
-        passed = reached;
-    }
+    let target = components(before, profile, joints_rad, &bodies, scale);
 
     // Rows: no sliding at each joint, then for each joint the gap at the intrados and at the extrados.
     let count = joints_rad.len();
-    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    let mut entries = Entries::default();
     for (joint, angle) in joints_rad.iter().enumerate() {
         let (outward, onward) = (profile.outward(*angle), profile.onward(*angle));
         let middle = profile.middle(*angle);
@@ -167,26 +159,19 @@ pub fn project(
                     (count + 2 * joint + 1, -twist.at(edges[1]).dot(&onward)),
                 ];
                 for (row, velocity) in velocities {
-                    rows.push(row);
-                    columns.push(3 * body + axis);
-                    values.push(side * velocity);
+                    entries.put(row, 3 * body + axis, side * velocity);
                 }
             }
         }
     }
-    let constraints = CscMatrix::new_from_triplets(3 * count, target.len(), rows, columns, values);
+    let width = target.len();
+    let matrices = [
+        &CscMatrix::identity(width),
+        &entries.matrix(3 * count, width),
+    ];
     let minus_target: Vec<f64> = target.iter().map(|component| -component).collect();
-    let mut solver = DefaultSolver::new(
-        &CscMatrix::identity(target.len()),
-        &minus_target,
-        &constraints,
-        &vec![0.0; 3 * count],
-        &[ZeroConeT(count), NonnegativeConeT(2 * count)],
-        settings(),
-    )
-    .expect("the dimensions fit and the settings are valid");
-    solver.solve();
-    let solution = &solver.solution;
+    let right = vec![0.0; 3 * count];
+    let solution = cone_program::solve(matrices, &minus_target, &right, count, settings());
     if !matches!(
         solution.status,
         SolverStatus::Solved | SolverStatus::AlmostSolved
@@ -217,13 +202,30 @@ pub fn project(
         }
     });
     Ok(Projection {
-        restitution: solution
-            .x
-            .iter()
-            .map(|component| component * component)
-            .sum(),
+        restitution: solution.x.iter().map(|part| part * part).sum(),
         joints: joints.collect(),
     })
+}
+
+/// Components of a field, over the scale, along the motions of the bodies between the joints.
+fn components(
+    field: &Field,
+    profile: &dyn Profile,
+    joints_rad: &[f64],
+    bodies: &[[Twist; 3]],
+    scale: f64,
+) -> Vec<f64> {
+    let mut passed = field.momentum_to(profile, joints_rad[0]);
+    let components = bodies
+        .iter()
+        .zip(&joints_rad[1..])
+        .flat_map(|(twists, end)| {
+            let reached = field.momentum_to(profile, *end);
+            let momentum = reached - passed;
+            passed = reached;
+            twists.map(|twist| twist.power(&momentum) / scale)
+        });
+    components.collect()
 }
 
 /// Motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half:

@@ -27,7 +27,7 @@ const MAX_CHAIN_LENGTH: usize = 256;
 pub struct ArchLink {
     /// The mechanism in the undeformed configuration.
     pub mechanism: FourLink,
-    /// The same at finite rotations, and how the impact leads to it.
+    /// The mechanism at finite rotations, and how the impact leads to it.
     pub link: Link<Linkage>,
     /// Impulses of the impact that leads to it, per unit closing rate; `None` for the first link, and
     /// where the restitution coefficient is prescribed.
@@ -53,7 +53,7 @@ impl ArchLink {
 /// density or the ground motion.
 #[derive(Debug)]
 pub struct Chain {
-    /// As seen in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
+    /// The profile in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
     profiles: [Arc<dyn Profile>; 2],
     /// Where hinges may form.
     pub sites: HingeSites,

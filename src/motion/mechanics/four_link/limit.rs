@@ -61,7 +61,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     incipient_of(ring, sites)
 }
 
-/// The same for any profile that carries its own weight.
+/// The incipient acceleration of any profile that carries its own weight, with its mechanism and thrust line.
 ///
 /// # Errors
 /// When no four-link mechanism governs, or no push moves one.

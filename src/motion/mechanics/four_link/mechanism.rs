@@ -92,7 +92,7 @@ impl FourLink {
         })
     }
 
-    /// The same as hinges with the names of their sections: angles of a ring, joints of a row.
+    /// Hinges from left to right with the names of their sections: angles of a ring, joints of a row.
     #[must_use]
     pub fn named_hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [Hinge; 4] {
         self.hinges_from_left(profile, sway)

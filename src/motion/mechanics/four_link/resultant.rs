@@ -59,7 +59,7 @@ impl SectionResultant {
         }
     }
 
-    /// The same section seen in a mirror: what was before it is now after it.
+    /// This section seen in a mirror: the part before it is then after it.
     #[must_use]
     pub fn mirrored(self) -> Self {
         Self {

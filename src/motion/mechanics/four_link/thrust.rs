@@ -92,7 +92,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// The same force per unit mass everywhere.
+    /// One force per unit mass everywhere.
     #[must_use]
     pub const fn uniform(force: Vector2<f64>) -> Self {
         Self {

@@ -124,7 +124,7 @@ impl Curve {
         piece
     }
 
-    /// The same curve run through the other way.
+    /// This curve run through the other way.
     #[must_use]
     pub fn reversed(&self) -> Self {
         self.between(1.0, 0.0)

@@ -30,7 +30,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// The same motion everywhere.
+    /// One motion everywhere.
     #[must_use]
     pub fn uniform(twist: Twist) -> Self {
         Self {

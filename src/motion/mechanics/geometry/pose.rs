@@ -62,7 +62,7 @@ impl Pose {
         product(self.turn, vector)
     }
 
-    /// The same with lengths in a unit `per_unit` times smaller.
+    /// This pose with lengths in a unit `per_unit` times smaller.
     #[must_use]
     pub fn scaled(&self, per_unit: f64) -> Self {
         Self {

@@ -70,7 +70,7 @@ pub trait Profile: Debug + Send + Sync {
         None
     }
 
-    /// The same profile, shared.
+    /// This profile, shared.
     fn shared(&self) -> Arc<dyn Profile>;
 }
 

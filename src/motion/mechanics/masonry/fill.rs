@@ -85,7 +85,7 @@ impl Fill {
         }
     }
 
-    /// What of it is above each voussoir: the voussoir, and corners of polygons that look like it.
+    /// The fill above each voussoir: the voussoir, and corners of polygons that look like the fill.
     pub(super) fn outlines_for_drawing(
         &self,
         arch: &CutArch,

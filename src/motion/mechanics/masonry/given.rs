@@ -29,7 +29,7 @@ pub struct GivenBlocks {
     /// File of the outlines.
     #[serde(rename = "outlines", skip_serializing_if = "Option::is_none")]
     pub outlines_file: Option<String>,
-    /// What carries the row.
+    /// The supports of the row.
     pub supports: Supports,
     /// Length out of plane, in metres.
     pub depth_m: f64,

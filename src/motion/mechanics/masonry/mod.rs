@@ -30,6 +30,7 @@ pub use given::{GivenBlocks, OutlineError};
 pub use load::PlacedLoad;
 use middle_line::cut_elliptic;
 pub use middle_line::{BasketArch, CircularArch};
+use pier::Courses;
 pub use pier::{Pier, Piers};
 use pointed::cut_pointed;
 pub use remedy::Remedy;
@@ -199,12 +200,12 @@ pub struct Masonry {
     pub loads: Vec<PlacedLoad>,
     #[serde(skip)]
     row: Row,
-    /// What the arch carries, as it is drawn.
+    /// Fill and loads, as they are drawn.
     #[serde(skip)]
     pub carried: Carried,
 }
 
-/// What an arch carries, as it is drawn: each part with the block of the row that it moves with.
+/// Fill and loads of an arch, as they are drawn: each part with the block of the row that it moves with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Corners of what of the fill is above a block, in metres.
@@ -224,7 +225,7 @@ pub enum MasonryError {
     Pier {
         /// On which side.
         side: Sway,
-        /// What is wrong.
+        /// The number that is out of range.
         error: ArgumentError,
     },
     /// A number of the fill is out of range.
@@ -235,7 +236,7 @@ pub enum MasonryError {
     Load {
         /// Which load, from 0 on.
         index: usize,
-        /// What is wrong.
+        /// The number that is out of range.
         error: ArgumentError,
     },
     /// An outline of a block is not valid.
@@ -278,73 +279,48 @@ impl Masonry {
             load.add_to(&mut extra, &arch)
                 .map_err(|error| MasonryError::Load { index, error })?;
         }
-        let (mut blocks, mut joints, mut outlines_m) = match &shape {
-            Shape::Blocks(given) => (given.blocks(), arch.joints(), given.outlines_m()),
-            _ => (
-                arch.blocks(material),
-                arch.joints(),
-                arch.outlines_for_drawing(),
-            ),
+        let mut courses = match &shape {
+            Shape::Blocks(given) => Courses {
+                blocks: given.blocks(),
+                joints: arch.joints(),
+                outlines_m: given.outlines_m(),
+            },
+            _ => Courses {
+                blocks: arch.blocks(material),
+                joints: arch.joints(),
+                outlines_m: arch.outlines_for_drawing(),
+            },
         };
         let supports = match &shape {
             Shape::Blocks(given) => given.supports,
             _ => Supports::Both,
         };
         if supports == Supports::Left {
-            joints.pop();
+            courses.joints.pop();
         }
-        let mut first = 0;
         for (side, pier) in [(Sway::Left, &piers.left), (Sway::Right, &piers.right)] {
-            let Some(pier) = pier else { continue };
-            let springing = match side {
-                Sway::Left => joints.first(),
-                Sway::Right => joints.last(),
-            };
-            let springing = springing.ok_or(RowError::Count(0))?;
-            let courses = pier
-                .courses(springing, side)
-                .map_err(|error| MasonryError::Pier { side, error })?;
-            let count = blocks.len() + courses.outlines_m.len();
-            if count > MAX_BLOCKS {
-                return Err(MasonryError::Count(count));
-            }
-            let own = courses.blocks(
-                material.depth_m,
-                pier.density_kg_m3.unwrap_or(material.density_kg_m3),
-            );
-            match side {
-                Sway::Left => {
-                    first = own.len();
-                    blocks.splice(0..0, own);
-                    joints.splice(0..0, courses.joints);
-                    outlines_m.splice(0..0, courses.outlines_m);
-                }
-                Sway::Right => {
-                    blocks.extend(own);
-                    joints.extend(courses.joints);
-                    outlines_m.extend(courses.outlines_m);
-                }
+            if let Some(pier) = pier {
+                courses.stand_on(pier, side, material)?;
             }
         }
+        let first = piers.left.map_or(0, |pier| pier.blocks);
         let on_ground = match &shape {
             Shape::Blocks(given) => given.on_ground(),
             _ => [piers.left, piers.right].map(|pier| pier.is_some_and(|pier| !pier.pedestal)),
         };
-        let mut row = Row::new(blocks, joints, supports, shape.size_m())?
-            .with_outlines_m(outlines_m)
-            .with_supports_that_go_on(on_ground);
+        let mut row = Row::new(courses.blocks, courses.joints, supports, shape.size_m())?
+            .with_outlines_m(courses.outlines_m)
+            .with_supports_that_extend(on_ground);
         for (voussoir, extra) in extra.iter().enumerate() {
             if let Some(extra) = extra {
                 row = row.carrying(first + voussoir, extra);
             }
         }
         let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
+        let loads_m = loads.iter().filter_map(|load| load.place_m(&arch));
         let mut carried = Carried {
             fill_m: fill_m.map_err(MasonryError::Fill)?,
-            loads_m: loads
-                .iter()
-                .filter_map(|load| load.place_m(&arch))
-                .collect(),
+            loads_m: loads_m.collect(),
         };
         let voussoirs = carried.fill_m.iter_mut().map(|(voussoir, _)| voussoir);
         let loaded = carried.loads_m.iter_mut().map(|(voussoir, _)| voussoir);
@@ -397,7 +373,7 @@ impl Masonry {
         Some([courses[0], self.row.joints().len() - 1 - courses[1]])
     }
 
-    /// The same with these ties and no others, under this gravity.
+    /// This masonry with these ties and no others, under this gravity.
     ///
     /// # Errors
     /// When a tie is none: with its index.

@@ -3,9 +3,10 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
+use super::{MasonryError, Material};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS};
+use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS, RowError};
 use crate::mechanics::sway::Sway;
 
 /// Piers under the springings; a springing without one stands on rigid ground.
@@ -46,19 +47,41 @@ pub struct Pier {
     pub pedestal: bool,
 }
 
-/// The blocks of a pier in the order of the row: upwards at the left, downwards at the right.
+/// Blocks with the joints and the outlines that belong to them, in the order of the row.
 pub(super) struct Courses {
-    /// Joints without the springing.
+    pub blocks: Vec<Block>,
     pub joints: Vec<Joint>,
     pub outlines_m: Vec<Vec<Vector2<f64>>>,
 }
 
 impl Courses {
-    pub fn blocks(&self, depth_m: f64, density_kg_m3: f64) -> Vec<Block> {
-        let outlines = self.outlines_m.iter();
-        outlines
-            .map(|outline| Block::prism(outline, depth_m, density_kg_m3))
-            .collect()
+    /// Puts the courses of a pier under the springing on this side.
+    pub fn stand_on(
+        &mut self,
+        pier: &Pier,
+        side: Sway,
+        material: Material,
+    ) -> Result<(), MasonryError> {
+        fn add<T>(to: &mut Vec<T>, side: Sway, new: Vec<T>) {
+            let at = if side == Sway::Left { 0 } else { to.len() };
+            to.splice(at..at, new);
+        }
+        let springing = match side {
+            Sway::Left => self.joints.first(),
+            Sway::Right => self.joints.last(),
+        };
+        let springing = springing.ok_or(RowError::Count(0))?;
+        let courses = pier
+            .courses(springing, side, material)
+            .map_err(|error| MasonryError::Pier { side, error })?;
+        let count = self.blocks.len() + courses.blocks.len();
+        if count > MAX_BLOCKS {
+            return Err(MasonryError::Count(count));
+        }
+        add(&mut self.blocks, side, courses.blocks);
+        add(&mut self.joints, side, courses.joints);
+        add(&mut self.outlines_m, side, courses.outlines_m);
+        Ok(())
     }
 }
 
@@ -89,7 +112,13 @@ impl Pier {
         Ok(())
     }
 
-    pub(super) fn courses(&self, springing: &Joint, side: Sway) -> Result<Courses, ArgumentError> {
+    /// Its blocks, with its joints but the springing: upwards at the left, downwards at the right.
+    fn courses(
+        &self,
+        springing: &Joint,
+        side: Sway,
+        material: Material,
+    ) -> Result<Courses, ArgumentError> {
         self.check(springing)?;
         let inner = springing.intrados_m;
         let outer_x = inner.x + side.sign() * self.width_m;
@@ -105,21 +134,25 @@ impl Pier {
         let mut outlines_m: Vec<Vec<Vector2<f64>>> = (0..self.blocks)
             .map(|course| {
                 let bottom = level(course);
-                let mut outline = vec![bottom.intrados_m, bottom.extrados_m];
                 if course + 1 < self.blocks {
-                    let top = level(course + 1);
-                    outline.extend([top.extrados_m, top.intrados_m]);
-                } else {
-                    let shoulder = Vector2::new(outer_x, springing.extrados_m.y);
-                    outline.extend([shoulder, springing.extrados_m, inner]);
+                    return bottom.outline_m(&level(course + 1)).to_vec();
                 }
-                outline
+                let shoulder = Vector2::new(outer_x, springing.extrados_m.y);
+                let top = [shoulder, springing.extrados_m, inner];
+                [[bottom.intrados_m, bottom.extrados_m].as_slice(), &top].concat()
             })
             .collect();
         if side == Sway::Right {
             joints.reverse();
             outlines_m.reverse();
         }
-        Ok(Courses { joints, outlines_m })
+        let density_kg_m3 = self.density_kg_m3.unwrap_or(material.density_kg_m3);
+        let outlines = outlines_m.iter();
+        let blocks = outlines.map(|outline| Block::prism(outline, material.depth_m, density_kg_m3));
+        Ok(Courses {
+            blocks: blocks.collect(),
+            joints,
+            outlines_m,
+        })
     }
 }

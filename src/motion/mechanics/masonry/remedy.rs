@@ -3,7 +3,7 @@
 use super::{BasketArch, CircularArch, Masonry, Pier, Piers, Shape};
 use crate::bisection::{Width, try_bisect};
 
-/// What to change in masonry that falls, and by which factor: the least one, rounded up to four decimals; none if a factor of
+/// A change that holds masonry that falls, with the least factor, rounded up to four decimals; none if a factor of
 /// four is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {

@@ -97,7 +97,7 @@ pub(super) struct Descent<'a> {
     free: Vec<Twist>,
     jumps: Vec<Twist>,
     touching: Vec<[bool; 2]>,
-    /// What each tie pulls with, over gravity, and by how much that lengthens it for each kg.
+    /// Force of each tie over gravity, and by how much that lengthens it for each kg.
     ties_kg: Vec<f64>,
     ties_m_kg: Vec<f64>,
 }
@@ -263,7 +263,7 @@ impl<'a> Descent<'a> {
         Ok(speeds.fold(0.0, f64::max))
     }
 
-    /// The same with ties that pull as they will at the end of a step, at most as long as this one, in which no point goes too far.
+    /// The fastest velocity with ties that pull as at the end of a step, at most as long as this one, in which no point goes too far.
     fn solve_with_ties(
         &mut self,
         stance: &Stance,

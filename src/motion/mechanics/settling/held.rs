@@ -65,7 +65,7 @@ pub struct Held<'a> {
     sense: f64,
     /// Where it has lost its strength.
     end_rad: f64,
-    /// What its ties remember, step by step.
+    /// Memory of its ties, step by step.
     ties: Vec<Vec<TieMemory<Lanes<1>>>>,
 }
 
@@ -192,19 +192,19 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// What its ties remember there.
+    /// Memory of its ties there.
     fn ties_at(&self, q_rad: f64) -> Option<Vec<TieMemory<Lanes<1>>>> {
         let poses = self.poses(q_rad)?;
         Some(self.pulls(q_rad, &poses).0)
     }
 
-    /// The same, and what they pull with and where.
+    /// Memory and forces of its ties there.
     fn pulls(&self, q_rad: f64, poses: &[Pose]) -> Pulls {
         let built = [Pose::UNDEFORMED; 2];
         self.pins.pulls(self.row, &built, poses, self.before(q_rad))
     }
 
-    /// What its ties remember of the steps on the way there.
+    /// Memory of its ties from the steps on the way there.
     fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]

@@ -18,7 +18,7 @@ use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory};
 
 /// Steps of Newton's method, at most.
 const MOST_STEPS: usize = 16;
-/// What is unbalanced by less than this part of the weight, or open by less than this part of the size, is rounding.
+/// Forces below this part of the weight, and gaps below this part of the size, are rounding.
 const BALANCED: f64 = 1e-12;
 /// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
 const FAR_RAD: f64 = 1.0;
@@ -46,7 +46,7 @@ pub struct Pins {
     pub(super) pins_m: Vec<Vector2<f64>>,
 }
 
-/// What ties remember, and what they pull with, in N, and where.
+/// Memory of ties, and their forces in N with the lines on which these act.
 pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 
 /// A row on hinges: positions and forces.
@@ -66,7 +66,7 @@ pub struct State {
     pub right_reaction: Momentum,
     /// Friction coefficient without which a joint would slide.
     pub friction: f64,
-    /// What its ties remember there.
+    /// Memory of its ties there.
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
@@ -145,7 +145,7 @@ impl Pins {
         (hinges.len() >= 3).then(|| Self::new(row, hinges))
     }
 
-    /// The same without those of these that it has, and with the others; `None` where that leaves less than three, or a joint would open at
+    /// These hinges with others exchanged: those already present leave, new ones are added; `None` if that leaves less than three, or a joint would open at
     /// both edges.
     pub(super) fn exchanged(&self, row: &Row, others: &[Hinge]) -> Option<Self> {
         let stays = |hinge: &&Hinge| !others.contains(hinge);
@@ -284,7 +284,7 @@ impl Pins {
 }
 
 impl Pins {
-    /// What ties remember, and what they pull with and where, of a row whose parts have these poses.
+    /// Memory and forces of the ties of a row whose parts have these poses.
     pub(super) fn pulls(
         &self,
         row: &Row,
@@ -387,7 +387,7 @@ struct Bar {
     ends_m: [Vector2<f64>; 2],
     apart_m: Vector2<f64>,
     length_m: f64,
-    /// What it stretches there beyond what it had yielded.
+    /// Its stretch there beyond its earlier yielding.
     stretch_m: f64,
     /// It has broken beyond this, counted likewise.
     breaks_m: f64,
@@ -412,7 +412,7 @@ impl Bar {
     }
 }
 
-/// What ties between two bodies do to these, each described by the place of its first pin and its rotation: slopes of their energy, and
+/// The effect of ties between two bodies, each described by the place of its first pin and its rotation: slopes of their energy, and
 /// curvatures. Ends count as if a tie pulled both bodies the same way.
 struct Between {
     force: Vector2<f64>,
@@ -475,7 +475,7 @@ impl Between {
     }
 }
 
-/// What is left of the equations of a chain, and its slopes.
+/// Residuals of the equations of a chain, and their slopes.
 struct Unbalanced {
     /// Slopes of the energy by the rotations.
     slopes: DVector<f64>,
