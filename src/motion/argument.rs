@@ -36,6 +36,22 @@ pub fn within(
     })
 }
 
+/// The count, if it is in the range.
+pub fn counted(
+    argument: &'static str,
+    count: usize,
+    range: RangeInclusive<usize>,
+) -> Result<usize, ArgumentError> {
+    if range.contains(&count) {
+        return Ok(count);
+    }
+    Err(ArgumentError {
+        argument,
+        value: count as f64,
+        allowed: format!("from {} to {}", range.start(), range.end()),
+    })
+}
+
 /// The value, if it is above the first bound and at most the second; NaN never is.
 pub fn above(
     argument: &'static str,

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, counted, within};
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
@@ -197,15 +197,8 @@ impl Arch {
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
     pub fn with_voussoirs(self, voussoirs: usize) -> Result<Self, ArgumentError> {
-        if !VOUSSOIRS.contains(&voussoirs) {
-            return Err(ArgumentError {
-                argument: "voussoirs",
-                value: voussoirs as f64,
-                allowed: format!("from {} to {}", VOUSSOIRS.start(), VOUSSOIRS.end()),
-            });
-        }
         Self {
-            voussoirs: Some(voussoirs),
+            voussoirs: Some(counted("voussoirs", voussoirs, VOUSSOIRS)?),
             ..self
         }
         .reshaped()
@@ -323,7 +316,7 @@ impl Arch {
     /// Sections at which lines of thrust are reported, in radians from the left springing: the joints, or 61 sections
     /// of an arch that hinges anywhere.
     #[must_use]
-    pub fn thrust_sections_rad(&self) -> Vec<f64> {
+    pub(crate) fn thrust_sections_rad(&self) -> Vec<f64> {
         let parts = self.voussoirs.unwrap_or(60);
         self.ring().sections(parts)
     }

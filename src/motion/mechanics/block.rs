@@ -29,7 +29,7 @@ impl Block {
 
     /// A prism with a closed outline (m), either way round; `pole_m` is a point near it, which keeps rounding small.
     #[must_use]
-    pub fn bounded(
+    pub(crate) fn bounded(
         outline_m: impl IntoIterator<Item = Curve>,
         pole_m: Vector2<f64>,
         depth_m: f64,

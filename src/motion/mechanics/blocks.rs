@@ -222,7 +222,7 @@ impl Row {
 
     /// This row drawn with other outlines of its blocks: closed polygons, in metres.
     #[must_use]
-    pub fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
+    pub(crate) fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
         if outlines_m.len() == self.blocks.len() {
             Self { outlines_m, ..self }
         } else {

@@ -150,7 +150,7 @@ impl Program {
     }
 
     /// Starts the next solution from these active corners.
-    pub fn start_from(&mut self, active: &[Corners]) {
+    pub(crate) fn start_from(&mut self, active: &[Corners]) {
         self.active.copy_from_slice(active);
     }
 
@@ -167,7 +167,7 @@ impl Program {
 
     /// Whether the last solution keeps a joint shut.
     #[must_use]
-    pub fn keeps_shut(&self, joint: usize) -> bool {
+    pub(crate) fn keeps_shut(&self, joint: usize) -> bool {
         self.active[joint] == [true; 2]
     }
 
@@ -180,12 +180,12 @@ impl Program {
 
     /// Impulses in N s at the corners of every joint, intrados and extrados.
     #[must_use]
-    pub fn corner_impulses(&self) -> &[[f64; 2]] {
+    pub(crate) fn corner_impulses(&self) -> &[[f64; 2]] {
         &self.answer.corners
     }
 
     /// Impulses in N s on the right block of every joint: along the joint towards the extrados, and normal.
-    pub fn joint_impulses(&self, into: &mut [[f64; 2]]) {
+    pub(crate) fn joint_impulses(&self, into: &mut [[f64; 2]]) {
         self.answer.joint_impulses(&self.factor, into);
     }
 
@@ -220,7 +220,7 @@ impl Program {
     }
 
     /// Velocities under another load while the same corners press as in the last solution, even where they would pull.
-    pub fn solve_alike(&mut self, load: &Load) {
+    pub(crate) fn solve_alike(&mut self, load: &Load) {
         self.set_up(load);
         self.answer.take_load(&self.factor, None);
         self.set_velocities();

@@ -192,12 +192,12 @@ impl Program {
 
     /// Twice the kinetic energy in J, in the last solution.
     #[must_use]
-    pub fn twice_kinetic_j(&self) -> f64 {
+    pub(crate) fn twice_kinetic_j(&self) -> f64 {
         self.velocities.iter().map(Vector3::norm_squared).sum()
     }
 
     /// Starts the next solution from the modes and impulses of another program of the same row, the impulses scaled.
-    pub fn start_from(&mut self, other: &Self, scale: f64) {
+    pub(crate) fn start_from(&mut self, other: &Self, scale: f64) {
         self.modes.copy_from_slice(&other.modes);
         for (own, theirs) in self.impulses.iter_mut().zip(&other.impulses) {
             *own = theirs * scale;

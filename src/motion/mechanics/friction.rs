@@ -109,9 +109,9 @@ pub(crate) fn onset_of_standing(
 ) -> Result<Option<FrictionOnset>, FrictionError> {
     let program = Program::new(row, stance, coefficient, Goal::Push);
     match program.solve(-sway.sign())? {
-        Answer::Found(solution) => Ok(Some(FrictionOnset {
-            acceleration_g: sway.sign() * solution.goal,
-            yields: solution.yields,
+        Answer::Found(goal, yields) => Ok(Some(FrictionOnset {
+            acceleration_g: sway.sign() * goal,
+            yields,
         })),
         Answer::Unbounded => Ok(None),
         Answer::Infeasible => Err(FrictionError::CannotStand(coefficient)),
@@ -130,9 +130,13 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
 ///
 /// # Errors
 /// Those of [`stands`].
-pub fn stands_at(row: &Row, stance: &Stance, coefficient: f64) -> Result<bool, FrictionError> {
+pub(crate) fn stands_at(
+    row: &Row,
+    stance: &Stance,
+    coefficient: f64,
+) -> Result<bool, FrictionError> {
     match Program::new(row, stance, coefficient, Goal::Shortage).solve(1.0)? {
-        Answer::Found(solution) => Ok(solution.goal <= LEAST_SHORTAGE),
+        Answer::Found(shortage, _) => Ok(shortage <= LEAST_SHORTAGE),
         Answer::Unbounded => Ok(true),
         Answer::Infeasible => Err(FrictionError::NeverStands),
     }
@@ -164,16 +168,12 @@ enum Goal {
 
 /// The answer of a programme.
 enum Answer {
-    Found(Solution),
+    /// The goal, and the joints that open or slip.
+    Found(f64, Vec<Yield>),
     /// The goal has no bound.
     Unbounded,
     /// No forces balance the row.
     Infeasible,
-}
-
-struct Solution {
-    goal: f64,
-    yields: Vec<Yield>,
 }
 
 /// Unknowns: the goal, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: the equilibrium of every
@@ -311,11 +311,7 @@ impl Program {
                 _ => None,
             },
         });
-        Ok(Answer::Found(Solution {
-            goal: solution.x[0],
-            yields: yields
-                .filter(|joint| joint.opens != [false; 2] || joint.slips.is_some())
-                .collect(),
-        }))
+        let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());
+        Ok(Answer::Found(solution.x[0], yields.collect()))
     }
 }

@@ -135,13 +135,13 @@ impl Placement {
 
     /// Whether both corners of a joint touch.
     #[must_use]
-    pub fn is_shut(&self, joint: usize) -> bool {
+    pub(crate) fn is_shut(&self, joint: usize) -> bool {
         self.gaps_m[joint] == [0.0; 2]
     }
 
     /// The first joint that is open at both edges.
     #[must_use]
-    pub fn parted_joint(&self) -> Option<usize> {
+    pub(crate) fn parted_joint(&self) -> Option<usize> {
         let gaps_m = &self.gaps_m;
         gaps_m
             .iter()
@@ -150,14 +150,14 @@ impl Placement {
 
     /// Number of corners that do not touch.
     #[must_use]
-    pub fn open_corners(&self) -> usize {
+    pub(crate) fn open_corners(&self) -> usize {
         let corners = self.gaps_m.iter().flatten();
         corners.filter(|gap| **gap > 0.0).count()
     }
 
     /// The largest gap over the thickness of its joint.
     #[must_use]
-    pub fn largest_gap_ratio(&self) -> f64 {
+    pub(crate) fn largest_gap_ratio(&self) -> f64 {
         let corners = self.gaps_m.iter().zip(&self.faces);
         let ratios = corners.flat_map(|(gaps, face)| gaps.map(|gap| gap / face.thickness));
         ratios.fold(0.0, f64::max)
@@ -165,7 +165,7 @@ impl Placement {
 
     /// Shuts the corners that are open by less than this fraction of the thickness, and places the blocks anew. Returns false if
     /// there are none.
-    pub fn shut_below(&mut self, ratio: f64) -> bool {
+    pub(crate) fn shut_below(&mut self, ratio: f64) -> bool {
         let mut found = false;
         for (gaps, face) in self.gaps_m.iter_mut().zip(&self.faces) {
             for gap in gaps.iter_mut().filter(|gap| **gap > 0.0) {

@@ -184,7 +184,7 @@ macro_rules! remembered {
 
             /// One lane.
             #[must_use]
-            pub fn lane(&self, lane: usize) -> $type<Lanes<1>> {
+            pub(crate) fn lane(&self, lane: usize) -> $type<Lanes<1>> {
                 $type {
                     $($field: Lanes([self.$field.0[lane]]),)+
                     $($($pair: self.$pair.map(|part| Lanes([part.0[lane]])),)+)?
@@ -207,14 +207,14 @@ pub struct Dual<const D: usize> {
 impl<const D: usize> Dual<D> {
     /// The variable of this index.
     #[must_use]
-    pub fn variable(value: f64, index: usize) -> Self {
+    pub(crate) fn variable(value: f64, index: usize) -> Self {
         let slope = array::from_fn(|other| if other == index { 1.0 } else { 0.0 });
         Self { value, slope }
     }
 
     /// A function of this number, given by its value and derivative.
     #[must_use]
-    pub fn chained(self, value: f64, derivative: f64) -> Self {
+    pub(crate) fn chained(self, value: f64, derivative: f64) -> Self {
         let slope = self.slope.map(|slope| slope * derivative);
         Self { value, slope }
     }

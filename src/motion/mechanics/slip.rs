@@ -72,7 +72,7 @@ impl Position {
 
     /// Present position of the point that has this arm from the centre in the undeformed row.
     #[must_use]
-    pub fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
+    pub(crate) fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + self.turned(arm_m)
     }
 

@@ -37,7 +37,7 @@ impl Stance {
     }
 
     /// The ties follow the blocks, slowly.
-    pub fn stretch_ties(&mut self, row: &Row) {
+    pub(crate) fn stretch_ties(&mut self, row: &Row) {
         let lines: Vec<TieLine> = self.lines(row).collect();
         for ((memory, tie), line) in self.ties.iter_mut().zip(row.ties()).zip(&lines) {
             *memory = memory.then(tie, line.stretch_m);

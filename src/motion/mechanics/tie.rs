@@ -193,7 +193,7 @@ impl Tie {
 
 /// Square of the highest angular frequency, in (rad/s)2, that ties make of blocks that nothing else holds, at most.
 #[must_use]
-pub fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
+pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
     let flexibility = |anchor: &Anchor| {
         let block = anchor.block.and_then(|block| blocks.get(block));
         block.map_or(0.0, |block| {
@@ -294,7 +294,7 @@ impl TieLine {
 }
 
 /// Adds to the velocities of blocks, with their centres there, what impulses of ties that lie so give them.
-pub fn pull_blocks<'a>(
+pub(crate) fn pull_blocks<'a>(
     blocks: &[Block],
     centres_m: &[Vector2<f64>],
     ties: impl Iterator<Item = (&'a TieLine, f64)>,
@@ -321,7 +321,7 @@ impl Tie {
     /// Its force in N, if it has yielded so much before, is now stretched so far beyond its unstressed length, and does not
     /// break.
     #[must_use]
-    pub fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
+    pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
         let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
         elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
     }

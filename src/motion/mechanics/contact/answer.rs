@@ -107,7 +107,7 @@ impl Answer {
     }
 
     /// Solves for a unit impulse at one corner alone.
-    pub fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
+    pub(crate) fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
         self.motions.clear();
         let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
         self.motions.extend(factor.bodies.iter().map(still));
@@ -116,7 +116,7 @@ impl Answer {
     }
 
     /// Solves for the load and the closure error of an arch.
-    pub fn take_closure(&mut self, factor: &Factor, closure: &Closure) {
+    pub(crate) fn take_closure(&mut self, factor: &Factor, closure: &Closure) {
         self.free_motions(factor);
         self.complete(factor, None, Some(closure), true);
     }
@@ -267,7 +267,7 @@ impl Answer {
     }
 
     /// Impulses under the load on the right block of every joint: along the joint towards the extrados, and normal.
-    pub fn joint_impulses(&self, factor: &Factor, into: &mut [[f64; 2]]) {
+    pub(crate) fn joint_impulses(&self, factor: &Factor, into: &mut [[f64; 2]]) {
         let row = &factor.row;
         for body in 0..factor.bodies.len() {
             let start = self.start(factor, body, None, true);

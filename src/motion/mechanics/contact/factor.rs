@@ -37,7 +37,7 @@ impl Body {
         }
     }
 
-    pub fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         self.inverse_mass == 0.0
     }
 }
@@ -217,7 +217,7 @@ impl Factor {
     }
 
     /// The shut joints inside a body.
-    pub fn shut_joints(&self, body: usize) -> Range<usize> {
+    pub(crate) fn shut_joints(&self, body: usize) -> Range<usize> {
         let start = body
             .checked_sub(1)
             .map_or(0, |pin| self.pins[pin].joint + 1);

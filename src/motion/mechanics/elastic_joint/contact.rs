@@ -247,7 +247,7 @@ impl Law {
 
     /// How its faces rub with such a gap as these forces press at its edges; its memory is updated.
     #[inline(always)]
-    pub fn rub<R: Real>(
+    pub(crate) fn rub<R: Real>(
         &self,
         joint: &ElasticJoint,
         damping: Option<R>,

@@ -134,7 +134,7 @@ impl ElasticProperties {
 
     /// These properties or this structure with all stiffness multiplied.
     #[must_use]
-    pub fn stiffness_times(mut self, factor: f64) -> Self {
+    pub(crate) fn stiffness_times(mut self, factor: f64) -> Self {
         match &mut self.stiffness {
             Stiffness::Uniform(stiffness) => {
                 stiffness.normal_pa_m *= factor;
@@ -389,7 +389,7 @@ impl ElasticStructure {
 
     /// The elastic stress of a joint at rest, summed up: forces at its edges and the shear force, in N.
     #[must_use]
-    pub fn elastic_n(
+    pub(crate) fn elastic_n(
         &self,
         joint: &ElasticJoint,
         places: [&Place<Lanes<1>>; 2],
@@ -418,7 +418,7 @@ impl ElasticStructure {
     /// frequency of a joint with its part is then not below that of the whole (Irons and Treharne, "A bound theorem in eigenvalues and
     /// its practical applications", 1971). Joints that are partly open are softer than closed ones.
     #[must_use]
-    pub fn frequency_bound_rad_s(&self) -> f64 {
+    pub(crate) fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
         for joint in &self.joints {
             for body in joint.link.bodies {

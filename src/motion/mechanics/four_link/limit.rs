@@ -65,7 +65,10 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
 ///
 /// # Errors
 /// When no four-link mechanism governs, or no push moves one.
-pub fn incipient_of(profile: &dyn Profile, sites: HingeSites) -> Result<Incipient, LimitError> {
+pub(crate) fn incipient_of(
+    profile: &dyn Profile,
+    sites: HingeSites,
+) -> Result<Incipient, LimitError> {
     let (acceleration_g, mechanism) =
         least_acceleration(profile, sites).ok_or(LimitError::NoPush)?;
     let thrust_line = ResultantLine::through_hinges(profile, &mechanism, push(acceleration_g));

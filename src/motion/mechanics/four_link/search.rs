@@ -66,7 +66,7 @@ impl Lattice {
     /// Local maxima of `score` (of opening rotations and lattice indices), best first.
     ///
     /// `score` gives minus infinity where the mechanism does not count.
-    pub fn maxima(&self, score: &impl Fn(&[f64; 4], &Quadruple) -> f64) -> Vec<Quadruple> {
+    pub(crate) fn maxima(&self, score: &impl Fn(&[f64; 4], &Quadruple) -> f64) -> Vec<Quadruple> {
         let coarse: Vec<usize> = (0..self.points.len()).step_by(self.stride).collect();
         let coarse = match coarse.last() {
             Some(last) if last + 1 < self.points.len() => {
@@ -230,7 +230,7 @@ fn ascend(
             None => break,
         }
     }
-    Some((climber.value(&mechanism), mechanism))
+    Some((climber.evaluate(&mechanism).0, mechanism))
 }
 
 /// Like [`ascend`], and then from the maximum found to its twins. Where the slope jumps up at a kink there is
@@ -314,10 +314,6 @@ impl<O: Objective> Climber<'_, O> {
         let above =
             std::array::from_fn(|i| angles[i] < 0.5 * (self.cells[i].low + self.cells[i].high));
         self.objective.evaluate(mechanism, above)
-    }
-
-    fn value(&self, mechanism: &FourLink) -> f64 {
-        self.evaluate(mechanism).0
     }
 
     /// Where a hinge may move while the others stay: in its cell, and on its side of its neighbours.

@@ -104,7 +104,7 @@ impl Load {
     /// Body force less inertia of a body that turns: `at_pole` is the body force less the acceleration
     /// of the body's point `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
     #[must_use]
-    pub fn of_body(
+    pub(crate) fn of_body(
         pole: Vector2<f64>,
         at_pole: Vector2<f64>,
         (acceleration, squared_rate): (f64, f64),

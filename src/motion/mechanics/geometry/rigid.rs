@@ -174,7 +174,7 @@ impl MassMoments {
 
     /// Polar moment of inertia about `pole` (Steiner).
     #[must_use]
-    pub fn polar_about(&self, pole: Vector2<f64>) -> f64 {
+    pub(crate) fn polar_about(&self, pole: Vector2<f64>) -> f64 {
         self.polar - 2.0 * self.first.dot(&pole) + self.mass * pole.norm_squared()
     }
 }

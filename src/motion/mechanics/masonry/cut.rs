@@ -44,7 +44,7 @@ impl CutArch {
     }
 
     /// The extrados of a voussoir from left to right.
-    pub fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
+    pub(crate) fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
         let ends = [self.joints[voussoir][1], self.joints[voussoir + 1][1]];
         pieces_between(&self.extrados, ends)
     }
@@ -85,7 +85,7 @@ impl CutArch {
     }
 
     /// Corners of polygons that look like the voussoirs.
-    pub fn outlines_for_drawing(&self) -> Vec<Vec<Vector2<f64>>> {
+    pub(crate) fn outlines_for_drawing(&self) -> Vec<Vec<Vector2<f64>>> {
         let drawn = |curve: &Curve| {
             let points = match curve {
                 Curve::Line { .. } => 1,

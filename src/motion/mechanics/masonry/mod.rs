@@ -21,7 +21,7 @@ use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
 use super::stability::falls;
 use super::tie::{Tie, TieError};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, counted, within};
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::sway::Sway;
 use cut::CutArch;
@@ -84,14 +84,7 @@ impl Dimensions {
         within("rise_m", self.rise_m, MAGNITUDE)?;
         within("thickness_m", self.thickness_m, 1e-6..=1e6)?;
         self.material.check()?;
-        if VOUSSOIRS.contains(&self.voussoirs) {
-            return Ok(());
-        }
-        Err(ArgumentError {
-            argument: "voussoirs",
-            value: self.voussoirs as f64,
-            allowed: format!("from {} to {}", VOUSSOIRS.start(), VOUSSOIRS.end()),
-        })
+        counted("voussoirs", self.voussoirs, VOUSSOIRS).map(|_| ())
     }
 
     /// The intrados must not turn back on itself where the middle line is curved most.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::{MasonryError, Material};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, counted, within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS, RowError};
 use crate::mechanics::sway::Sway;
@@ -56,7 +56,7 @@ pub(super) struct Courses {
 
 impl Courses {
     /// Puts the courses of a pier under the springing on this side.
-    pub fn stand_on(
+    pub(crate) fn stand_on(
         &mut self,
         pier: &Pier,
         side: Sway,
@@ -92,13 +92,7 @@ impl Pier {
         if let Some(density_kg_m3) = self.density_kg_m3 {
             within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
         }
-        if !(1..=MAX_BLOCKS).contains(&self.blocks) {
-            return Err(ArgumentError {
-                argument: "blocks",
-                value: self.blocks as f64,
-                allowed: format!("from 1 to {MAX_BLOCKS}"),
-            });
-        }
+        counted("blocks", self.blocks, 1..=MAX_BLOCKS)?;
         let springing_m = (springing.extrados_m.x - springing.intrados_m.x).abs();
         if self.width_m < springing_m * (1.0 - 1e-12) {
             return Err(ArgumentError {
