@@ -10,7 +10,8 @@ use archrock::dynamics::fall::FallEnd;
 use archrock::dynamics::history::{Recording, Samples, Summary};
 use archrock::dynamics::spread::Repetitions;
 use archrock::mechanics::chain::Demand;
-use archrock::output::scene::{Point, Scene};
+use archrock::output::point::Point;
+use archrock::output::scene::Scene;
 use archrock::studies::run;
 use archrock::studies::run::report::Report;
 use archrock::{

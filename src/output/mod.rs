@@ -13,6 +13,7 @@ pub(crate) mod ground;
 pub mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
+pub mod point;
 pub mod print;
 pub mod record;
 pub mod scene;
