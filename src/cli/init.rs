@@ -1,9 +1,10 @@
 //! The command `init`: writes a scenario to start from.
 
-use std::fs::File;
-use std::io::{ErrorKind, Write as _};
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
+use archrock::Scenario;
 use clap::ValueEnum;
 
 use super::scenario_file::is_stdin;
@@ -38,6 +39,8 @@ enum Kind {
     Verify,
 }
 
+/// The file that describes all keys of scenarios to editors.
+const SCHEMA: &str = "archrock.schema.json";
 /// The record file that is written beside scenarios with a record.
 const RECORD: (&str, &str) = ("record.csv", include_str!("init/record.csv"));
 
@@ -68,14 +71,18 @@ impl Kind {
 
 pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let (name, command, has_record) = arguments.kind.about();
-    let text = arguments.kind.text();
+    let text = format!("#:schema ./{SCHEMA}\n{}", arguments.kind.text());
     let default = || PathBuf::from(name).with_extension("toml");
     let file = arguments.file.clone().unwrap_or_else(default);
     if is_stdin(&file) {
-        return print(text);
+        return print(&text);
     }
-    write_new(&file, text)?;
+    write_new(&file, &text)?;
     let mut written = file.display().to_string();
+    let path = file.with_file_name(SCHEMA);
+    let schema = format!("{:#}\n", Scenario::schema());
+    fs::write(&path, schema).map_err(|error| cannot_write(&path, &error))?;
+    written += &format!(" and {}", path.display());
     if has_record {
         let (name, record) = RECORD;
         let path = file.with_file_name(name);
@@ -94,14 +101,18 @@ pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     Ok(())
 }
 
+fn cannot_write(path: &Path, error: &io::Error) -> Failure {
+    Failure::Input(format!("cannot write {}: {error}", path.display()))
+}
+
 /// Writes a new file; refuses to replace one that exists.
 fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
-    let cannot = |error: std::io::Error| match error.kind() {
+    let cannot = |error: io::Error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::Input(format!(
             "{} exists already: give another name for the scenario, as in `archrock init arch other.toml`",
             path.display()
         )),
-        _ => Failure::Input(format!("cannot write {}: {error}", path.display())),
+        _ => cannot_write(path, &error),
     };
     let mut file = File::create_new(path).map_err(cannot)?;
     file.write_all(text.as_bytes()).map_err(cannot)

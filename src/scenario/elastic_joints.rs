@@ -1,11 +1,14 @@
 //! Elastic joints: `[elastic_joints]`.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
+use super::relation::Relation::{self, AtMostOne, Excludes, OneOf, Requires, Together};
+use super::rule::{Because, Count, Number, one_of, within};
 use super::structure::{ModelError, Structure};
-use super::table::{Count, Number, OneOf, Reading, Table};
+use super::table::{Reading, Table};
 use crate::argument::short;
 use crate::dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
 use crate::dynamics::free_hinges::FreeHingesError;
@@ -26,26 +29,15 @@ const DAMPING_TIME_S: f64 = 1e-4;
 /// Joints stiffer than this are as good as rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
-const STIFFNESS_GPA_M: Number = scaled(&ElasticProperties::NORMAL_STIFFNESS_PA_M, GPA);
-const SHEAR_GPA_M: Number = Number::within(&(1e-5..=1e7));
 const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
-const MORTAR_M: Number = Number::within(&ElasticProperties::MORTAR_M);
-const COEFFICIENT: Number = Number::within(&ElasticProperties::FRICTION_COEFFICIENT);
-const DAMPING_S: Number = Number::within(&ElasticProperties::DAMPING_TIME_S);
-const DAMPING_RATIO: Number = Number::within(&(0.0..=1.0));
-const FREQUENCY_HZ: Number = Number::within(&(1e-3..=1e6));
-const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
 const POINTS: Count = Count {
     range: ElasticProperties::CONTACT_POINTS,
     why: "one does not hold a block",
 };
-const STEP_S: Number = Number::within(&ElasticOptions::STEP_S);
 
-const fn scaled(range: &std::ops::RangeInclusive<f64>, unit: f64) -> Number {
-    Number(
-        std::ops::Bound::Included(*range.start() / unit),
-        std::ops::Bound::Included(*range.end() / unit),
-    )
+/// A range in another unit.
+const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
+    within(&(*range.start() / unit..=*range.end() / unit))
 }
 
 /// The contents of `[elastic_joints]`, in the units of its keys.
@@ -88,32 +80,30 @@ pub struct ElasticTable {
 impl ElasticTable {
     /// Reads `[elastic_joints]`.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let stiffness = StiffnessKeys::read(table);
-        let friction_coefficient = table.optional("friction_coefficient", &COEFFICIENT);
-        let damping_time_s = read_damping(table);
-        let compressive_strength_mpa = table.optional("compressive_strength_mpa", &STRENGTH_MPA);
-        let contact_points = read_contact(table);
-        let longest_step_s = table.optional("longest_step_s", &STEP_S);
-        let StiffnessKeys {
-            normal_gpa_m,
-            shear_gpa_m,
-            stone_gpa,
-            mortar_gpa,
-            mortar_m,
-        } = stiffness?;
-        Ok(Self {
-            normal_stiffness_gpa_m: normal_gpa_m,
-            shear_stiffness_gpa_m: shear_gpa_m,
-            stone_modulus_gpa: stone_gpa,
-            mortar_modulus_gpa: mortar_gpa,
-            mortar_thickness_m: mortar_m,
-            friction_coefficient: friction_coefficient?,
-            damping_time_s: damping_time_s?,
-            compressive_strength_mpa: compressive_strength_mpa?,
-            contact_points: contact_points?,
-            longest_step_s: longest_step_s?,
+        const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
+        let softest_gpa_m = *ElasticProperties::NORMAL_STIFFNESS_PA_M.start() / GPA;
+        let stiffness = Because(
+            within(&(softest_gpa_m..=STIFFEST_GPA_M)),
+            "stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints",
+        );
+        let mortar_m = within(&ElasticProperties::MORTAR_M);
+        let friction = within(&ElasticProperties::FRICTION_COEFFICIENT);
+        let read = Self {
+            normal_stiffness_gpa_m: table.optional("normal_stiffness_gpa_m", &stiffness),
+            shear_stiffness_gpa_m: table.optional("shear_stiffness_gpa_m", &within(&(1e-5..=1e7))),
+            stone_modulus_gpa: table.optional("stone_modulus_gpa", &MODULUS_GPA),
+            mortar_modulus_gpa: table.optional("mortar_modulus_gpa", &MODULUS_GPA),
+            mortar_thickness_m: table.optional("mortar_thickness_m", &mortar_m),
+            friction_coefficient: table.optional("friction_coefficient", &friction),
+            damping_time_s: read_damping(table),
+            compressive_strength_mpa: table.optional("compressive_strength_mpa", &STRENGTH_MPA),
+            contact_points: table.optional("contact_points", &POINTS),
+            longest_step_s: table.optional("longest_step_s", &within(&ElasticOptions::STEP_S)),
             supports: Movements::default(),
-        })
+        };
+        table.optional("contact", &one_of(&["continuous"], |name| name));
+        table.relate(RELATIONS)?;
+        Ok(read)
     }
 
     /// The joints of a structure of this depth.
@@ -179,7 +169,7 @@ impl ElasticTable {
             ));
         }
         let wrong = |table: &mut Table<'_>, key: &str, wrong: String| {
-            Err(table.wrong_in("elastic_joints", key, wrong))
+            Err(table.wrong_in(&["elastic_joints"], key, wrong))
         };
         if let Err(error) = rest {
             let key = match error {
@@ -251,137 +241,57 @@ impl ElasticTable {
     }
 }
 
-/// The keys that give the stiffness of the joints.
-struct StiffnessKeys {
-    normal_gpa_m: Option<f64>,
-    shear_gpa_m: Option<f64>,
-    stone_gpa: Option<f64>,
-    mortar_gpa: Option<f64>,
-    mortar_m: Option<f64>,
-}
+const RELATIONS: &[Relation<'_>] = &[
+    OneOf(
+        &["normal_stiffness_gpa_m", "stone_modulus_gpa"],
+        Some(
+            "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
+             Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
+             docs/elastic-joints.md explains how to choose",
+        ),
+    ),
+    Excludes(
+        "stone_modulus_gpa",
+        "shear_stiffness_gpa_m",
+        "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out",
+    ),
+    Together(&["mortar_modulus_gpa", "mortar_thickness_m"]),
+    Excludes(
+        "normal_stiffness_gpa_m",
+        "mortar_modulus_gpa",
+        "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out",
+    ),
+    AtMostOne(&["damping_time_s", "damping_ratio"], "give one of them"),
+    AtMostOne(
+        &["damping_time_s", "damping_frequency_hz"],
+        "give one of them",
+    ),
+    Requires(
+        "damping_ratio",
+        "damping_frequency_hz",
+        " beside it: it is a part of critical damping at a frequency",
+    ),
+    Requires("damping_frequency_hz", "damping_ratio", " beside it"),
+    AtMostOne(&["contact", "contact_points"], "give one of them"),
+];
 
-impl StiffnessKeys {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let normal_gpa_m = table.optional("normal_stiffness_gpa_m", &STIFFNESS_GPA_M);
-        let shear_gpa_m = table.optional("shear_stiffness_gpa_m", &SHEAR_GPA_M);
-        let stone_gpa = table.optional("stone_modulus_gpa", &MODULUS_GPA);
-        let mortar_gpa = table.optional("mortar_modulus_gpa", &MODULUS_GPA);
-        let mortar_m = table.optional("mortar_thickness_m", &MORTAR_M);
-        let read = Self {
-            normal_gpa_m: normal_gpa_m?,
-            shear_gpa_m: shear_gpa_m?,
-            stone_gpa: stone_gpa?,
-            mortar_gpa: mortar_gpa?,
-            mortar_m: mortar_m?,
-        };
-        read.check(table)?;
-        Ok(read)
-    }
-
-    /// Refuses a stiffness that is missing, given twice, or as good as rigid.
-    fn check(&self, table: &mut Table<'_>) -> Reading<()> {
-        match (self.normal_gpa_m, self.stone_gpa) {
-            (None, None) => {
-                return Err(table.wrong_itself(
-                    "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
-                     Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
-                     docs/elastic-joints.md tells how to choose",
-                ));
-            }
-            (Some(_), Some(_)) => {
-                let wrong = "cannot be combined with `normal_stiffness_gpa_m`; give one of them";
-                return Err(table.wrong("stone_modulus_gpa", wrong));
-            }
-            (Some(normal_gpa_m), None) if normal_gpa_m > STIFFEST_GPA_M => {
-                let wrong = format!(
-                    "is as good as rigid, and takes very many steps; must be at most {}, or use [free_hinges], the limit of \
-                     stiff joints",
-                    short(STIFFEST_GPA_M)
-                );
-                return Err(table.wrong("normal_stiffness_gpa_m", wrong));
-            }
-            _ => {}
-        }
-        if self.stone_gpa.is_some() && self.shear_gpa_m.is_some() {
-            let wrong = "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out";
-            return Err(table.wrong("shear_stiffness_gpa_m", wrong));
-        }
-        match (self.mortar_gpa, self.mortar_m) {
-            (Some(_), None) => {
-                Err(table.wrong("mortar_modulus_gpa", "needs `mortar_thickness_m` beside it"))
-            }
-            (None, Some(_)) => {
-                Err(table.wrong("mortar_thickness_m", "needs `mortar_modulus_gpa` beside it"))
-            }
-            (Some(_), Some(_)) if self.stone_gpa.is_none() => Err(table.wrong(
-                "mortar_modulus_gpa",
-                "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out",
-            )),
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Reads the damping: a time, or a fraction of critical damping at a frequency.
-fn read_damping(table: &mut Table<'_>) -> Reading<f64> {
-    let time_s = table.optional("damping_time_s", &DAMPING_S);
-    let ratio = table.optional("damping_ratio", &DAMPING_RATIO);
-    let frequency_hz = table.optional("damping_frequency_hz", &FREQUENCY_HZ);
-    match (time_s?, ratio?, frequency_hz?) {
-        (time_s, None, None) => Ok(time_s.unwrap_or(DAMPING_TIME_S)),
-        (None, Some(ratio), Some(frequency_hz)) => {
-            let time_s = ratio / (PI * frequency_hz);
-            if time_s > *ElasticProperties::DAMPING_TIME_S.end() {
-                let wrong = format!(
-                    "at {frequency_hz:?} Hz is a damping time of {} s; must be at most {} s",
-                    short(time_s),
-                    short(*ElasticProperties::DAMPING_TIME_S.end())
-                );
-                return Err(table.wrong("damping_ratio", wrong));
-            }
-            Ok(time_s)
-        }
-        (Some(_), _, _) => {
-            let key = if table.gives("damping_ratio") {
-                "damping_ratio"
-            } else {
-                "damping_frequency_hz"
-            };
-            Err(table.wrong(
-                key,
-                "cannot be combined with `damping_time_s`; leave it out",
-            ))
-        }
-        (None, Some(_), None) => Err(table.wrong(
-            "damping_ratio",
-            "is a part of critical damping at a frequency: give `damping_frequency_hz` beside it",
-        )),
-        (None, None, Some(_)) => {
-            Err(table.wrong("damping_frequency_hz", "needs `damping_ratio` beside it"))
-        }
-    }
-}
-
-named! {
-    /// How the stress over a joint is integrated.
-    pub enum Summed {
-        /// Exactly.
-        Continuous = "continuous",
-    }
-}
-
-/// The number of contact points; `None` for continuous contact.
-fn read_contact(table: &mut Table<'_>) -> Reading<Option<usize>> {
-    let summed = OneOf {
-        all: Summed::ALL,
-        name: Summed::name,
+/// Reads the damping time, or finds it from a fraction of critical damping at a frequency.
+fn read_damping(table: &mut Table<'_>) -> f64 {
+    let range_s = within(&ElasticProperties::DAMPING_TIME_S);
+    let default_s = table.or("damping_time_s", &range_s, DAMPING_TIME_S);
+    let ratio = table.optional("damping_ratio", &within(&(0.0..=1.0)));
+    let frequency_hz = table.optional("damping_frequency_hz", &within(&(1e-3..=1e6)));
+    let Some((ratio, frequency_hz)) = ratio.zip(frequency_hz) else {
+        return default_s;
     };
-    let contact = table.optional("contact", &summed);
-    let points = table.optional("contact_points", &POINTS);
-    let (contact, points) = (contact?, points?);
-    if contact.is_some() && points.is_some() {
-        let wrong = "cannot be combined with `contact`; give one of them";
-        return Err(table.wrong("contact_points", wrong));
+    let time_s = ratio / (PI * frequency_hz);
+    if !range_s.contains(time_s) {
+        let wrong = format!(
+            "at {frequency_hz:?} Hz is a damping time of {} s; must be at most {} s",
+            short(time_s),
+            short(*ElasticProperties::DAMPING_TIME_S.end())
+        );
+        table.wrong("damping_ratio", wrong);
     }
-    Ok(points)
+    time_s
 }

@@ -2,9 +2,8 @@
 
 use std::fmt;
 
-use super::assignment::{Appended, Assignment};
+use super::assignment::Assignment;
 use super::shown;
-use super::source::Source;
 
 /// One thing that is wrong with a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -69,17 +68,28 @@ impl ScenarioErrors {
         self
     }
 
-    /// Gives each fault found in `text` its line and column.
+    /// Gives each fault found in the text its line and column.
     ///
     /// For a fault in an assignment, the assignment stands in place of the file, and there is no place.
-    pub(super) fn placed(source: &Source, set: &[Assignment], mut faults: Vec<Fault>) -> Self {
-        let text = &source.text;
-        let behind = Appended::new(text, set);
-        faults.sort_by_key(|fault| fault.offset);
+    pub(super) fn placed(
+        (text, name): (&str, &str),
+        set: &[Assignment],
+        mut faults: Vec<Fault>,
+    ) -> Self {
+        faults.sort_by_key(|fault| (fault.text, fault.offset));
         // One pass over the text serves all faults: a hostile file can have very many.
         let mut chars = text.char_indices().peekable();
         let mut place = Place { line: 1, column: 1 };
         let errors = faults.into_iter().map(|fault| {
+            // Keys may hold control characters.
+            let message = shown(&fault.message);
+            if let Some(assignment) = fault.text.checked_sub(1).and_then(|index| set.get(index)) {
+                return ScenarioError {
+                    file: format!("--set {}", excerpt(&assignment.given)),
+                    place: None,
+                    message,
+                };
+            }
             while let Some((_, c)) = chars.next_if(|&(offset, _)| offset < fault.offset) {
                 place = match c {
                     '\n' => Place {
@@ -92,19 +102,10 @@ impl ScenarioErrors {
                     },
                 };
             }
-            // Keys may hold control characters.
-            let message = shown(&fault.message);
-            match behind.at(fault.offset) {
-                Some(assignment) => ScenarioError {
-                    file: format!("--set {}", excerpt(assignment)),
-                    place: None,
-                    message,
-                },
-                None => ScenarioError {
-                    file: source.name.clone(),
-                    place: Some(place),
-                    message,
-                },
+            ScenarioError {
+                file: name.to_owned(),
+                place: Some(place),
+                message,
             }
         });
         Self(errors.collect())
@@ -125,13 +126,26 @@ impl fmt::Display for ScenarioErrors {
 
 impl std::error::Error for ScenarioErrors {}
 
-/// An error as it is found, with its byte offset in the text.
+/// An error as it is found, with its byte offset in a text of the document.
 #[derive(Debug)]
 pub(super) struct Fault {
+    /// The text, as in [`Span`](super::document::Span).
+    pub(super) text: usize,
     pub(super) offset: usize,
     pub(super) message: String,
     /// Whether it is the contents of a file that the text names, or its absence.
     pub(super) of_file: bool,
+}
+
+impl Fault {
+    pub(super) fn new(text: usize, offset: usize, message: String) -> Self {
+        Self {
+            text,
+            offset,
+            message,
+            of_file: false,
+        }
+    }
 }
 
 /// An excerpt of the file for a message: its first line, shortened if it is long.

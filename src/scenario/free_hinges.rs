@@ -1,7 +1,8 @@
 //! Free hinges, joints that may open, shut and slip anywhere: `[free_hinges]`.
 
+use super::rule::within;
 use super::structure::Structure;
-use super::table::{Number, Reading, Table};
+use super::table::{Reading, Table};
 use crate::argument::{plain, rounded_up};
 use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
 use crate::mechanics::friction::{self, FrictionError};
@@ -32,19 +33,16 @@ impl FreeTable {
     }
 }
 
-const STEP_S: Number = Number::within(&RowOptions::STEP_S);
-const COEFFICIENT: Number = Number::within(&RowOptions::FRICTION_COEFFICIENT);
-
 /// Reads `[free_hinges]`, which may be empty.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
-    let longest_step_s = table.optional("longest_step_s", &STEP_S);
-    let shortest_step_s = table.optional("shortest_step_s", &STEP_S);
-    let friction_coefficient = table.optional("friction_coefficient", &COEFFICIENT);
+    let step_s = within(&RowOptions::STEP_S);
+    let coefficient = within(&RowOptions::FRICTION_COEFFICIENT);
     let options = RowOptions {
-        longest_step_s: longest_step_s?,
-        shortest_step_s: shortest_step_s?,
-        friction_coefficient: friction_coefficient?,
+        longest_step_s: table.optional("longest_step_s", &step_s),
+        shortest_step_s: table.optional("shortest_step_s", &step_s),
+        friction_coefficient: table.optional("friction_coefficient", &coefficient),
     };
+    table.sound()?;
     options
         .checked()
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
@@ -55,7 +53,7 @@ pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTab
     match free.model(structure) {
         Err(FreeHingesError::Friction(FrictionError::CannotStand(_))) => {
             let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
-            Err(table.wrong_in("free_hinges", "friction_coefficient", wrong.to_owned()))
+            Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
         }
         // Anything else is reported where it is used.
         _ => Ok(()),
@@ -86,5 +84,5 @@ pub(super) fn carries(
         ),
         Err(error) => error.to_string(),
     };
-    Err(table.wrong_in(name, "friction_coefficient", wrong))
+    Err(table.wrong_in(&[name], "friction_coefficient", wrong))
 }

@@ -1,34 +1,31 @@
 //! How the ground moves: `[ground.<kind>]`.
 
-use std::ops::Bound::{Excluded, Included};
-use std::path::Path;
-
 use nalgebra::Vector2;
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
+use super::error::ScenarioErrors;
+use super::record::{Record, Series};
+use super::relation::Relation;
+use super::rule::{Number, above, within};
 use super::source::Source;
-use super::table::{self, Number, Reading, Table};
-use super::{Record, ScenarioErrors};
-use crate::argument::{ArgumentError, plain, within};
+use super::table::{self, Reading, Reported, Table};
+use crate::argument::{self, ArgumentError, plain};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 use crate::dynamics::model::Request;
 
 /// Largest acceleration of the ground: beyond it the unit must be wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
-pub(super) const AMPLITUDE_G: Number =
-    Number(Included(-MAX_ACCELERATION_G), Included(MAX_ACCELERATION_G));
-pub(super) const DURATION_S: Number = Number(Included(1e-6), Included(1e6));
+pub(super) const AMPLITUDE_G: Number = within(&(-MAX_ACCELERATION_G..=MAX_ACCELERATION_G));
+pub(super) const DURATION_S: Number = within(&(1e-6..=1e6));
 /// The range of frequencies: inverses of durations.
-pub(super) const FREQUENCY_HZ: Number = Number(Included(1e-6), Included(1e6));
+pub(super) const FREQUENCY_HZ: Number = within(&(1e-6..=1e6));
 /// At 1 the envelope of the velocity pulse is one period long; at 100 it is no longer a pulse.
-const GAMMA: Number = Number(Excluded(1.0), Included(100.0));
-const CYCLES: Number = Number(Included(1.0), Included(100.0));
-const PHASE_DEG: Number = Number(Included(-360.0), Included(360.0));
+const GAMMA: Number = above(1.0, 100.0);
+const CYCLES: Number = within(&(1.0..=100.0));
 /// Why a pulse that was checked is always valid.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
 /// The kind of ground motion that is read from files.
 const RECORD: &str = "record";
-const START_S: Number = Number(Included(0.0), Included(1e6));
 
 /// How the ground moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,9 +43,9 @@ impl Ground {
     /// # Errors
     /// Everything that is wrong with the text and with its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
-        table::read_text(&source.text, &[], |table| {
-            let ground = table.table("ground", |table| {
-                Self::read(table, &source.folder, Ok(gravity_m_s2))
+        table::read_text((&source.text, &source.folder), &[], |table| {
+            let ground = table.given_table("ground", |table| {
+                Self::read(table, &[], Some(gravity_m_s2))
             })?;
             match ground {
                 Some((ground, _)) => Ok(ground),
@@ -57,7 +54,7 @@ impl Ground {
                 )),
             }
         })
-        .map_err(|faults| ScenarioErrors::placed(source, &[], faults))
+        .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
 
     /// The motion under the given gravity, in 0.001 to 1000.
@@ -65,7 +62,7 @@ impl Ground {
     /// # Errors
     /// When gravity is out of that range.
     pub fn motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
-        within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
+        argument::within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
         Ok(self.motion_under(gravity_m_s2))
     }
 
@@ -77,29 +74,26 @@ impl Ground {
         }
     }
 
-    /// Reads `[ground]` and builds the motion. `[ground]` holds one table, named after its kind; a key for the kind would not
+    /// Reads `[ground]` and builds the motion; `known` records are not read from their files again. `[ground]` holds one table, named after its kind; a key for the kind would not
     /// keep the keys of different kinds apart.
     pub(super) fn read(
         table: &mut Table<'_>,
-        folder: &Path,
-        gravity_m_s2: Reading<f64>,
+        known: &[Series],
+        gravity_m_s2: Option<f64>,
     ) -> Reading<(Self, GroundMotion)> {
-        let mut kinds: Vec<_> = Pulse::ALL
-            .iter()
-            .map(|&kind| {
-                let pulse = table.table(kind.name(), |table| {
-                    let (pulse, motion) = PulseGround::read(table, kind, gravity_m_s2)?;
-                    Ok((Self::Pulse(pulse), motion))
-                });
-                (kind.name(), pulse)
-            })
-            .collect();
-        let record = table.table(RECORD, |table| {
-            let (record, motion) = Record::read(table, folder, gravity_m_s2)?;
-            Ok((Self::Record(Box::new(record)), motion))
-        });
-        kinds.push((RECORD, record));
-        table.exactly_one("tables", kinds)
+        let mut found = None;
+        for &kind in Pulse::ALL {
+            let pulse = table.table(kind.name(), |table| {
+                PulseGround::read(table, kind, gravity_m_s2)
+            });
+            found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
+        }
+        let record = table.table(RECORD, |table| Record::read(table, known, gravity_m_s2));
+        let kinds = Pulse::ALL.iter().map(|kind| kind.name());
+        let kinds: Vec<_> = kinds.chain([RECORD]).collect();
+        table.relate(&[Relation::OneOf(&kinds, None)])?;
+        let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
+        found.or(record).ok_or(Reported)
     }
 }
 
@@ -171,27 +165,23 @@ impl PulseGround {
     fn read(
         table: &mut Table<'_>,
         kind: Pulse,
-        gravity_m_s2: Reading<f64>,
+        gravity_m_s2: Option<f64>,
     ) -> Reading<(Self, GroundMotion)> {
-        let amplitude_g = table.required("amplitude_g", &AMPLITUDE_G);
-        let vertical_amplitude_g = table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0);
-        let duration_s = table.required("duration_s", &DURATION_S);
-        let start_s = table.or("start_s", &START_S, 0.0);
-        let (mut cycles, mut phase_deg) = (Ok(WaveTrain::default().cycles), Ok(0.0));
+        let mut pulse = Self {
+            kind,
+            amplitude_g: table.required("amplitude_g", &AMPLITUDE_G),
+            vertical_amplitude_g: table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0),
+            duration_s: table.required("duration_s", &DURATION_S),
+            start_s: table.or("start_s", &within(&(0.0..=1e6)), 0.0),
+            cycles: WaveTrain::default().cycles,
+            phase_deg: 0.0,
+        };
         if kind.is_wave_train() {
             let (key, range) = cycles_key(kind);
-            cycles = table.or(key, range, WaveTrain::default().cycles);
-            phase_deg = table.or("phase_deg", &PHASE_DEG, 0.0);
+            pulse.cycles = table.or(key, range, pulse.cycles);
+            pulse.phase_deg = table.or("phase_deg", &within(&(-360.0..=360.0)), 0.0);
         }
-        let pulse = Self {
-            kind,
-            amplitude_g: amplitude_g?,
-            vertical_amplitude_g: vertical_amplitude_g?,
-            duration_s: duration_s?,
-            start_s: start_s?,
-            cycles: cycles?,
-            phase_deg: phase_deg?,
-        };
+        table.sound()?;
         // Whether the ground falls freely does not depend on gravity, whose value may itself be faulty.
         let gravity_m_s2 = gravity_m_s2.unwrap_or(1.0);
         let motion = pulse.motion(gravity_m_s2);

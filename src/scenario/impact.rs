@@ -1,56 +1,46 @@
 //! What happens when hinges close: `[impact]`.
 
-use std::ops::Bound::Included;
-
 use serde_json::{Value, json};
 
-use super::table::{Number, OneOf, Reading, Table};
+use super::rule::{Number, one_of, within};
+use super::table::{Reading, Table};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
-/// From no rebound to far above the measured 0.67 to 0.97 times the theory.
-const RESTITUTION_FACTOR: Number = Number(Included(0.0), Included(100.0));
-pub(super) const RESTITUTION: Number = Number(Included(0.0), Included(1.0));
+pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));
+const MODELS: [ImpactModel; 4] = [
+    ImpactModel::MaxRestitution,
+    ImpactModel::SameSections,
+    ImpactModel::Mirrored,
+    ImpactModel::Prescribed { restitution: 0.0 },
+];
+const NAMES: &[&str] = &[
+    MODELS[0].name(),
+    MODELS[1].name(),
+    MODELS[2].name(),
+    MODELS[3].name(),
+];
 
 /// Reads `[impact]`.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactLaw> {
-    let factor = table.or("restitution_factor", &RESTITUTION_FACTOR, 1.0);
-    let model = read_model(table);
-    Ok(ImpactLaw {
-        model: model?,
-        restitution_factor: factor?,
-    })
-}
-
-fn read_model(table: &mut Table<'_>) -> Reading<ImpactModel> {
-    // Only the names matter here; the restitution is filled in below.
-    let all = [
-        ImpactModel::MaxRestitution,
-        ImpactModel::SameSections,
-        ImpactModel::Mirrored,
-        ImpactModel::Prescribed { restitution: 0.0 },
-    ];
-    let names = OneOf {
-        all: &all,
-        name: |model| model.name(),
-    };
-    let model = table.or("model", &names, ImpactModel::MaxRestitution);
+    let name = table.or("model", &one_of(NAMES, |name| name), NAMES[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
-    match (model?, restitution?) {
-        (ImpactModel::Prescribed { .. }, Some(restitution)) => {
-            Ok(ImpactModel::Prescribed { restitution })
-        }
-        (ImpactModel::Prescribed { .. }, None) => Ok(ImpactModel::Prescribed {
-            restitution: table.required("restitution", &RESTITUTION)?,
-        }),
-        (model, None) => Ok(model),
-        (model, Some(_)) => {
-            let wrong = format!(
-                "applies to model = \"prescribed\" only; the model here is {:?}",
-                model.name()
-            );
-            Err(table.wrong("restitution", wrong))
-        }
+    // From no rebound to far above the measured 0.67 to 0.97 times the theory.
+    let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
+    let mut models = MODELS.into_iter();
+    let mut model = models
+        .find(|model| model.name() == name)
+        .unwrap_or(MODELS[0]);
+    if let ImpactModel::Prescribed { .. } = model {
+        let restitution = table.needed("restitution", &RESTITUTION, restitution);
+        model = ImpactModel::Prescribed { restitution };
+    } else if restitution.is_some() {
+        let wrong = format!("applies to model = \"prescribed\" only; the model here is {name:?}");
+        return Err(table.wrong("restitution", wrong));
     }
+    Ok(ImpactLaw {
+        model,
+        restitution_factor,
+    })
 }
 
 /// Writes `[impact]`.

@@ -3,15 +3,17 @@
 use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};
 
-use super::table::{Number, OneOf, Reading, Table};
-use super::{Hinges, Structure};
+use super::motion::Hinges;
+use super::rule::{Number, one_of};
+use super::structure::Structure;
+use super::table::{Reading, Table};
 use crate::argument::{rounded_down, short};
 use crate::dynamics::model::Initial;
 use crate::mechanics::sway::Sway;
 
 const ROTATION_RAD: Number = Number(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
-/// The initial state that `[initial]` asks for, if a model with such hinges is released at all.
+/// Reads `[initial]` for a structure that is moved by a model with such hinges.
 pub(super) fn read(
     table: &mut Table<'_>,
     structure: Option<&Structure>,
@@ -23,30 +25,25 @@ pub(super) fn read(
              [initial] out",
         ));
     }
-    let sways = OneOf {
-        all: Sway::ALL,
-        name: Sway::name,
+    let initial = Initial {
+        sway: table.required("sway", &one_of(Sway::ALL, Sway::name)),
+        rotation_rad: table.required("rotation_rad", &ROTATION_RAD),
     };
-    let sway = table.required("sway", &sways);
-    let rotation_rad = table.required("rotation_rad", &ROTATION_RAD);
-    if let (Some(structure), Ok(rotation_rad)) = (structure, &rotation_rad) {
+    table.sound()?;
+    if let Some(structure) = structure {
         let Some(limit_rad) = structure.release_limit_rad() else {
             return Err(table.wrong_itself(
                 "releases from the first mechanism of four links, and this arch does not start as one; leave \
                  [initial] out",
             ));
         };
-        if *rotation_rad >= limit_rad {
+        if initial.rotation_rad >= limit_rad {
             let wrong = format!(
-                "is beyond the limit position of the mechanism; must be \
-                 below {}",
+                "is beyond the limit position of the mechanism; must be below {}",
                 short(rounded_down(limit_rad))
             );
             return Err(table.wrong("rotation_rad", wrong));
         }
     }
-    Ok(Initial {
-        sway: sway?,
-        rotation_rad: rotation_rad?,
-    })
+    Ok(initial)
 }

@@ -1,6 +1,6 @@
 //! The files from which a scenario was read.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
@@ -36,10 +36,14 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// All files from which a scenario was read, the scenario itself first. Scenarios may be equal whatever their files, so these compare
-/// as equal.
+/// All files from which a scenario was read. Scenarios may be equal whatever their files, so these compare as equal.
 #[derive(Clone, Debug, Default)]
-pub(super) struct InputFiles(pub(super) Vec<InputFile>);
+pub(super) struct InputFiles {
+    /// The scenario itself first.
+    pub(super) files: Vec<InputFile>,
+    /// The folder to which the names of files are relative.
+    pub(super) folder: PathBuf,
+}
 
 impl PartialEq for InputFiles {
     fn eq(&self, _: &Self) -> bool {

@@ -27,38 +27,23 @@ struct Listed {
 }
 
 impl Listing {
-    /// Finds the files that the keys name by their patterns, and reads the keys that tell how tables are read. The files have
-    /// this format, or else the one that their extensions indicate.
+    /// Finds the files that the keys name by their patterns, and reads the keys that describe tables. The files have this format, or else
+    /// the one that their extensions indicate.
     pub(super) fn read(
         table: &mut Table<'_>,
-        folder: &Path,
-        keys: Vec<(&'static str, Reading<Vec<String>>)>,
-        format: Reading<Option<Format>>,
-    ) -> Reading<Self> {
-        let listed: Vec<Reading<Vec<Listed>>> = keys
-            .into_iter()
-            .map(|(key, patterns)| match (patterns, format) {
-                (Ok(patterns), Ok(format)) => list(table, folder, (key, &patterns), format),
-                (Err(reported), _) | (_, Err(reported)) => Err(reported),
-            })
+        keys: &[(&'static str, Vec<String>)],
+        format: Option<Format>,
+    ) -> Self {
+        let keys = keys.iter();
+        let files: Vec<_> = keys
+            .flat_map(|(key, patterns)| list(table, (key, patterns), format))
             .collect();
-        let listed: Reading<Vec<Vec<Listed>>> = listed.into_iter().collect();
-        let files = listed.map(|listed| listed.into_iter().flatten().collect::<Vec<_>>());
         // The keys of tables are needed if and only if one of the files is a table.
-        let layout = Layout::read(
-            table,
-            files.as_ref().map_err(|reported| *reported).map(|files| {
-                let formats = || files.iter().map(|listed| listed.format);
-                let first = formats().next().unwrap_or(Format::At2);
-                formats()
-                    .find(|format| *format == Format::Csv)
-                    .unwrap_or(first)
-            }),
-        );
-        Ok(Self {
-            files: files?,
-            layout: layout?,
-        })
+        let mut formats = files.iter().map(|listed| listed.format);
+        let format = formats.clone().next();
+        let format = formats.find(|format| *format == Format::Csv).or(format);
+        let layout = Layout::read(table, format);
+        Self { files, layout }
     }
 
     /// Number of files.
@@ -70,37 +55,31 @@ impl Listing {
     pub(super) fn series(
         self,
         table: &mut Table<'_>,
-        folder: &Path,
         accept: impl Fn(&Series) -> Result<(), String>,
     ) -> Reading<Vec<(&'static str, Series)>> {
         let layout = self.layout;
         let read = |listed: Listed| {
-            let Listed {
-                key,
-                file,
-                element,
-                format,
-            } = listed;
-            let form = match format {
-                format if format == layout.format() => layout.form.clone(),
-                Format::At2 => Form::At2 { unit: None },
-                Format::Asc => Form::Asc,
-                Format::Knet => Form::Knet,
-                Format::Csv => layout.form.clone(),
-            };
+            let Listed { key, file, .. } = listed;
             let layout = Layout {
-                form,
+                form: match listed.format {
+                    format if format == layout.format() => layout.form.clone(),
+                    Format::At2 => Form::At2 { unit: None },
+                    Format::Asc => Form::Asc,
+                    Format::Knet => Form::Knet,
+                    Format::Csv => layout.form.clone(),
+                },
                 ..layout.clone()
             };
-            Series::of_file(folder, file.clone(), layout)
-                .and_then(|series| accept(&series).map(|()| (key, series)))
-                .map_err(|wrong| {
-                    let wrong = format!("names {}, which {wrong}", shown(&file));
-                    table.wrong_element(key, element, wrong)
-                })
+            let series = Series::of_file(table.folder(), file.clone(), layout)
+                .and_then(|series| accept(&series).map(|()| (key, series)));
+            if let Err(wrong) = &series {
+                let wrong = format!("names {}, which {wrong}", shown(&file));
+                table.wrong_element(key, listed.element, wrong);
+            }
+            series.ok()
         };
-        let records: Vec<_> = self.files.into_iter().map(read).collect();
-        records.into_iter().collect()
+        let records: Vec<_> = self.files.into_iter().filter_map(read).collect();
+        table.sound().map(|()| records)
     }
 }
 
@@ -135,46 +114,44 @@ pub(super) fn serialize_layout<'a, M: SerializeMap>(
 /// All files that match the patterns, sorted by name, each once.
 fn list(
     table: &mut Table<'_>,
-    folder: &Path,
     (key, patterns): (&'static str, &[String]),
     format: Option<Format>,
-) -> Reading<Vec<Listed>> {
+) -> Vec<Listed> {
     let mut found = BTreeMap::new();
     // A file found under several names counts once.
     let mut seen = BTreeSet::new();
-    let mut all_well = Ok(());
     for (element, pattern) in patterns.iter().enumerate() {
-        match find(folder, pattern) {
+        match find(table.folder(), pattern) {
             Ok(files) => {
                 for file in files {
-                    let path = folder.join(&file);
+                    let path = table.path(&file);
                     if seen.insert(path.canonicalize().unwrap_or(path)) {
                         found.insert(file, element);
                     }
                 }
             }
-            Err(wrong) => all_well = Err(table.wrong_element(key, element, wrong)),
+            Err(wrong) => {
+                table.wrong_element(key, element, wrong);
+            }
         }
     }
-    let listed: Vec<_> = found
-        .into_iter()
-        .map(|(file, element)| {
-            let format = format
-                .map_or_else(|| Format::of_ending(&file), Ok)
-                .map_err(|wrong| {
-                    let wrong = format!("names {}, which {wrong}", shown(&file));
-                    table.wrong_element(key, element, wrong)
-                })?;
-            Ok(Listed {
+    let listed = found.into_iter().filter_map(|(file, element)| {
+        let format = format.map_or_else(|| Format::of_ending(&file), Ok);
+        match format {
+            Ok(format) => Some(Listed {
                 key,
                 file,
                 element,
                 format,
-            })
-        })
-        .collect();
-    all_well?;
-    listed.into_iter().collect()
+            }),
+            Err(wrong) => {
+                let wrong = format!("names {}, which {wrong}", shown(&file));
+                table.wrong_element(key, element, wrong);
+                None
+            }
+        }
+    });
+    listed.collect()
 }
 
 /// The files that match a pattern, relative to the folder; or why there are none, as words that continue the pattern.

@@ -10,17 +10,17 @@
 //! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
 //! `repeat = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
 
-use std::ops::Bound::{Included, Unbounded};
-
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ};
+use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
 use super::impact::RESTITUTION;
-use super::record::PEAK_G;
+use super::motion::{Hinges, Motion};
+use super::record::{PEAK_G, SCALE};
+use super::rule::{ANY_NUMBER, Number, Switch};
 use super::sequence::Sequence;
-use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
-use super::table::{Number, Reading, Switch, Table};
-use super::{Ground, Hinges, Motion, PulseGround, Simulation, Structure};
+use super::simulation::Simulation;
+use super::structure::{EMBRACE_DEG, MAGNITUDE, Structure, THICKNESS_RATIO};
+use super::table::{Reading, Table};
 use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
@@ -63,7 +63,8 @@ impl Quantity {
             Self::Amplitude => &AMPLITUDE_G,
             Self::Scale => &SCALE,
             Self::PeakG => &PEAK_G,
-            Self::Other => &ANY,
+            // Its own table checks a key of another table.
+            Self::Other => &ANY_NUMBER,
         }
     }
 
@@ -82,10 +83,6 @@ impl Quantity {
         }
     }
 }
-
-/// No limits here: a key of another table is checked by that table.
-const ANY: Number = Number(Unbounded, Unbounded);
-const SCALE: Number = Number(Included(-1e6), Included(1e6));
 
 /// One direction of a map.
 #[derive(Clone, Debug, PartialEq)]
@@ -120,37 +117,30 @@ impl Map {
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
     ) -> Reading<Self> {
-        let repeat = read_repeat(table, hinges);
-        let read = Quantity::ALL
-            .iter()
-            .filter(|quantity| **quantity != Quantity::Other)
-            .map(|&quantity| {
-                let sequence = Sequence::read(table, quantity.name(), quantity.range())?;
-                if sequence.is_some() {
-                    suits(table, quantity, structure, (hinges, motion))?;
-                }
-                let key = quantity.name().to_owned();
-                Ok(sequence.map(|sequence| Axis {
+        let repeat = table.or(REPEAT, &Switch, false);
+        if repeat && !hinges.has_joints() {
+            let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
+            table.wrong(REPEAT, wrong);
+        }
+        let mut axes = Vec::new();
+        let others = table.keys_of_other_tables().into_iter();
+        let others = others.map(|key| (Quantity::Other, key));
+        let own = Quantity::ALL.iter().skip(1);
+        let own = own.map(|quantity| (*quantity, quantity.name().to_owned()));
+        for (quantity, key) in own.chain(others) {
+            if let Some(sequence) = Sequence::read(table, &key, quantity.range()) {
+                suits(table, quantity, structure, (hinges, motion));
+                axes.push(Axis {
                     quantity,
                     key,
                     sequence,
-                }))
-            });
-        let mut read: Vec<_> = read.collect();
-        let others = table.keys_of_other_tables();
-        let others = others.into_iter().map(|key| {
-            let quantity = Quantity::Other;
-            let sequence = Sequence::read(table, &key, quantity.range())?;
-            Ok(sequence.map(|sequence| Axis {
-                quantity,
-                key,
-                sequence,
-            }))
-        });
-        let others: Vec<_> = others.collect();
-        read.splice(0..0, others);
-        let axes: Vec<_> = read.into_iter().collect::<Reading<Vec<_>>>()?;
-        let mut axes = axes.into_iter().flatten();
+                });
+            }
+        }
+        table.sound()?;
+        // Numbers of other tables go before those that a map names itself.
+        axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
+        let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
             let keys = Quantity::ALL.iter().skip(1);
             let keys: Vec<_> = keys.map(|one| one.name()).collect();
@@ -169,7 +159,6 @@ impl Map {
                 "has {cells} cells; at most {MAX_CELLS} are allowed"
             )));
         }
-        let repeat = repeat?;
         Ok(Self { x, y, repeat })
     }
 
@@ -253,23 +242,13 @@ impl Serialize for Map {
 
 const REPEAT: &str = "repeat";
 
-/// Reads `repeat`, which only free hinges and elastic joints allow.
-fn read_repeat(table: &mut Table<'_>, hinges: Hinges) -> Reading<bool> {
-    let repeat = table.or(REPEAT, &Switch, false)?;
-    if repeat && !hinges.has_joints() {
-        let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
-        return Err(table.wrong(REPEAT, wrong));
-    }
-    Ok(repeat)
-}
-
 /// Refuses a quantity that the scenario does not have.
 fn suits(
     table: &mut Table<'_>,
     quantity: Quantity,
     structure: Option<&Structure>,
     (hinges, motion): (Hinges, Option<&Motion>),
-) -> Reading<()> {
+) {
     let wrong = match quantity {
         Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
             if matches!(
@@ -289,7 +268,7 @@ fn suits(
         {
             "needs model = \"prescribed\" in [impact]"
         }
-        _ => return Ok(()),
+        _ => return,
     };
-    Err(table.wrong(quantity.name(), wrong))
+    table.wrong(quantity.name(), wrong);
 }

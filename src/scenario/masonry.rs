@@ -9,15 +9,16 @@
 //! density_kg_m3 = 2000.0         # or an array, one for each block
 //! ```
 
-use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 
 use nalgebra::Vector2;
 
 use super::LineFault;
 use super::record::{faulty, read_numbers};
+use super::relation::Relation;
+use super::rule::{Count, OneOrMore, Switch, Text, above, one_of, within};
 use super::structure::{MAGNITUDE, VOUSSOIRS};
-use super::table::{Count, Number, OneOf, OneOrMore, Reading, Reported, Switch, Table, Text};
+use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
 use crate::argument::ArgumentError;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
@@ -28,89 +29,57 @@ use crate::mechanics::masonry::{
 };
 use crate::mechanics::stability::falls;
 
-const THICKNESS_M: Number = Number(Included(1e-6), Included(1e6));
-const CROWN_DEG: Number = Number(Excluded(0.0), Included(179.0));
-const LEVEL_M: Number = Number(Included(0.0), Included(1e6));
-const MASS_KG: Number = Number(Included(1e-6), Included(1e15));
-const X_M: Number = Number(Included(-1e6), Included(1e6));
 const PIER_BLOCKS: Count = Count {
     range: 1..=MAX_BLOCKS,
     why: "a pier of one piece",
 };
 
-/// Reads the shapes that have tables of their own.
-pub(super) fn read_shapes(
-    table: &mut Table<'_>,
-    folder: &Path,
-) -> Vec<(&'static str, Reading<Option<Shape>>)> {
-    vec![
-        (
-            "pointed_arch",
-            table.table("pointed_arch", |table| {
-                let dimensions = read_dimensions(table)?;
-                Ok(Shape::PointedArch(dimensions))
-            }),
-        ),
-        (
-            "elliptic_arch",
-            table.table("elliptic_arch", |table| {
-                let dimensions = read_dimensions(table)?;
-                Ok(Shape::EllipticArch(dimensions))
-            }),
-        ),
-        (
-            "basket_arch",
-            table.table("basket_arch", |table| {
-                let crown_deg = table.or("crown_deg", &CROWN_DEG, BasketArch::CROWN_DEG);
-                let dimensions = read_dimensions(table)?;
-                Ok(Shape::BasketArch(BasketArch {
-                    dimensions,
-                    crown_deg: crown_deg?,
-                }))
-            }),
-        ),
-        (
-            "blocks",
-            table.table("blocks", |table| {
-                read_blocks(table, folder).map(Shape::Blocks)
-            }),
-        ),
-    ]
+/// The shapes that have tables of their own.
+pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_arch", "blocks"];
+
+/// Reads the shapes that have tables of their own, and returns the first that is given.
+pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
+    let pointed = table.table("pointed_arch", |table| {
+        Ok(Shape::PointedArch(read_dimensions(table)))
+    });
+    let elliptic = table.table("elliptic_arch", |table| {
+        Ok(Shape::EllipticArch(read_dimensions(table)))
+    });
+    let basket = table.table("basket_arch", |table| {
+        Ok(Shape::BasketArch(BasketArch {
+            crown_deg: table.or("crown_deg", &above(0.0, 179.0), BasketArch::CROWN_DEG),
+            dimensions: read_dimensions(table),
+        }))
+    });
+    let blocks = table.table("blocks", |table| read_blocks(table).map(Shape::Blocks));
+    pointed.or(elliptic).or(basket).or(blocks)
 }
 
-fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
-    let span_m = table.required("span_m", &MAGNITUDE);
-    let rise_m = table.required("rise_m", &MAGNITUDE);
-    let thickness_m = table.required("thickness_m", &THICKNESS_M);
-    let voussoirs = table.required("voussoirs", &VOUSSOIRS);
-    let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
-    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
-    Ok(Dimensions {
-        span_m: span_m?,
-        rise_m: rise_m?,
-        thickness_m: thickness_m?,
-        voussoirs: voussoirs?,
+fn read_dimensions(table: &mut Table<'_>) -> Dimensions {
+    Dimensions {
+        span_m: table.required("span_m", &MAGNITUDE),
+        rise_m: table.required("rise_m", &MAGNITUDE),
+        thickness_m: table.required("thickness_m", &within(&(1e-6..=1e6))),
+        voussoirs: table.required("voussoirs", &VOUSSOIRS),
         material: Material {
-            depth_m: depth_m?,
-            density_kg_m3: density_kg_m3?,
+            depth_m: table.or("depth_m", &MAGNITUDE, DEPTH_M),
+            density_kg_m3: table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3),
         },
-    })
+    }
 }
 
-fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
+fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
     let joints_file = table.required("joints", &Text);
     let outlines_file = table.optional("outlines", &Text);
-    let kinds = OneOf {
-        all: Supports::ALL,
-        name: Supports::name,
-    };
+    let kinds = one_of(Supports::ALL, Supports::name);
     let supports = table.or("supports", &kinds, Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
-    let density_kg_m3 = table.or("density_kg_m3", &OneOrMore(&MAGNITUDE), vec![DENSITY_KG_M3]);
-    let (joints_file, outlines_file) = (joints_file?, outlines_file?);
-    let path = folder.join(&joints_file);
+    let densities = OneOrMore(&MAGNITUDE);
+    let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
+    table.sound()?;
+    let path = table.path(&joints_file);
     let rows = read_numbers::<4>(&path).map_err(|wrong| table.wrong("joints", wrong))?;
-    table.note_file(folder, &joints_file);
+    table.note_file(&joints_file);
     let wrong_line = |line, message| faulty(&path, &LineFault { line, message });
     if !(2..=MAX_BLOCKS + 1).contains(&rows.len()) {
         let wrong = format!(
@@ -137,9 +106,9 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
     let mut given = GivenBlocks {
         joints_file,
         outlines_file,
-        supports: supports?,
-        depth_m: depth_m?,
-        density_kg_m3: density_kg_m3?,
+        supports,
+        depth_m,
+        density_kg_m3,
         joints,
         outlines: Vec::new(),
     };
@@ -148,10 +117,10 @@ fn read_blocks(table: &mut Table<'_>, folder: &Path) -> Reading<GivenBlocks> {
         return Err(table.wrong("density_kg_m3", wrong));
     }
     if let Some(file) = &given.outlines_file {
-        let path = folder.join(file);
+        let path = table.path(file);
         given.outlines =
             read_outlines(&path, &given).map_err(|wrong| table.wrong("outlines", wrong))?;
-        table.note_file(folder, file);
+        table.note_file(file);
     }
     // If the blocks do not form a row, the error names the line of the joint.
     let shape = Shape::Blocks(given.clone());
@@ -250,16 +219,17 @@ pub(super) struct Additions {
 
 impl Additions {
     pub fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let piers = table.table("piers", read_piers);
-        let fill = table.table("fill", read_fill);
-        let loads = table.tables("load", read_load);
-        let ties = TieTable::read_all(table);
-        Ok(Self {
-            piers: piers?.unwrap_or_default(),
-            fill: fill?,
-            loads: loads?,
-            ties: ties?,
-        })
+        let before = table.faults();
+        let read = Self {
+            piers: table.table("piers", read_piers).unwrap_or_default(),
+            fill: table.table("fill", read_fill),
+            loads: table.tables("load", read_load),
+            ties: TieTable::read_all(table),
+        };
+        if table.faults() > before {
+            return Err(Reported);
+        }
+        Ok(read)
     }
 
     pub fn is_nothing(&self) -> bool {
@@ -308,14 +278,14 @@ impl Additions {
         let allowed = |error: &ArgumentError| format!("is not allowed; must be {}", error.allowed);
         match error {
             MasonryError::Shape(error) => {
-                table.wrong_in(shape, error.argument, allowed(error))
+                table.wrong_in(&[shape], error.argument, allowed(error))
             }
             MasonryError::Pier { side, error } => {
                 let side = side.name();
                 let wrong = format!("of the {side} pier {}", allowed(error));
-                table.wrong_within(&["piers", side], error.argument, wrong)
+                table.wrong_in(&["piers", side], error.argument, wrong)
             }
-            MasonryError::Fill(error) => table.wrong_in("fill", error.argument, allowed(error)),
+            MasonryError::Fill(error) => table.wrong_in(&["fill"], error.argument, allowed(error)),
             MasonryError::Load { index, error } => {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
@@ -339,98 +309,74 @@ fn stands_without_ties(masonry: &Masonry) -> bool {
     !row.ties().is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
 }
 
+/// Reads `[piers]`: its keys hold for both piers, and `[piers.left]` and `[piers.right]` may override them.
 fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
-    // Values for both piers; `[piers.left]` and `[piers.right]` may override them.
-    let both = [
-        table.optional("height_m", &MAGNITUDE)?,
-        table.optional("width_m", &MAGNITUDE)?,
-        table.optional("density_kg_m3", &MAGNITUDE)?,
-    ];
-    let blocks = table.optional("blocks", &PIER_BLOCKS)?;
-    let pedestal = table.optional("pedestal", &Switch)?;
-    let read = |table: &mut Table<'_>| {
+    let both = ["height_m", "width_m", "density_kg_m3"].map(|key| {
+        let value = table.optional(key, &MAGNITUDE);
+        // A wrong value is not missing.
+        value.or(table.gives(key).then_some(1.0))
+    });
+    let blocks = table.optional("blocks", &PIER_BLOCKS);
+    let pedestal = table.optional("pedestal", &Switch);
+    let one = |table: &mut Table<'_>| {
         let mut number = |key, both: Option<f64>| match both {
             Some(both) => table.or(key, &MAGNITUDE, both),
             None => table.required(key, &MAGNITUDE),
         };
-        let (height_m, width_m) = (number("height_m", both[0]), number("width_m", both[1]));
-        let density_kg_m3 = table.optional("density_kg_m3", &MAGNITUDE);
-        let blocks = table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1));
-        let pedestal = table.or("pedestal", &Switch, pedestal.unwrap_or(false));
         Ok(Pier {
-            height_m: height_m?,
-            width_m: width_m?,
-            blocks: blocks?,
-            density_kg_m3: density_kg_m3?.or(both[2]),
-            pedestal: pedestal?,
+            height_m: number("height_m", both[0]),
+            width_m: number("width_m", both[1]),
+            density_kg_m3: table.optional("density_kg_m3", &MAGNITUDE).or(both[2]),
+            blocks: table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1)),
+            pedestal: table.or("pedestal", &Switch, pedestal.unwrap_or(false)),
         })
     };
-    let said = blocks.is_some() || both.iter().any(Option::is_some);
-    let (left, right) = (table.table("left", read), table.table("right", read));
-    let (mut left, mut right) = (left?, right?);
-    if said || (left.is_none() && right.is_none()) {
-        // Both piers exist, with the values that `[piers]` gives.
-        let lacking = |key: &'static str, value: Option<f64>| match value {
-            Some(value) => Ok(value),
-            None => Err(key),
-        };
-        let common = lacking("height_m", both[0])
-            .and_then(|height_m| Ok((height_m, lacking("width_m", both[1])?)));
-        if left.is_none() || right.is_none() {
-            match common {
-                Ok((height_m, width_m)) => {
-                    let pier = Pier {
-                        height_m,
-                        width_m,
-                        blocks: blocks.unwrap_or(1),
-                        density_kg_m3: both[2],
-                        pedestal: pedestal.unwrap_or(false),
-                    };
-                    left = left.or(Some(pier));
-                    right = right.or(Some(pier));
-                }
-                Err(key) => {
-                    return Err(table.wrong_itself(format!(
-                        "lacks `{key}`: give it for both piers, or give [piers.left] and [piers.right]"
-                    )));
-                }
-            }
-        }
+    let (left, right) = (table.table("left", one), table.table("right", one));
+    table.sound()?;
+    // If `[piers]` itself has values, both piers exist.
+    let has_values = blocks.is_some() || both.iter().any(Option::is_some);
+    if (left.is_some() && right.is_some()) || !has_values && (left.is_some() || right.is_some()) {
+        return Ok(Piers { left, right });
     }
-    Ok(Piers { left, right })
+    let mut value = |key: &str, value: Option<f64>| {
+        value.ok_or_else(|| {
+            table.wrong_itself(format!(
+                "lacks `{key}`: give it for both piers, or give [piers.left] and [piers.right]"
+            ))
+        })
+    };
+    let pier = Pier {
+        height_m: value("height_m", both[0])?,
+        width_m: value("width_m", both[1])?,
+        blocks: blocks.unwrap_or(1),
+        density_kg_m3: both[2],
+        pedestal: pedestal.unwrap_or(false),
+    };
+    Ok(Piers {
+        left: left.or(Some(pier)),
+        right: right.or(Some(pier)),
+    })
 }
 
 fn read_fill(table: &mut Table<'_>) -> Reading<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
-    let above_crown_m = table.optional("above_crown_m", &LEVEL_M);
+    let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
-    let level = table.exactly_one(
-        "keys",
-        vec![
-            (
-                "height_m",
-                height_m.map(|it| it.map(FillLevel::AboveSpringing)),
-            ),
-            (
-                "above_crown_m",
-                above_crown_m.map(|it| it.map(FillLevel::AboveCrown)),
-            ),
-        ],
-    );
+    table.relate(&[Relation::OneOf(&["height_m", "above_crown_m"], None)])?;
+    let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {
-        level: level?,
-        density_kg_m3: density_kg_m3?,
+        level: level
+            .or(above_crown_m.map(FillLevel::AboveCrown))
+            .ok_or(Reported)?,
+        density_kg_m3,
     })
 }
 
 fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
-    let mass_kg = table.required("mass_kg", &MASS_KG);
-    let x_m = table.required("x_m", &X_M);
-    let width_m = table.optional("width_m", &MAGNITUDE);
     Ok(PlacedLoad {
-        mass_kg: mass_kg?,
-        x_m: x_m?,
-        width_m: width_m?.unwrap_or(0.0),
+        mass_kg: table.required("mass_kg", &within(&(1e-6..=1e15))),
+        x_m: table.required("x_m", &within(&(-1e6..=1e6))),
+        width_m: table.optional("width_m", &MAGNITUDE).unwrap_or(0.0),
     })
 }
 
@@ -455,7 +401,11 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Repor
             let wrong = format!("{falls}; it stands if it is {factor:.4} times as thick");
             for candidate in ["thickness_m", "thickness_ratio"] {
                 if table.gives_in(shape, candidate) {
-                    return table.wrong_in(shape, candidate, format!("makes an arch that {wrong}"));
+                    return table.wrong_in(
+                        &[shape],
+                        candidate,
+                        format!("makes an arch that {wrong}"),
+                    );
                 }
             }
             table.wrong(shape, wrong)

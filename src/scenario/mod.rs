@@ -26,6 +26,7 @@
 //! Field names are the keys of the file, units included.
 
 mod assignment;
+mod document;
 mod elastic_joints;
 mod error;
 mod free_hinges;
@@ -38,7 +39,9 @@ mod map;
 mod masonry;
 mod motion;
 mod record;
+mod relation;
 mod right_foot;
+mod rule;
 mod sequence;
 mod shown;
 mod simulation;
@@ -82,6 +85,7 @@ pub use record::{
     Scaling, Series, TableColumn, TableLayout, Times, Unit,
 };
 pub use right_foot::RightFoot;
+use rule::Text;
 pub use sequence::{Sequence, Spacing};
 pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
@@ -90,7 +94,7 @@ use span::Circular;
 pub(crate) use structure::four_digits;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
-use table::{Reading, Reported, Table, Text};
+use table::{Reading, Reported, Table};
 pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
@@ -262,7 +266,7 @@ impl Scenario {
     /// The scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
     #[must_use]
     pub fn files(&self) -> &[InputFile] {
-        &self.files.0
+        &self.files.files
     }
 
     /// Acceleration of gravity, in m/s2.
@@ -303,6 +307,20 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &Changes::default())
     }
 
+    /// The JSON schema of scenarios, for editors: all tables and keys with their rules and defaults, as they are read.
+    #[must_use]
+    pub fn schema() -> Value {
+        // With a chosen model, the tables of several may stand side by side.
+        let changes = Changes {
+            hinges: Some(Hinges::Four),
+            ..Changes::default()
+        };
+        let mut schema = table::describe(|table| Self::read_table(table, &[], &changes));
+        schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
+        schema["title"] = "Scenario of archrock".into();
+        schema
+    }
+
     /// Reads a scenario with changes.
     ///
     /// # Errors
@@ -311,39 +329,34 @@ impl Scenario {
     /// assignment stands in place of the file.
     pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
-        table::read_text(text, changes.set, |table| {
-            let scenario = Self::read_table(table, folder, changes)?;
-            let mut files = vec![InputFile::of_scenario(&source.name, text)];
-            files.append(&mut table.noted_files());
-            Ok(Self {
-                files: InputFiles(files),
-                ..scenario
-            })
+        table::read_text((text, folder), changes.set, |table| {
+            let mut scenario = Self::read_table(table, &[], changes)?;
+            let files = &mut scenario.files;
+            files.files.push(InputFile::of_scenario(&source.name, text));
+            files.files.append(&mut table.noted_files());
+            files.folder.clone_from(folder);
+            Ok(scenario)
         })
-        .map_err(|faults| ScenarioErrors::placed(source, changes.set, faults))
+        .map_err(|faults| ScenarioErrors::placed((text, &source.name), changes.set, faults))
     }
 
-    /// Reads a scenario whose files are relative to `folder`.
-    fn read_table(table: &mut Table<'_>, folder: &Path, changes: &Changes<'_>) -> Reading<Self> {
+    /// Reads a scenario; `known` records are not read from their files again.
+    fn read_table(table: &mut Table<'_>, known: &[Series], changes: &Changes<'_>) -> Reading<Self> {
         let title = table.optional("title", &Text);
         let motion = motion::Tables::read(table, changes.hinges, changes.statics);
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
-        let gravity_m_s2 = match &simulation {
-            Ok(simulation) => Ok(simulation.gravity_m_s2),
-            Err(reported) => Err(*reported),
-        };
-        let (structure, ties) = match Structure::read(table, folder, hinges, gravity_m_s2) {
+        let gravity_m_s2 = simulation.as_ref().ok().map(|it| it.gravity_m_s2);
+        let (structure, ties) = match Structure::read(table, hinges, gravity_m_s2) {
             Ok((structure, ties)) => (Ok(structure), ties),
             Err(reported) => (Err(reported), Vec::new()),
         };
         let mut right_foot = Ok(None);
         let faults = table.faults();
-        let ground = table.table("ground", |table| {
-            right_foot = table.table("right", |table| {
-                RightFoot::read(table, folder, gravity_m_s2)
-            });
-            Ground::read(table, folder, gravity_m_s2)
+        let ground = table.given_table("ground", |table| {
+            right_foot =
+                table.given_table("right", |table| RightFoot::read(table, known, gravity_m_s2));
+            Ground::read(table, known, gravity_m_s2)
         });
         let mut unread_ground = None;
         let is_unread = ground.is_err() || right_foot.is_err();
@@ -361,27 +374,23 @@ impl Scenario {
         if let Ok(Some(right_foot)) = &right_foot {
             right_foot.suits(table, structure.as_ref().ok(), hinges)?;
         }
-        let initial = table.table("initial", |table| {
+        let initial = table.given_table("initial", |table| {
             initial::read(table, structure.as_ref().ok(), hinges)
         });
-        let map = table.table("map", |table| {
+        let map = table.given_table("map", |table| {
             let motion = motion.as_ref().ok().map(|(motion, _)| motion);
             Map::read(table, structure.as_ref().ok(), (hinges, motion))
         });
-        let suite = table.table("suite", |table| {
-            Suite::read(table, folder, simulation.as_ref().ok())
+        let suite = table.given_table("suite", |table| {
+            Suite::read(table, simulation.as_ref().ok())
         });
-        let verify = table.table("verify", |table| Verify::read(table, folder, gravity_m_s2));
-        let demand = table.table("demand", |table| {
-            let factor =
-                |verify: &Option<Verify>| verify.clone().unwrap_or_default().confidence_factor;
-            Demand::read(
-                table,
-                folder,
-                verify.as_ref().map(factor).map_err(|reported| *reported),
-            )
+        let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
+        let demand = table.given_table("demand", |table| {
+            let verify = verify.as_ref().ok().cloned().flatten();
+            let factor = verify.unwrap_or_default().confidence_factor;
+            Demand::read(table, factor)
         });
-        let uncertain = table.table("uncertain", Uncertain::read);
+        let uncertain = table.given_table("uncertain", Uncertain::read);
         let (verify, demand) = (verify?, demand?);
         if let Some(verify) = &verify {
             verify.suits(table, demand.as_ref())?;
@@ -401,7 +410,7 @@ impl Scenario {
         }
         let given_shape = Circular::given(table);
         let mut certain = Self {
-            title: title?.map(|title| shown(&title)),
+            title: title.map(|title| shown(&title)),
             structure,
             ties,
             motion,
@@ -441,7 +450,7 @@ impl Scenario {
         })
     }
 
-    /// The same structure and simulation with this ground motion. The tables of studies are left out, because they were
+    /// The scenario with another ground motion. The tables of studies are left out, because they were
     /// checked against the original ground.
     #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
@@ -480,6 +489,20 @@ impl Scenario {
             to_m.x - from_m.x
         });
         right.beside(left, apart_m, self.simulation.gravity_m_s2)
+    }
+
+    /// The scenario once for each record of its suite, with that record unscaled as its ground motion; empty without a suite.
+    /// Other studies are left out.
+    #[must_use]
+    pub fn by_record(&self) -> Vec<(String, Self)> {
+        let records = self.suite.iter().flat_map(|suite| &suite.records);
+        records
+            .map(|series| {
+                let record = suite::shaking(series, Scaling::Factor(1.0));
+                let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
+                (series.file.clone(), scenario)
+            })
+            .collect()
     }
 
     /// The ground motion of a record multiplied by a factor, both feet moving alike, for this scenario's gravity.

@@ -254,9 +254,9 @@ impl Tables {
     /// Reads the tables of rows of blocks, which decide the model unless one is `asked` for. For statics, drums and moved springings need none
     /// of them: they are free hinges.
     pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>, statics: bool) -> Self {
-        let free_hinges = table.table("free_hinges", free_hinges::read);
-        let elastic_joints = table.table("elastic_joints", ElasticTable::read);
-        let supports = table.table("supports", supports::read);
+        let free_hinges = table.given_table("free_hinges", free_hinges::read);
+        let elastic_joints = table.given_table("elastic_joints", ElasticTable::read);
+        let supports = table.given_table("supports", supports::read);
         let chosen = if table.gives_table("elastic_joints") {
             Hinges::Elastic
         } else if table.gives_table("free_hinges") || (statics && needs_joints(table)) {

@@ -9,20 +9,18 @@
 //! file = "right.at2"
 //! ```
 
-use std::ops::Bound::Included;
-use std::path::Path;
-
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
+use super::motion::Hinges;
+use super::record::{Record, Series};
+use super::relation::Relation;
+use super::rule::within;
 use super::structure::Structure;
-use super::table::{Number, Reading, Rule as _, Table};
-use super::{Hinges, Record, Series};
+use super::table::{Reading, Reported, Table};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
 use crate::mechanics::blocks::Supports;
 
-const DELAY_S: Number = Number(Included(-1e3), Included(1e3));
-const APPARENT_VELOCITY_M_S: Number = Number(Included(-1e6), Included(1e6));
 /// Slower waves than this, in m/s, are a mistake of units.
 const SLOWEST_M_S: f64 = 1.0;
 const RECORD: &str = "record";
@@ -42,40 +40,23 @@ pub enum RightFoot {
 impl RightFoot {
     pub(super) fn read(
         table: &mut Table<'_>,
-        folder: &Path,
-        gravity_m_s2: Reading<f64>,
+        known: &[Series],
+        gravity_m_s2: Option<f64>,
     ) -> Reading<Self> {
-        let delay_s = table.optional("delay_s", &DELAY_S);
-        let velocity_m_s = table.optional("apparent_velocity_m_s", &APPARENT_VELOCITY_M_S);
-        let record = table.table(RECORD, |table| Record::read(table, folder, gravity_m_s2));
-        let right = table.exactly_one(
-            "keys",
-            vec![
-                ("delay_s", delay_s.map(|read| read.map(Self::Late))),
-                (
-                    "apparent_velocity_m_s",
-                    velocity_m_s.map(|read| read.map(Self::Wave)),
-                ),
-                (
-                    RECORD,
-                    record.map(|read| read.map(|(record, _)| Self::Record(Box::new(record)))),
-                ),
-            ],
-        )?;
-        right
-            .check()
-            .map_err(|(key, wrong)| table.wrong(key, wrong))?;
-        Ok(right)
-    }
-
-    fn check(&self) -> Result<(), (&'static str, String)> {
-        match self {
-            Self::Wave(velocity_m_s) if velocity_m_s.abs() < SLOWEST_M_S => Err((
-                "apparent_velocity_m_s",
-                "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that goes to the left".to_owned(),
-            )),
-            _ => Ok(()),
+        let delay_s = table.optional("delay_s", &within(&(-1e3..=1e3)));
+        let velocity_m_s = table.optional("apparent_velocity_m_s", &within(&(-1e6..=1e6)));
+        let record = table.table(RECORD, |table| Record::read(table, known, gravity_m_s2));
+        let keys = &["delay_s", "apparent_velocity_m_s", RECORD];
+        table.relate(&[Relation::OneOf(keys, None)])?;
+        let record = record.map(|(record, _)| Self::Record(Box::new(record)));
+        let late = delay_s.map(Self::Late);
+        let right = late.or(velocity_m_s.map(Self::Wave)).or(record);
+        let right = right.ok_or(Reported)?;
+        if velocity_m_s.is_some_and(|velocity_m_s| velocity_m_s.abs() < SLOWEST_M_S) {
+            let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that goes to the left";
+            return Err(table.wrong("apparent_velocity_m_s", wrong));
         }
+        Ok(right)
     }
 
     /// Refuses it where feet cannot move differently, or where a study shakes them in its own way; `outer` is the whole scenario.
@@ -89,12 +70,12 @@ impl RightFoot {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );
-            return Err(outer.wrong_in("ground", "right", wrong));
+            return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
         let row = structure.and_then(|structure| structure.row().ok());
         if row.is_some_and(|row| row.supports() == Supports::Left) {
             let wrong = "needs two feet, and this stands on one: leave it out";
-            return Err(outer.wrong_in("ground", "right", wrong));
+            return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
         if let Self::Record(_) = self {
             for study in ["map", "suite"] {
@@ -152,46 +133,6 @@ impl RightFoot {
             };
         };
         left.with_delayed_right_foot(delay_s).expect(IN_RANGE)
-    }
-
-    /// The same with other numbers for some of its keys.
-    pub(super) fn with_values(
-        &self,
-        values: &[(&str, f64)],
-        gravity_m_s2: f64,
-    ) -> Result<Self, String> {
-        let mut right = self.clone();
-        let mut of_record = Vec::new();
-        for (key, value) in values {
-            let rule = match (&mut right, *key) {
-                (Self::Late(delay_s), "delay_s") => {
-                    *delay_s = *value;
-                    DELAY_S
-                }
-                (Self::Wave(velocity_m_s), "apparent_velocity_m_s") => {
-                    *velocity_m_s = *value;
-                    APPARENT_VELOCITY_M_S
-                }
-                (Self::Record(_), key) if key.starts_with("record.") => {
-                    of_record.push((&key["record.".len()..], *value));
-                    continue;
-                }
-                _ => return Err(format!("`{key}` is no number of [ground.right]")),
-            };
-            if !rule.contains(*value) {
-                let allowed = rule.allowed();
-                return Err(format!(
-                    "`{key} = {value}` is out of range; must be {allowed}"
-                ));
-            }
-            right
-                .check()
-                .map_err(|(key, wrong)| format!("`{key} = {value}` {wrong}"))?;
-        }
-        if let Self::Record(record) = &right {
-            right = Self::Record(Box::new(record.with_values(&of_record, gravity_m_s2)?));
-        }
-        Ok(right)
     }
 }
 

@@ -1,9 +1,11 @@
 //! Increasing numbers: a list, or a range with a count.
 
 use serde::Serialize;
-use toml::de::DeValue;
+use serde_json::{Value, json};
 
-use super::table::{Count, List, Number, OneOf, Reading, Rule, Table};
+use super::document::Node;
+use super::rule::{Count, List, Number, Rule, one_of};
+use super::table::{Reading, Table};
 use crate::argument::short;
 
 named! {
@@ -48,8 +50,8 @@ impl Rule for Ascending<'_> {
         )
     }
 
-    fn read(&self, value: &DeValue<'_>) -> Result<Vec<f64>, String> {
-        if let DeValue::Integer(_) | DeValue::Float(_) = value {
+    fn read(&self, value: &Node) -> Result<Vec<f64>, String> {
+        if let Node::Whole(_) | Node::Number(_) = value {
             return Err("is a single number".to_owned());
         }
         let values = List(self.0).read(value)?;
@@ -60,6 +62,14 @@ impl Rule for Ascending<'_> {
         } else {
             Err("does not ascend".to_owned())
         }
+    }
+
+    fn stand_in(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "array", "items": self.0.schema(), "minItems": 1 })
     }
 }
 
@@ -96,24 +106,23 @@ impl Sequence {
     }
 
     /// Reads the numbers of a key, if given; each must follow `rule`.
-    pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Reading<Option<Self>> {
-        if table.gives_table(key) {
-            return table.table(key, |table| Self::read_range(table, rule));
+    pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Option<Self> {
+        if table.gives_table(key) || table.describes() {
+            let range = table.table(key, |table| Self::read_range(table, rule));
+            if !table.describes() {
+                return range;
+            }
         }
-        let values = table.optional(key, &Ascending(rule))?;
-        Ok(values.map(Self::List))
+        table.optional(key, &Ascending(rule)).map(Self::List)
     }
 
     fn read_range(table: &mut Table<'_>, rule: &Number) -> Reading<Self> {
         let from = table.required("from", rule);
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);
-        let spacings = OneOf {
-            all: Spacing::ALL,
-            name: Spacing::name,
-        };
+        let spacings = one_of(Spacing::ALL, Spacing::name);
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
-        let (from, to, count, spacing) = (from?, to?, count?, spacing?);
+        table.sound()?;
         if to <= from {
             let wrong = format!("is not above `from`; must be above {}", short(from));
             return Err(table.wrong("to", wrong));

@@ -2,14 +2,10 @@
 
 use serde::Serialize;
 
-use super::table::{Number, Reading, Table};
+use super::rule::within;
+use super::table::{Reading, Table};
 use crate::argument::plain;
 use crate::dynamics::model::Request;
-
-const GRAVITY_M_S2: Number = Number::within(&Request::GRAVITY_M_S2);
-const TIME_S: Number = Number::within(&Request::TIME_S);
-const RELATIVE_TOLERANCE: Number = Number::within(&Request::RELATIVE_TOLERANCE);
-const REST_ENERGY_RATIO: Number = Number::within(&Request::REST_ENERGY_RATIO);
 
 /// How the motion is computed.
 ///
@@ -32,37 +28,33 @@ pub struct Simulation {
 impl Simulation {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let default = Request::default();
-        let duration_s = table.optional("duration_s", &TIME_S);
-        let output_step_s = table.or(OUTPUT_STEP_S, &TIME_S, default.output_step_s);
-        let rows = match (&duration_s, &output_step_s) {
-            (Ok(Some(duration_s)), Ok(step_s)) => rows_fault(*duration_s, *step_s),
-            _ => None,
-        };
-        // The step is easier to change.
-        let culprit = if table.gives(OUTPUT_STEP_S) {
-            OUTPUT_STEP_S
-        } else {
-            "duration_s"
-        };
-        let rows = rows.map_or(Ok(()), |wrong| Err(table.wrong(culprit, wrong)));
-        let relative_tolerance = table.or(
-            "relative_tolerance",
-            &RELATIVE_TOLERANCE,
-            default.relative_tolerance,
-        );
-        let rest_energy_ratio = table.or(
-            "rest_energy_ratio",
-            &REST_ENERGY_RATIO,
-            default.rest_energy_ratio,
-        );
-        let gravity_m_s2 = table.or("gravity_m_s2", &GRAVITY_M_S2, default.gravity_m_s2);
-        rows?;
+        let time_s = within(&Request::TIME_S);
+        let tolerance = within(&Request::RELATIVE_TOLERANCE);
+        let rest = within(&Request::REST_ENERGY_RATIO);
+        let duration_s = table.optional("duration_s", &time_s);
+        let output_step_s = table.or(OUTPUT_STEP_S, &time_s, default.output_step_s);
+        if let (Ok(()), Some(duration_s)) = (table.sound(), duration_s)
+            && let Some(wrong) = rows_fault(duration_s, output_step_s)
+        {
+            // The step is easier to change.
+            let both = [OUTPUT_STEP_S, "duration_s"];
+            let given = both.into_iter().find(|key| table.gives(key));
+            table.wrong(given.unwrap_or(OUTPUT_STEP_S), wrong);
+        }
         Ok(Self {
-            duration_s: duration_s?,
-            output_step_s: output_step_s?,
-            relative_tolerance: relative_tolerance?,
-            rest_energy_ratio: rest_energy_ratio?,
-            gravity_m_s2: gravity_m_s2?,
+            duration_s,
+            output_step_s,
+            relative_tolerance: table.or(
+                "relative_tolerance",
+                &tolerance,
+                default.relative_tolerance,
+            ),
+            rest_energy_ratio: table.or("rest_energy_ratio", &rest, default.rest_energy_ratio),
+            gravity_m_s2: table.or(
+                "gravity_m_s2",
+                &within(&Request::GRAVITY_M_S2),
+                default.gravity_m_s2,
+            ),
         })
     }
 
@@ -88,7 +80,7 @@ impl Simulation {
         match fault {
             None => Ok(()),
             Some(wrong) if table.gives_in("simulation", OUTPUT_STEP_S) => {
-                Err(table.wrong_in("simulation", OUTPUT_STEP_S, wrong))
+                Err(table.wrong_in(&["simulation"], OUTPUT_STEP_S, wrong))
             }
             Some(wrong) => Err(table.wrong_itself(format!(
                 "{wrong}; give `duration_s` or `output_step_s` in [simulation]"

@@ -77,12 +77,9 @@ impl Source {
         let text = String::from_utf8(bytes).map_err(|error| {
             // The text before the fault is the same in the lossy text.
             let text = String::from_utf8_lossy(error.as_bytes());
-            let fault = Fault {
-                offset: error.utf8_error().valid_up_to(),
-                message: "not UTF-8 text from here".to_owned(),
-                of_file: false,
-            };
-            ScenarioErrors::placed(&Self::of_text(&text, name), &[], vec![fault])
+            let offset = error.utf8_error().valid_up_to();
+            let fault = Fault::new(0, offset, "not UTF-8 text from here".to_owned());
+            ScenarioErrors::placed((&text, name), &[], vec![fault])
         })?;
         Ok(Self {
             name: name.to_owned(),

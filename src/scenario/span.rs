@@ -9,12 +9,14 @@
 //! ```
 
 use std::mem;
-use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::ops::Bound::{Excluded, Unbounded};
 
 use serde_json::{Map, Value};
 
+use super::relation::Relation::{OneOf, Requires};
+use super::rule::{Number, Rule as _, one_of, within};
 use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
-use super::table::{Number, OneOf, Reading, Table};
+use super::table::{Reading, Reported, Table};
 use crate::argument::plain;
 use crate::mechanics::arch::MeasuredAt;
 
@@ -31,7 +33,7 @@ const GIVEN: [&str; 6] = [
 ];
 const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
 /// Spans and rises may be smaller than any radius.
-const LENGTH: Number = Number(Included(1e-6), Included(1e6));
+const LENGTH: Number = within(&(1e-6..=1e6));
 
 /// The shape of a circular arch.
 pub(super) struct Circular {
@@ -52,75 +54,49 @@ enum Thickness {
 impl Circular {
     /// Reads the keys of `[arch]` that give the shape.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let span_m = table.optional("span_m", &LENGTH);
-        let rise_m = table.optional("rise_m", &LENGTH);
-        let lines = OneOf {
-            all: MeasuredAt::ALL,
-            name: MeasuredAt::name,
-        };
-        let measured_at = table.optional("measured_at", &lines);
-        let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
-        let metres = table.optional("thickness_m", &POSITIVE);
-        let thickness = |table: &mut Table<'_>| {
-            table.exactly_one(
-                "keys",
-                vec![
-                    ("thickness_ratio", ratio.map(|x| x.map(Thickness::Ratio))),
-                    ("thickness_m", metres.map(|x| x.map(Thickness::Metres))),
-                ],
-            )
-        };
-        if !table.gives("span_m") {
-            for key in ["rise_m", "measured_at"] {
-                if table.gives(key) {
-                    table.wrong(
-                        key,
-                        "goes with `span_m`; give that too, or `mean_radius_m` without it",
-                    );
-                }
-            }
-            let mean_radius_m = table.required("mean_radius_m", &MAGNITUDE);
-            let thickness = thickness(table);
-            let embrace_deg = table.required("embrace_deg", &EMBRACE_DEG);
-            // Every key has reported its own error by now; only then does the first failure end the reading.
-            span_m?;
-            rise_m?;
-            measured_at?;
-            return Self::around(
-                table,
-                mean_radius_m?,
-                MeasuredAt::Mean,
-                thickness?,
-                embrace_deg?,
-            );
-        }
         let mean_radius_m = table.optional("mean_radius_m", &MAGNITUDE);
+        let span_m = table.optional("span_m", &LENGTH);
+        let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
+        let thickness_m = table.optional("thickness_m", &POSITIVE);
         let embrace_deg = table.optional("embrace_deg", &EMBRACE_DEG);
-        let thickness = thickness(table);
-        let measured_at = match measured_at {
-            Ok(None) => table.required("measured_at", &lines),
-            Ok(Some(line)) => Ok(line),
-            Err(reported) => Err(reported),
-        };
-        let span_m = table.exactly_one(
-            "keys",
-            vec![("mean_radius_m", mean_radius_m), ("span_m", span_m)],
+        let rise_m = table.optional("rise_m", &LENGTH);
+        let lines = one_of(MeasuredAt::ALL, MeasuredAt::name);
+        let measured_at = table.optional("measured_at", &lines);
+        let radius = format!(
+            "lacks `mean_radius_m`: give {}, or `span_m` where it is `measured_at`",
+            MAGNITUDE.allowed()
         );
-        let rises = matches!(rise_m, Ok(Some(_)));
-        let height = table.exactly_one(
-            "keys",
-            vec![("rise_m", rise_m), ("embrace_deg", embrace_deg)],
-        );
-        let (span_m, height, measured_at, thickness) = (span_m?, height?, measured_at?, thickness?);
-        let embrace_deg = if rises {
-            checked_embrace_deg(table, span_m, height)?
-        } else {
-            height
+        let needs_span = "; give that too, or `mean_radius_m` without it";
+        table
+            .relate(&[
+                OneOf(&["mean_radius_m", "span_m"], Some(&radius)),
+                OneOf(&["thickness_ratio", "thickness_m"], None),
+                OneOf(&["rise_m", "embrace_deg"], None),
+                Requires("rise_m", "span_m", needs_span),
+                Requires("measured_at", "span_m", needs_span),
+                Requires(
+                    "span_m",
+                    "measured_at",
+                    " beside it: \"intrados\", \"mean\" or \"extrados\"",
+                ),
+            ])
+            .and(table.sound())?;
+        let embrace_deg = match (span_m, rise_m, embrace_deg) {
+            (Some(span_m), Some(rise_m), _) => checked_embrace_deg(table, span_m, rise_m)?,
+            (_, _, embrace_deg) => embrace_deg.ok_or(Reported)?,
         };
-        let radius_m = 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin();
-        let shape = Self::around(table, radius_m, measured_at, thickness, embrace_deg)?;
+        let thickness = match (ratio, thickness_m) {
+            (Some(ratio), _) => Thickness::Ratio(ratio),
+            (None, thickness_m) => Thickness::Metres(thickness_m.ok_or(Reported)?),
+        };
+        let radius_m = match (span_m, mean_radius_m) {
+            (Some(span_m), _) => 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin(),
+            (None, radius_m) => radius_m.ok_or(Reported)?,
+        };
+        let line = measured_at.unwrap_or(MeasuredAt::Mean);
+        let shape = Self::around(table, radius_m, line, thickness, embrace_deg)?;
         Ok(Self {
-            measured_at: Some(measured_at),
+            measured_at,
             ..shape
         })
     }
@@ -183,7 +159,7 @@ impl Circular {
             let wrong = format!(
                 "makes a mean radius of {} m; that must be {}",
                 plain(mean_radius_m),
-                super::table::Rule::allowed(&MAGNITUDE)
+                MAGNITUDE.allowed()
             );
             return Err(table.wrong("span_m", wrong));
         }

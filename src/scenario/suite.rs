@@ -13,16 +13,15 @@
 //! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
 //! every peak of `peaks_g`. `[ground]` is not used.
 
-use std::ops::Bound::{Excluded, Included};
-use std::path::Path;
-
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::listing::{Listing, serialize_layout};
-use super::record::{self, Format, Record, Scaling, Series};
+use super::record::{self, Component, Format, Record, Scaling, Series};
+use super::relation::Relation;
+use super::rule::{Number, OneOrMore, Switch, Text, above, within};
 use super::sequence::Sequence;
-use super::table::{Number, OneOrMore, Reading, Switch, Table, Text};
-use super::{Component, Ground, Scenario, Simulation};
+use super::simulation::Simulation;
+use super::table::{Reading, Reported, Table};
 use crate::argument::{plain, short};
 
 named! {
@@ -37,7 +36,7 @@ named! {
 
 /// Largest factor on a record: beyond it the unit must be wrong.
 const MAX_SCALE: f64 = 1e6;
-const SCALE: Number = Number(Excluded(0.0), Included(MAX_SCALE));
+const SCALE: Number = above(0.0, MAX_SCALE);
 
 impl Measure {
     /// The range of a single level.
@@ -99,19 +98,20 @@ impl Spectral {
         damping_percent: 5.0,
     };
 
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
-        const PERIOD_S: Number = Number(Included(0.01), Included(100.0));
-        const DAMPING_PERCENT: Number = Number(Included(0.0), Included(99.0));
-        let period_s = table.or(SPECTRAL_PERIOD_S, &PERIOD_S, Self::DEFAULT.period_s);
-        let damping_percent = table.or(
-            SPECTRAL_DAMPING_PERCENT,
-            &DAMPING_PERCENT,
-            Self::DEFAULT.damping_percent,
-        );
-        Ok(Self {
-            period_s: period_s?,
-            damping_percent: damping_percent?,
-        })
+    fn read(table: &mut Table<'_>) -> Self {
+        let default = Self::DEFAULT;
+        Self {
+            period_s: table.or(
+                SPECTRAL_PERIOD_S,
+                &within(&(0.01..=100.0)),
+                default.period_s,
+            ),
+            damping_percent: table.or(
+                SPECTRAL_DAMPING_PERCENT,
+                &within(&(0.0..=99.0)),
+                default.damping_percent,
+            ),
+        }
     }
 }
 
@@ -120,24 +120,20 @@ const MAX_CASES: usize = 1_000_000;
 
 impl Suite {
     /// Reads `[suite]` with its records; `None`: `[simulation]` is faulty.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        folder: &Path,
-        simulation: Option<&Simulation>,
-    ) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> Reading<Self> {
         let patterns = table.required(RECORDS, &OneOrMore(&Text));
         let format = Format::read(table);
-        let levels = Measure::ALL.iter().map(|&measure| {
+        let levels = Measure::ALL.iter().filter_map(|&measure| {
             let levels = Sequence::read(table, measure.name(), measure.range());
-            let levels = levels.map(|levels| levels.map(|levels| (measure, levels)));
-            (measure.name(), levels)
+            levels.map(|levels| (measure, levels))
         });
-        let levels = levels.collect();
-        let levels = table.exactly_one("keys", levels);
+        let levels: Vec<_> = levels.collect();
         let both_signs = table.or("both_signs", &Switch, true);
         let spectral = Spectral::read(table);
-        let listing = Listing::read(table, folder, vec![(RECORDS, patterns)], format);
-        let (listing, (measure, levels), both_signs) = (listing?, levels?, both_signs?);
+        let related = table.relate(&[Relation::OneOf(&["scales", "peaks_g"], None)]);
+        let listing = Listing::read(table, &[(RECORDS, patterns)], format);
+        related.and(table.sound())?;
+        let (measure, levels) = levels.into_iter().next().ok_or(Reported)?;
         let values = levels.values();
         let cases = listing.len() * (1 + usize::from(both_signs)) * values.len();
         if cases > MAX_CASES {
@@ -149,13 +145,13 @@ impl Suite {
         }
         let strongest = measure.scaling(values[values.len() - 1]);
         let accept = |series: &Series| suits(series, strongest, simulation);
-        let records = listing.series(table, folder, accept)?.into_iter();
+        let records = listing.series(table, accept)?.into_iter();
         Ok(Self {
             records: records.map(|(_, series)| series).collect(),
             measure,
             levels,
             both_signs,
-            spectral: spectral?,
+            spectral,
         })
     }
 
@@ -231,22 +227,6 @@ pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
         main: series.scaled(scaling),
         vertical: None,
         start_s: start_s(series),
-    }
-}
-
-impl Scenario {
-    /// The scenario once for each record of its suite, with that record unscaled as its ground motion; empty without a suite.
-    /// Other studies are left out.
-    #[must_use]
-    pub fn by_record(&self) -> Vec<(String, Self)> {
-        let records = self.suite.iter().flat_map(|suite| &suite.records);
-        records
-            .map(|series| {
-                let record = shaking(series, Scaling::Factor(1.0));
-                let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
-                (series.file.clone(), scenario)
-            })
-            .collect()
     }
 }
 

@@ -1,35 +1,28 @@
 //! Where the springings have gone before time begins: `[supports]`.
 
-use std::ops::Bound::Included;
-
+use super::rule::{Number, within};
 use super::structure::Structure;
-use super::table::{Number, Reading, Table};
+use super::table::{Reading, Table};
 use crate::argument::{plain, short};
 use crate::mechanics::blocks::Supports;
 use crate::mechanics::settling::{Follower, Movement, Movements, Reached};
 
 /// Nothing stands on springings that have gone farther.
-const MOVEMENT_M: Number = Number(Included(-1e3), Included(1e3));
-const ROTATION_RAD: Number = Number(Included(-1.0), Included(1.0));
+const MOVEMENT_M: Number = within(&(-1e3..=1e3));
 
 /// Reads `[supports]`.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<Movements> {
-    let left = table.table("left", read_one);
-    let right = table.table("right", read_one);
     Ok(Movements {
-        left: left?.unwrap_or_default(),
-        right: right?.unwrap_or_default(),
+        left: table.table("left", read_one).unwrap_or_default(),
+        right: table.table("right", read_one).unwrap_or_default(),
     })
 }
 
 fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
-    let spread_m = table.or("spread_m", &MOVEMENT_M, 0.0);
-    let settlement_m = table.or("settlement_m", &MOVEMENT_M, 0.0);
-    let rotation_rad = table.or("rotation_rad", &ROTATION_RAD, 0.0);
     Ok(Movement {
-        spread_m: spread_m?,
-        settlement_m: settlement_m?,
-        rotation_rad: rotation_rad?,
+        spread_m: table.or("spread_m", &MOVEMENT_M, 0.0),
+        settlement_m: table.or("settlement_m", &MOVEMENT_M, 0.0),
+        rotation_rad: table.or("rotation_rad", &within(&(-1.0..=1.0)), 0.0),
     })
 }
 

@@ -13,8 +13,10 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
+use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
+use super::rule::{Count, List, Number, one_of, within};
 use super::structure::Structure;
-use super::table::{Count, List, Number, OneOf, Reading, Table};
+use super::table::{Reading, Table};
 use crate::argument::short;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row};
 use crate::mechanics::column::Column;
@@ -22,18 +24,11 @@ use crate::mechanics::masonry::Masonry;
 use crate::mechanics::stability::falls;
 use crate::mechanics::tie::{Anchor, Tie, TieError};
 
-const COORDINATE_M: Number = Number::within(&(-1e6..=1e6));
-const AREA_MM2: Number = Number::within(&(1e-3..=1e9));
-const MODULUS_GPA: Number = Number::within(&(1e-4..=1e4));
+const COORDINATE_M: Number = within(&(-1e6..=1e6));
 /// The stiffest tie, in N/m: a steel bar of 30,000 mm2 that is 0.6 m long. Beyond it a tie is as good as rigid, and only costs time.
 const STIFFEST_N_M: f64 = 1e10;
-const STIFFNESS_N_M: Number = Number::within(&(1e-3..=STIFFEST_N_M));
 /// The most ties of a structure.
 const MOST_TIES: usize = 200;
-const PRESTRESS_N: Number = Number::within(&(0.0..=1e12));
-const YIELD_FORCE_N: Number = Number::within(&(1e-6..=1e12));
-const YIELD_STRESS_MPA: Number = Number::within(&(1e-3..=1e5));
-const STRAIN: Number = Number::within(&(1e-6..=10.0));
 const BLOCK: Count = Count {
     range: 0..=MAX_BLOCKS,
     why: "blocks are counted from 1, and 0 is the ground",
@@ -96,101 +91,47 @@ pub struct TieTable {
 
 impl TieTable {
     /// Reads all of `[[tie]]`.
-    pub(super) fn read_all(table: &mut Table<'_>) -> Reading<Vec<Self>> {
-        let ties = table.tables("tie", Self::read)?;
+    pub(super) fn read_all(table: &mut Table<'_>) -> Vec<Self> {
+        let ties = table.tables("tie", Self::read);
         if ties.len() > MOST_TIES {
             let wrong = format!(
                 "is one of {} ties; must be at most {MOST_TIES}: join those that lie side by side",
                 ties.len()
             );
-            return Err(table.wrong_element("tie", MOST_TIES, wrong));
+            table.wrong_element("tie", MOST_TIES, wrong);
         }
-        Ok(ties)
+        ties
     }
 
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let names = OneOf {
-            all: Between::ALL,
-            name: |between: Between| between.name(),
-        };
-        let between = table.optional("between", &names);
-        let height_m = table.optional("height_m", &COORDINATE_M);
-        let from_m = read_point(table, "from_m");
-        let to_m = read_point(table, "to_m");
-        let from_block = table.optional("from_block", &BLOCK);
-        let to_block = table.optional("to_block", &BLOCK);
-        let area_mm2 = table.optional("area_mm2", &AREA_MM2);
-        let modulus_gpa = table.optional("modulus_gpa", &MODULUS_GPA);
-        let stiffness_n_m = table.optional("stiffness_n_m", &STIFFNESS_N_M);
-        let prestress_n = table.or("prestress_n", &PRESTRESS_N, 0.0);
-        let yield_force_n = table.optional("yield_force_n", &YIELD_FORCE_N);
-        let yield_stress_mpa = table.optional("yield_stress_mpa", &YIELD_STRESS_MPA);
-        let breaks_at_strain = table.optional("breaks_at_strain", &STRAIN);
-        table.exactly_one(
-            "keys",
-            vec![
-                ("between", mark(&between)),
-                ("height_m", mark(&height_m)),
-                ("from_m", mark(&from_m)),
-            ],
-        )?;
-        table.exactly_one(
-            "keys",
-            vec![
-                ("area_mm2", mark(&area_mm2)),
-                ("stiffness_n_m", mark(&stiffness_n_m)),
-            ],
-        )?;
+        let names = one_of(Between::ALL, Between::name);
+        let stiffness = within(&(1e-3..=STIFFEST_N_M));
+        let stress = within(&(1e-3..=1e5));
         let read = Self {
-            between: between?,
-            height_m: height_m?,
-            from_m: from_m?,
-            from_block: from_block?,
-            to_m: to_m?,
-            to_block: to_block?,
-            area_mm2: area_mm2?,
-            modulus_gpa: modulus_gpa?,
-            stiffness_n_m: stiffness_n_m?,
-            prestress_n: prestress_n?,
-            yield_force_n: yield_force_n?,
-            yield_stress_mpa: yield_stress_mpa?,
-            breaks_at_strain: breaks_at_strain?,
+            between: table.optional("between", &names),
+            height_m: table.optional("height_m", &COORDINATE_M),
+            from_m: read_point(table, "from_m"),
+            from_block: table.optional("from_block", &BLOCK),
+            to_m: read_point(table, "to_m"),
+            to_block: table.optional("to_block", &BLOCK),
+            area_mm2: table.optional("area_mm2", &within(&(1e-3..=1e9))),
+            modulus_gpa: table.optional("modulus_gpa", &within(&(1e-4..=1e4))),
+            stiffness_n_m: table.optional("stiffness_n_m", &stiffness),
+            prestress_n: table.or("prestress_n", &within(&(0.0..=1e12)), 0.0),
+            yield_force_n: table.optional("yield_force_n", &within(&(1e-6..=1e12))),
+            yield_stress_mpa: table.optional("yield_stress_mpa", &stress),
+            breaks_at_strain: table.optional("breaks_at_strain", &within(&(1e-6..=10.0))),
         };
-        let needs = |key: &'static str, other: &'static str, given: bool, with: bool| {
-            (given && !with).then_some((key, other))
-        };
-        let points = read.from_m.is_some();
-        let lacking = [
-            needs("from_m", "to_m", points, read.to_m.is_some()),
-            needs("to_m", "from_m", read.to_m.is_some(), points),
-            needs("from_block", "from_m", read.from_block.is_some(), points),
-            needs("to_block", "to_m", read.to_block.is_some(), points),
-            needs(
-                "area_mm2",
-                "modulus_gpa",
-                read.area_mm2.is_some(),
-                read.modulus_gpa.is_some(),
-            ),
-            needs(
-                "modulus_gpa",
-                "area_mm2",
-                read.modulus_gpa.is_some(),
-                read.area_mm2.is_some(),
-            ),
-            needs(
-                "yield_stress_mpa",
-                "area_mm2",
-                read.yield_stress_mpa.is_some(),
-                read.area_mm2.is_some(),
-            ),
-        ];
-        if let Some((key, other)) = lacking.into_iter().flatten().next() {
-            return Err(table.wrong(key, format!("needs `{other}` beside it")));
-        }
-        if read.yield_force_n.is_some() && read.yield_stress_mpa.is_some() {
-            let wrong = "cannot be combined with `yield_force_n`; give one of them";
-            return Err(table.wrong("yield_stress_mpa", wrong));
-        }
+        table.relate(&[
+            OneOf(&["between", "height_m", "from_m"], None),
+            Together(&["from_m", "to_m"]),
+            Requires("from_block", "from_m", " beside it"),
+            Requires("to_block", "to_m", " beside it"),
+            OneOf(&["area_mm2", "stiffness_n_m"], None),
+            Together(&["area_mm2", "modulus_gpa"]),
+            AtMostOne(&["yield_force_n", "yield_stress_mpa"], "give one of them"),
+            Requires("yield_stress_mpa", "area_mm2", " beside it"),
+        ])?;
         Ok(read)
     }
 
@@ -277,22 +218,13 @@ impl TieTable {
     }
 }
 
-/// Whether a key is given, for what excludes others.
-fn mark<T>(read: &Reading<Option<T>>) -> Reading<Option<()>> {
-    match read {
-        Ok(value) => Ok(value.as_ref().map(|_| ())),
-        Err(reported) => Err(*reported),
+fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
+    let numbers = table.optional(key, &List(&COORDINATE_M))?;
+    if let [x_m, y_m] = numbers[..] {
+        return Some([x_m, y_m]);
     }
-}
-
-fn read_point(table: &mut Table<'_>, key: &str) -> Reading<Option<[f64; 2]>> {
-    match table.optional(key, &List(&COORDINATE_M))? {
-        None => Ok(None),
-        Some(numbers) => match numbers[..] {
-            [x_m, y_m] => Ok(Some([x_m, y_m])),
-            _ => Err(table.wrong(key, "has not two elements; must be a point [x, y] in m")),
-        },
-    }
+    table.wrong(key, "has not two elements; must be a point [x, y] in m");
+    None
 }
 
 /// A point of a block, or of the ground where that is said.

@@ -36,7 +36,7 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
     }
 }
 
-fn inline(value: &Value) -> String {
+pub(super) fn inline(value: &Value) -> String {
     let all = |values: &[Value]| values.iter().map(inline).collect::<Vec<_>>();
     match value {
         Value::String(text) => quoted(text),

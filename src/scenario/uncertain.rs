@@ -11,14 +11,14 @@
 //! Every number that is a key of another table may be uncertain. A sample gives each of them a value, from one point of
 //! a Sobol sequence with Owen scrambling.
 
-use std::ops::Bound::{Excluded, Included, Unbounded};
-
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use serde_json::{Map, Value, json};
 
 use super::Scenario;
+use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
+use super::rule::{ANY_NUMBER, Count, Switch, above, one_of};
 use super::sequence::Spacing;
-use super::table::{Count, Number, OneOf, Reading, Switch, Table};
+use super::table::{Reading, Reported, Table};
 use super::variant::{number, parts, value};
 use crate::argument::{plain, short};
 use crate::bisection::{Width, bisect, middle};
@@ -92,50 +92,41 @@ const SEED: Count = Count {
 };
 /// No more keys than the sequence has dimensions.
 const MAX_KEYS: usize = 256;
-const ANY: Number = Number(Unbounded, Unbounded);
-const DEVIATION: Number = Number(Excluded(0.0), Included(1e12));
+const SPREAD: &str = "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
+                      { deviation = 0.003 }";
 
 impl Spread {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let spacings = OneOf {
-            all: Spacing::ALL,
-            name: Spacing::name,
-        };
-        let distributions = OneOf {
-            all: Distribution::ALL,
-            name: Distribution::name,
-        };
-        let from = table.optional("from", &ANY);
-        let to = table.optional("to", &ANY);
-        let spacing = table.optional("spacing", &spacings);
-        let deviation = table.optional("deviation", &DEVIATION);
+        let from = table.optional("from", &ANY_NUMBER);
+        let to = table.optional("to", &ANY_NUMBER);
+        let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
+        let deviation = table.optional("deviation", &above(0.0, 1e12));
+        let distributions = one_of(Distribution::ALL, Distribution::name);
         let distribution = table.optional("distribution", &distributions);
-        let (from, to, spacing) = (from?, to?, spacing?);
-        let (deviation, distribution) = (deviation?, distribution?);
-        let is_range = from.is_some() || to.is_some() || spacing.is_some();
-        let is_about = deviation.is_some() || distribution.is_some();
-        match (from.zip(to), deviation) {
-            (Some((from, to)), None) if !is_about => {
-                let spacing = spacing.unwrap_or(Spacing::Linear);
-                if to <= from {
-                    let wrong = format!("is not above `from`; must be above {}", short(from));
-                    return Err(table.wrong("to", wrong));
-                }
-                if spacing == Spacing::Logarithmic && from <= 0.0 {
-                    let wrong = "needs numbers above 0; use \"linear\" here";
-                    return Err(table.wrong("spacing", wrong));
-                }
-                Ok(Self::Range { from, to, spacing })
-            }
-            (None, Some(deviation)) if !is_range => Ok(Self::About {
-                deviation,
+        let relations = [
+            OneOf(&["from", "deviation"], Some(SPREAD)),
+            Together(&["from", "to"]),
+            Requires("spacing", "from", " beside it"),
+            Requires("distribution", "deviation", " beside it"),
+            AtMostOne(&["from", "distribution"], SPREAD),
+        ];
+        table.relate(&relations).and(table.sound())?;
+        let Some((from, to)) = from.zip(to) else {
+            return Ok(Self::About {
+                deviation: deviation.ok_or(Reported)?,
                 distribution: distribution.unwrap_or(Distribution::Normal),
-            }),
-            _ => Err(table.wrong_itself(
-                "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
-                 { deviation = 0.003 }",
-            )),
+            });
+        };
+        let spacing = spacing.unwrap_or(Spacing::Linear);
+        if to <= from {
+            let wrong = format!("is not above `from`; must be above {}", short(from));
+            return Err(table.wrong("to", wrong));
         }
+        if spacing == Spacing::Logarithmic && from <= 0.0 {
+            let wrong = "needs numbers above 0; use \"linear\" here";
+            return Err(table.wrong("spacing", wrong));
+        }
+        Ok(Self::Range { from, to, spacing })
     }
 
     /// The quantile: the value below which this part of all values lies, in 0 to 1.
@@ -217,27 +208,20 @@ impl Uncertain {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
         let total_indices = table.or(TOTAL_INDICES, &Switch, false);
-        let names = table.keys_of_other_tables();
-        let keys: Vec<_> = names
-            .into_iter()
-            .map(|key| {
-                let spread = table.table(&key, Spread::read)?;
-                Ok(spread.map(|spread| UncertainKey {
-                    key,
-                    spread,
-                    own: None,
-                }))
-            })
-            .collect();
-        let keys = keys.into_iter().collect::<Reading<Vec<_>>>()?;
-        let keys: Vec<UncertainKey> = keys.into_iter().flatten().collect();
+        let mut keys = Vec::new();
+        for key in table.keys_of_other_tables() {
+            if let Some(spread) = table.table(&key, Spread::read) {
+                let own = None;
+                keys.push(UncertainKey { key, spread, own });
+            }
+        }
+        table.sound()?;
         if keys.is_empty() || keys.len() > MAX_KEYS {
             return Err(table.wrong_itself(format!(
                 "needs 1 to {MAX_KEYS} keys of other tables between quotation marks, such as \
                  \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
             )));
         }
-        let (samples, seed, total_indices) = (samples?, seed?, total_indices?);
         if total_indices && 2 * keys.len() > MAX_KEYS {
             let wrong = format!("goes with at most {} keys", MAX_KEYS / 2);
             return Err(table.wrong(TOTAL_INDICES, wrong));
@@ -287,7 +271,7 @@ impl Uncertain {
         let mut faulty = Ok(());
         for index in 0..self.keys.len() {
             if let Err(wrong) = self.complete_key(index, resolved, scenario) {
-                faulty = Err(table.wrong_in(TABLE, &self.keys[index].key, wrong));
+                faulty = Err(table.wrong_in(&[TABLE], &self.keys[index].key, wrong));
             }
         }
         faulty?;
@@ -305,7 +289,7 @@ impl Uncertain {
         }
         for key in &self.keys {
             if let Err(wrong) = key.check(scenario) {
-                faulty = Err(table.wrong_in(TABLE, &key.key, wrong));
+                faulty = Err(table.wrong_in(&[TABLE], &key.key, wrong));
             }
         }
         faulty?;
@@ -315,7 +299,7 @@ impl Uncertain {
             let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(0.5))).collect();
             if let Err(wrong) = scenario.with_values(&values) {
                 let wrong = format!("contradicts the keys before it: {wrong}");
-                return Err(table.wrong_in(TABLE, &self.keys[count - 1].key, wrong));
+                return Err(table.wrong_in(&[TABLE], &self.keys[count - 1].key, wrong));
             }
         }
         Ok(self)

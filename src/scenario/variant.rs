@@ -2,19 +2,11 @@
 
 use serde_json::Value;
 
-use super::span;
-use super::toml_text::toml_text;
-use super::{Assignment, Changes, Ground, Scenario, Source};
-use std::sync::Arc;
+use super::document::Document;
+use super::{Changes, Scenario, Series, shown, span, table};
 
-/// Tables that describe a study, not the structure or ground motion under study.
-const STUDIES: [&str; 3] = ["map", "suite", "uncertain"];
-/// Tables of the check, which needs no history.
-const CHECK: [&str; 2] = ["demand", "verify"];
-/// What precedes the keys of a record.
-const RECORD: &str = "ground.record.";
-/// What precedes the keys of the right foot.
-const RIGHT: &str = "ground.right.";
+/// Tables that describe a study or the check, not the structure or ground motion under study.
+const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
 
 impl Scenario {
     /// The scenario with other numbers for some keys, each named `table.key`. Studies and the check are left out. The samples
@@ -23,69 +15,39 @@ impl Scenario {
     /// # Errors
     /// Explains what is wrong with the keys or with the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
-        let record = match &self.ground {
-            Some(Ground::Record(record)) => Some(record),
-            Some(Ground::Pulse(_)) | None => None,
-        };
-        let (of_record, others): (Vec<_>, Vec<_>) = values
-            .iter()
-            .partition(|(key, _)| record.is_some() && key.starts_with(RECORD));
-        let right = self.right_foot.as_ref();
-        let (of_right, others): (Vec<_>, Vec<_>) = others
-            .into_iter()
-            .partition(|(key, _)| right.is_some() && key.starts_with(RIGHT));
-        let set = others
-            .into_iter()
-            .map(|(key, value)| assignment(key, value))
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut table = self.resolved();
-        if let Value::Object(table) = &mut table {
-            for left_out in STUDIES.iter().chain(&CHECK) {
-                table.shift_remove(*left_out);
-            }
-            if record.is_some() || self.unread_ground.is_some() {
-                table.shift_remove("ground");
-            } else if let Some(Value::Object(ground)) = table.get_mut("ground") {
-                ground.shift_remove("right");
+        let mut resolved = self.resolved();
+        if let Value::Object(tables) = &mut resolved {
+            tables.retain(|name, _| !STUDIES.contains(&name.as_str()));
+            if self.unread_ground.is_some() {
+                tables.shift_remove("ground");
             }
         }
-        make_room(&mut table, values);
-        let text = table.as_object().map_or(String::new(), toml_text);
-        let changes = Changes {
-            set: &set,
-            ..Changes::default()
-        };
-        let mut changed = Self::of(&Source::of_text(&text, ""), &changes)
-            .map_err(|errors| errors.as_slice()[0].message.clone())?;
-        let gravity_m_s2 = changed.simulation.gravity_m_s2;
-        let inner = |values: &[(&str, f64)], outer: &str| -> Vec<(String, f64)> {
-            let inner = values.iter();
-            inner
-                .map(|(key, value)| (key[outer.len()..].to_owned(), *value))
-                .collect()
-        };
-        if let Some(record) = record {
-            let of_record = inner(&of_record, RECORD);
-            let of_record: Vec<_> = of_record
-                .iter()
-                .map(|(key, value)| (&**key, *value))
-                .collect();
-            let record = record.with_values(&of_record, gravity_m_s2)?;
-            changed.ground_motion = Arc::new(record.motion(gravity_m_s2));
-            changed.ground = Some(Ground::Record(Box::new(record)));
+        make_room(&mut resolved, values);
+        let mut document = Document::of_json(&resolved, &self.files.folder);
+        for (key, value) in values {
+            let parts = parts(key);
+            return Err(match parts[..] {
+                [study, ..] if STUDIES.contains(&study) => format!(
+                    "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{study}] describes a study"
+                ),
+                [_, _, ..] if parts.iter().all(|part| is_name(part)) => {
+                    document.put_number(&parts, *value)?;
+                    continue;
+                }
+                _ => format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
+            });
         }
-        if let Some(right) = right {
-            let of_right = inner(&of_right, RIGHT);
-            let of_right: Vec<_> = of_right
-                .iter()
-                .map(|(key, value)| (&**key, *value))
-                .collect();
-            changed.right_foot = Some(right.with_values(&of_right, gravity_m_s2)?);
-            let left = (*changed.ground_motion).clone();
-            changed.ground_motion = Arc::new(changed.under_both_feet(left));
-        }
-        Ok(changed)
+        let known: Vec<Series> = self.series().cloned().collect();
+        let changes = Changes::default();
+        table::read_document(document, |table| Self::read_table(table, &known, &changes))
+            .map_err(|faults| shown(&faults[0].message))
     }
+}
+
+/// Whether a text is a key of TOML without quotation marks.
+fn is_name(text: &str) -> bool {
+    let is_letter = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    !text.is_empty() && text.chars().all(is_letter)
 }
 
 /// The parts of a key, `table.key`.
@@ -122,12 +84,16 @@ pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     }
 }
 
-/// Keys of an arch that say the same in two ways: where one is given, the other goes.
-const SAME: [[&str; 2]; 4] = [
-    ["thickness_m", "thickness_ratio"],
-    ["thickness_ratio", "thickness_m"],
-    ["rise_m", "embrace_deg"],
-    ["embrace_deg", "rise_m"],
+/// Keys that give one quantity in two ways: where the first is given, the second goes.
+const ALTERNATIVES: [[&str; 3]; 8] = [
+    ["/arch", "thickness_m", "thickness_ratio"],
+    ["/arch", "thickness_ratio", "thickness_m"],
+    ["/arch", "rise_m", "embrace_deg"],
+    ["/arch", "embrace_deg", "rise_m"],
+    ["/ground/record", "scale", "peak_g"],
+    ["/ground/record", "peak_g", "scale"],
+    ["/ground/right/record", "scale", "peak_g"],
+    ["/ground/right/record", "peak_g", "scale"],
 ];
 
 /// Changes what has to go with other numbers in a resolved scenario: of an arch either the thickness is there or its ratio, its last
@@ -138,11 +104,13 @@ fn make_room(table: &mut Value, values: &[(&str, f64)]) {
         let index = keys.iter().position(|key| key[..] == wanted)?;
         Some(values[index].1)
     };
-    for [is_given, goes] in SAME {
-        if given(["arch", is_given]).is_some()
-            && let Some(Value::Object(arch)) = table.get_mut("arch")
+    for [name, is_given, goes] in ALTERNATIVES {
+        let is_given =
+            |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{is_given}");
+        if keys.iter().any(is_given)
+            && let Some(Value::Object(table)) = table.pointer_mut(name)
         {
-            arch.shift_remove(goes);
+            table.shift_remove(goes);
         }
     }
     let of_arch = |key: &str| given(["arch", key]).or_else(|| table["arch"][key].as_f64());
@@ -199,25 +167,4 @@ fn fit_drums(table: &mut Value, values: &[(&str, f64)], height_m: Option<f64>, d
         // Both: they say different things, unless they add up.
         _ => {}
     }
-}
-
-/// An assignment of a number to a key of a table; whole numbers may stand for counts.
-fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
-    let table = parts(key)[0];
-    if STUDIES.contains(&table) || CHECK.contains(&table) {
-        return Err(format!(
-            "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{table}] says what is asked of them"
-        ));
-    }
-    if !key.contains('.') {
-        return Err("names no number of another table, as \"arch.depth_m\" does".to_owned());
-    }
-    let whole = value.fract() == 0.0 && value.abs() < 1e15;
-    let text = if whole {
-        format!("{key}={value:.0}")
-    } else {
-        format!("{key}={value:?}")
-    };
-    text.parse()
-        .map_err(|_| format!("`{key}` names no number of another table, as \"arch.depth_m\" does"))
 }

@@ -28,18 +28,18 @@
 //! state = { part_of_d0 = 0.4, period_factor = 1.68, damping_percent = 8, divide_acceleration = 1.35, divide_displacement = 1 }
 //! ```
 
-use std::ops::Bound::{Excluded, Included, Unbounded};
+use std::ops::Bound::{Excluded, Unbounded};
 use std::path::Path;
 
 use serde::Serialize;
 use serde::ser::{SerializeMap as _, Serializer};
-use toml::de::DeValue;
 
-use super::LineFault;
 use super::listing::{Listing, serialize_layout};
-use super::record::{Format, Series, faulty, read_numbers};
+use super::record::{Format, LineFault, Series, faulty, read_numbers};
+use super::relation::Relation::{OneOf, Together};
+use super::rule::{Because, Number, OneOrMore, Text, above, one_of, within};
 use super::structure::MAGNITUDE;
-use super::table::{Number, OneOf, OneOrMore, Reading, Rule, Table, Text};
+use super::table::{Reading, Reported, Table};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use crate::dynamics::demand::points::PointSpectrum;
@@ -152,48 +152,39 @@ impl Records {
         }
     }
 
-    fn read(table: &mut Table<'_>, folder: &Path, gravity_m_s2: Reading<f64>) -> Reading<Self> {
-        let keys = [SLV_RECORDS, SLC_RECORDS];
-        let patterns = keys.map(|key| (key, table.optional(key, &OneOrMore(&Text))));
-        let given = patterns
-            .into_iter()
-            .filter_map(|(key, patterns)| match patterns {
-                Ok(None) => None,
-                Ok(Some(patterns)) => Some((key, Ok(patterns))),
-                Err(reported) => Some((key, Err(reported))),
-            });
-        let given: Vec<_> = given.collect();
-        if given.is_empty() {
+    fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
+        let patterns = [SLV_RECORDS, SLC_RECORDS].map(|key| {
+            let patterns = table.optional(key, &OneOrMore(&Text));
+            patterns.map(|patterns| (key, patterns))
+        });
+        let given: Vec<_> = patterns.into_iter().flatten().collect();
+        if given.is_empty() && !table.describes() {
             return Ok(Self::default());
         }
-        let asked: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
         let format = Format::read(table);
-        let listing = Listing::read(table, folder, given, format)?;
-        let gravity_m_s2 = gravity_m_s2?;
+        let listing = Listing::read(table, &given, format);
+        table.sound()?;
+        let gravity_m_s2 = gravity_m_s2.ok_or(Reported)?;
         let accept = |series: &Series| match series.peak_g(gravity_m_s2) {
             0.0 => Err("is zero throughout".to_owned()),
             _ => series.check_strength(gravity_m_s2),
         };
         let mut records = Self::default();
-        for (key, series) in listing.series(table, folder, accept)? {
-            table.note_file(folder, &series.file);
+        for (key, series) in listing.series(table, accept)? {
+            table.note_file(&series.file);
             match key {
                 SLV_RECORDS => records.slv.push(series),
                 _ => records.slc.push(series),
             }
         }
-        for key in asked {
-            let count = if key == SLV_RECORDS {
-                records.slv.len()
-            } else {
-                records.slc.len()
-            };
-            if count < LEAST_RECORDS {
+        for (key, found) in [(SLV_RECORDS, &records.slv), (SLC_RECORDS, &records.slc)] {
+            let count = found.len();
+            if table.gives(key) && count < LEAST_RECORDS {
                 let wrong = format!(
                     "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
                      (NTC 2018, § 7.3.5)"
                 );
-                return Err(table.wrong(key, wrong));
+                table.wrong(key, wrong);
             }
         }
         Ok(records)
@@ -223,32 +214,15 @@ pub const CONFIDENCE_FACTOR: f64 = 1.35;
 /// q if nothing better is known (C8.7.1.2.1.7).
 pub const BEHAVIOUR_FACTOR: f64 = 2.0;
 
-/// A number in a range, and the clause that sets the range.
-struct ByClause(Number, &'static str);
-
-impl Rule for ByClause {
-    type Value = f64;
-
-    fn allowed(&self) -> String {
-        format!("{} ({})", self.0.allowed(), self.1)
-    }
-
-    fn read(&self, value: &DeValue<'_>) -> Result<f64, String> {
-        self.0.read(value)
-    }
-}
-
-const CONFIDENCE: ByClause = ByClause(
-    Number(Included(1.0), Included(2.0)),
+const CONFIDENCE: Because = Because(
+    within(&(1.0..=2.0)),
     "Circolare 7/2019, Tab. C8.5.IV has 1.00 to 1.35",
 );
-const BEHAVIOUR: ByClause = ByClause(
-    Number(Included(1.0), Included(5.0)),
+const BEHAVIOUR: Because = Because(
+    within(&(1.0..=5.0)),
     "Circolare 7/2019, C8.7.1.2.1.7 has 2 without better knowledge",
 );
-const PERIOD_S: Number = Number(Excluded(0.0), Included(10.0));
-const KAPPA: Number = Number(Excluded(0.0), Included(100.0));
-const MODULUS_GPA: Number = Number(Excluded(0.0), Included(1e3));
+const PERIOD_S: Number = above(0.0, 10.0);
 
 impl Default for Verify {
     fn default() -> Self {
@@ -264,28 +238,19 @@ impl Default for Verify {
 
 impl Verify {
     /// Reads `[verify]`, whose files are relative to `folder`.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        folder: &Path,
-        gravity_m_s2: Reading<f64>,
-    ) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
         let default = Self::default();
-        let confidence_factor =
-            table.or("confidence_factor", &CONFIDENCE, default.confidence_factor);
-        let behaviour_factor = table.or("behaviour_factor", &BEHAVIOUR, default.behaviour_factor);
-        let names = OneOf {
-            all: Sides::ALL,
-            name: Sides::name,
-        };
-        let sides = table.or("sides", &names, default.sides);
-        let free_standing = table.table("free_standing", FreeStanding::read);
-        let records = Records::read(table, folder, gravity_m_s2);
+        let sides = one_of(Sides::ALL, Sides::name);
         Ok(Self {
-            confidence_factor: confidence_factor?,
-            behaviour_factor: behaviour_factor?,
-            sides: sides?,
-            free_standing: free_standing?,
-            records: records?,
+            confidence_factor: table.or(
+                "confidence_factor",
+                &CONFIDENCE,
+                default.confidence_factor,
+            ),
+            behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, default.behaviour_factor),
+            sides: table.or("sides", &sides, default.sides),
+            free_standing: table.table("free_standing", FreeStanding::read),
+            records: Records::read(table, gravity_m_s2)?,
         })
     }
 
@@ -304,11 +269,11 @@ impl Verify {
                     "needs [demand.{}], which tells what is allowed",
                     state.name()
                 );
-                return Err(table.wrong_in("verify", key, wrong));
+                return Err(table.wrong_in(&["verify"], key, wrong));
             }
             if self.sides != Sides::Both {
                 let wrong = "goes with sides = \"both\": histories sway to both sides";
-                return Err(table.wrong_in("verify", key, wrong));
+                return Err(table.wrong_in(&["verify"], key, wrong));
             }
         }
         Ok(())
@@ -317,20 +282,29 @@ impl Verify {
 
 impl FreeStanding {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        if table.gives("t0_s") {
-            let t0_s = table.required("t0_s", &PERIOD_S)?;
-            return Ok(Self::Period { t0_s });
+        let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
+        let t0_s = table.optional("t0_s", &PERIOD_S);
+        let read = (
+            table.optional("kappa", &above(0.0, 100.0)),
+            table.optional("length_m", &MAGNITUDE),
+            table.optional("thickness_m", &MAGNITUDE),
+            table.optional("modulus_gpa", &above(0.0, 1e3)),
+        );
+        table
+            .relate(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])
+            .and(table.sound())?;
+        match (t0_s, read) {
+            (Some(t0_s), _) => Ok(Self::Period { t0_s }),
+            (None, (Some(kappa), Some(length_m), Some(thickness_m), Some(modulus_gpa))) => {
+                Ok(Self::Elastic {
+                    kappa,
+                    length_m,
+                    thickness_m,
+                    modulus_gpa,
+                })
+            }
+            _ => Err(Reported),
         }
-        let kappa = table.required("kappa", &KAPPA);
-        let length_m = table.required("length_m", &MAGNITUDE);
-        let thickness_m = table.required("thickness_m", &MAGNITUDE);
-        let modulus_gpa = table.required("modulus_gpa", &MODULUS_GPA);
-        Ok(Self::Elastic {
-            kappa: kappa?,
-            length_m: length_m?,
-            thickness_m: thickness_m?,
-            modulus_gpa: modulus_gpa?,
-        })
     }
 }
 
@@ -362,18 +336,13 @@ impl<T> ByState<T> {
     fn read(
         table: &mut Table<'_>,
         read: impl Fn(&mut Table<'_>, LimitState) -> Reading<T>,
-    ) -> Reading<Self> {
+    ) -> Self {
         let mut of = |state: LimitState| table.table(state.name(), |table| read(table, state));
-        let (sld, slv, slc) = (
-            of(LimitState::Sld),
-            of(LimitState::Slv),
-            of(LimitState::Slc),
-        );
-        Ok(Self {
-            sld: sld?,
-            slv: slv?,
-            slc: slc?,
-        })
+        Self {
+            sld: of(LimitState::Sld),
+            slv: of(LimitState::Slv),
+            slc: of(LimitState::Slc),
+        }
     }
 }
 
@@ -502,45 +471,41 @@ impl StateRule {
 }
 
 /// The code's own ranges depend on the soil; [`GroundSpectrum::new`] checks them.
-const HAZARD: ByClause = ByClause(Number(Excluded(0.0), Unbounded), "NTC 2018, § 3.2");
-const TOPOGRAPHIC_FACTOR: ByClause = ByClause(
-    Number(Included(1.0), Included(2.0)),
-    "NTC 2018, Tab. 3.2.V has 1.0 to 1.4",
-);
-const GAMMA: Number = Number(Included(-10.0), Included(10.0));
-const PSI: Number = Number(Included(-10.0), Included(10.0));
+const HAZARD: Because = Because(Number(Excluded(0.0), Unbounded), "NTC 2018, § 3.2");
+const TOPOGRAPHIC_FACTOR: Because =
+    Because(within(&(1.0..=2.0)), "NTC 2018, Tab. 3.2.V has 1.0 to 1.4");
 /// At more damping than this the spectrum of a floor is no longer larger than its peak.
-const DAMPING_PERCENT: Number = Number(Excluded(0.0), Included(30.0));
-const PART_OF_D0: Number = Number(Excluded(0.0), Excluded(1.0));
-const PERIOD_FACTOR: Number = Number(Excluded(0.0), Included(10.0));
-const DIVIDE: Number = Number(Included(1.0), Included(10.0));
+const DAMPING_PERCENT: Number = above(0.0, 30.0);
+const DIVIDE: Number = within(&(1.0..=10.0));
 
 /// Keys of `[demand]` that define spectra of the code.
 const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "height"];
 
 impl Demand {
     /// Reads `[demand]`, whose files are relative to `folder`.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        folder: &Path,
-        confidence_factor: Reading<f64>,
-    ) -> Reading<Self> {
-        let states = || LimitState::ALL.iter().map(|state| state.name());
-        let demand = if states().any(|state| table.gives_in(state, "spectrum")) {
+    pub(super) fn read(table: &mut Table<'_>, confidence_factor: f64) -> Reading<Self> {
+        let mut states = LimitState::ALL.iter().map(|state| state.name());
+        let by_points = states.any(|state| table.gives_in(state, "spectrum"));
+        let points = |table: &mut Table<'_>| {
+            ByState::read(table, |table, state| {
+                PointDemand::read(table, state, confidence_factor)
+            })
+        };
+        if table.describes() {
+            points(table);
+        }
+        let demand = if by_points {
             for key in CODE_KEYS {
                 if table.gives(key) {
                     let wrong = "goes with ag_g, f0 and tc_star_s; spectra from files are taken as they are: leave it out";
                     return Err(table.wrong(key, wrong));
                 }
             }
-            let confidence_factor = confidence_factor?;
-            let of = |table: &mut Table<'_>, state| {
-                PointDemand::read(table, folder, state, confidence_factor)
-            };
-            Self::Points(ByState::read(table, of)?)
+            Self::Points(points(table))
         } else {
             Self::Code(CodeDemand::read(table)?)
         };
+        table.sound()?;
         if demand.states().all(|state| state == LimitState::Sld) {
             return Err(table.wrong_itself(
                 "has nothing to check beyond damage: give [demand.slv] or [demand.slc]",
@@ -561,54 +526,36 @@ impl Demand {
 
 impl CodeDemand {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let soils = OneOf {
-            all: Soil::ALL,
-            name: Soil::name,
-        };
-        let categories = OneOf {
-            all: Topography::ALL,
-            name: Topography::name,
-        };
-        let soil = table.required("soil", &soils);
+        let soil = table.required("soil", &one_of(Soil::ALL, Soil::name));
+        let categories = one_of(Topography::ALL, Topography::name);
         let category = table.optional("topography", &categories);
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
-        let relief = table.exactly_one(
-            "keys",
-            vec![
-                ("topography", category.map(|x| x.map(Relief::Topography))),
-                (
-                    "topographic_factor",
-                    factor.map(|x| x.map(Relief::TopographicFactor)),
-                ),
-            ],
-        );
-        let site = match (&soil, &relief) {
-            (Ok(soil), Ok(relief)) => Some(Site {
-                soil: *soil,
-                topographic_factor: relief.factor(),
-            }),
-            _ => None,
-        };
+        let keys = &["topography", "topographic_factor"];
+        let site = table.relate(&[OneOf(keys, None)]).and(table.sound());
+        let category = category.map(Relief::Topography);
+        let relief = category.or(factor.map(Relief::TopographicFactor));
+        let site = site.ok().zip(relief).map(|((), relief)| Site {
+            soil,
+            topographic_factor: relief.factor(),
+        });
         let hazards = ByState::read(table, |table, _| read_hazard(table, site));
-        let height = table.table("height", |table| Height::read(table, hazards.as_ref().ok()));
+        let height = table.table("height", |table| Height::read(table, &hazards));
         Ok(Self {
-            soil: soil?,
-            relief: relief?,
-            hazards: hazards?,
-            height: height?,
+            soil,
+            relief: relief.ok_or(Reported)?,
+            hazards,
+            height,
         })
     }
 }
 
 fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
-    let ag_g = table.required("ag_g", &HAZARD);
-    let f0 = table.required("f0", &HAZARD);
-    let tc_star_s = table.required("tc_star_s", &HAZARD);
     let hazard = Hazard {
-        ag_g: ag_g?,
-        f0: f0?,
-        tc_star_s: tc_star_s?,
+        ag_g: table.required("ag_g", &HAZARD),
+        f0: table.required("f0", &HAZARD),
+        tc_star_s: table.required("tc_star_s", &HAZARD),
     };
+    table.sound()?;
     if let Some(site) = site {
         GroundSpectrum::new(hazard, site).map_err(|error| {
             let wrong = format!("is out of range: must be {}", error.allowed);
@@ -620,17 +567,18 @@ fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
 
 impl Height {
     /// Reads `[demand.height]`, for the states with these hazards.
-    fn read(table: &mut Table<'_>, hazards: Option<&ByState<Hazard>>) -> Reading<Self> {
-        let modes = table.tables("modes", BuildingMode::read)?;
+    fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> Reading<Self> {
+        let modes = table.tables("modes", BuildingMode::read);
+        table.sound()?;
         if modes.is_empty() {
             return Err(table.wrong_itself(
                 "lacks `modes`: give the modes of the building, at least the first",
             ));
         }
         for state in LimitState::ALL {
-            let asked = hazards.is_some_and(|hazards| hazards.get(*state).is_some());
             let lacks = |mode: &BuildingMode| mode.states.get(*state).is_none();
-            if let Some(index) = modes.iter().position(lacks).filter(|_| asked) {
+            let checked = hazards.get(*state).is_some();
+            if let Some(index) = modes.iter().position(lacks).filter(|_| checked) {
                 let name = state.name();
                 let wrong = format!(
                     "lacks `{name}`, the period and damping of the building at that state: give \
@@ -665,47 +613,36 @@ impl Height {
 
 impl BuildingMode {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let gamma = table.required("gamma", &GAMMA);
-        let psi = table.required("psi", &PSI);
-        let states = ByState::read(table, |table, _| {
-            let t_s = table.required("t_s", &PERIOD_S);
-            let damping_percent = table.required("damping_percent", &DAMPING_PERCENT);
-            Ok(ModeState {
-                t_s: t_s?,
-                damping_percent: damping_percent?,
-            })
-        });
+        let any = within(&(-10.0..=10.0));
         Ok(Self {
-            gamma: gamma?,
-            psi: psi?,
-            states: states?,
+            gamma: table.required("gamma", &any),
+            psi: table.required("psi", &any),
+            states: ByState::read(table, |table, _| {
+                Ok(ModeState {
+                    t_s: table.required("t_s", &PERIOD_S),
+                    damping_percent: table.required("damping_percent", &DAMPING_PERCENT),
+                })
+            }),
         })
     }
 }
 
 impl PointDemand {
-    fn read(
-        table: &mut Table<'_>,
-        folder: &Path,
-        state: LimitState,
-        confidence_factor: f64,
-    ) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> Reading<Self> {
         let spectrum = table.required("spectrum", &Text);
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
-        let rule = match StateRule::circolare(state, confidence_factor) {
-            Some(default) => table
-                .table_or_defaults("state", |table| StateRule::read(table, default))
-                .map(Some),
-            None => Ok(None),
-        };
-        let (spectrum, damping_percent) = (spectrum?, damping_percent?);
-        let points = read_points(&folder.join(&spectrum), damping_percent)
+        let default = StateRule::circolare(state, confidence_factor);
+        let rule = default.map(|default| {
+            table.table_or_defaults("state", |table| StateRule::read(table, default))
+        });
+        table.sound()?;
+        let points = read_points(&table.path(&spectrum), damping_percent)
             .map_err(|wrong| table.wrong("spectrum", wrong))?;
-        table.note_file(folder, &spectrum);
+        table.note_file(&spectrum);
         Ok(Self {
             spectrum,
             damping_percent,
-            state: rule?,
+            state: rule.transpose()?,
             points,
         })
     }
@@ -714,17 +651,13 @@ impl PointDemand {
 impl StateRule {
     fn read(table: &mut Table<'_>, default: Self) -> Reading<Self> {
         let mut or = |key, rule: &Number, default| table.or(key, rule, default);
-        let part_of_d0 = or("part_of_d0", &PART_OF_D0, default.part_of_d0);
-        let period_factor = or("period_factor", &PERIOD_FACTOR, default.period_factor);
-        let damping = or("damping_percent", &DAMPING_PERCENT, default.damping_percent);
-        let acceleration = or("divide_acceleration", &DIVIDE, default.divide_acceleration);
-        let displacement = or("divide_displacement", &DIVIDE, default.divide_displacement);
+        let part = Number(Excluded(0.0), Excluded(1.0));
         Ok(Self {
-            part_of_d0: part_of_d0?,
-            period_factor: period_factor?,
-            damping_percent: damping?,
-            divide_acceleration: acceleration?,
-            divide_displacement: displacement?,
+            part_of_d0: or("part_of_d0", &part, default.part_of_d0),
+            period_factor: or("period_factor", &above(0.0, 10.0), default.period_factor),
+            damping_percent: or("damping_percent", &DAMPING_PERCENT, default.damping_percent),
+            divide_acceleration: or("divide_acceleration", &DIVIDE, default.divide_acceleration),
+            divide_displacement: or("divide_displacement", &DIVIDE, default.divide_displacement),
         })
     }
 }

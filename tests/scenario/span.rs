@@ -58,7 +58,7 @@ fn what_does_not_go_together_is_said() {
     for (keys, message) in [
         (
             "span_m = 6\nrise_m = 2\nthickness_m = 0.9".to_owned(),
-            "s.toml:1:1: [arch] lacks `measured_at`: give one of \"intrados\", \"mean\", \"extrados\"",
+            "s.toml:2:10: `span_m = 6` needs `measured_at` beside it: \"intrados\", \"mean\" or \"extrados\"",
         ),
         (
             format!("{SPAN}thickness_m = 0.9"),
@@ -79,7 +79,7 @@ fn what_does_not_go_together_is_said() {
         ),
         (
             "mean_radius_m = 3\nrise_m = 2\nembrace_deg = 150\nthickness_m = 0.9".to_owned(),
-            "s.toml:3:10: `rise_m = 2` goes with `span_m`",
+            "s.toml:3:10: `rise_m = 2` needs `span_m`",
         ),
         (
             "span_m = 6\nmeasured_at = 'extrados'\nembrace_deg = 150\nthickness_m = 8".to_owned(),

@@ -58,7 +58,7 @@ fn what_is_no_joint_is_refused_with_its_place() {
         (
             &format!("{stiff}stone_modulus_gpa = 20.0"),
             "7:21",
-            ["cannot be combined", "give one"],
+            ["cannot be combined", "give exactly one"],
         ),
         (
             &format!("{stiff}contact_points = 1"),
@@ -67,8 +67,8 @@ fn what_is_no_joint_is_refused_with_its_place() {
         ),
         (
             &format!("{stiff}contact_points = 3\ncontact = \"continuous\""),
-            "7:18",
-            ["cannot be combined", "`contact`"],
+            "8:11",
+            ["cannot be combined", "`contact_points`"],
         ),
         (
             &format!("{stiff}damping_ratio = 0.05"),

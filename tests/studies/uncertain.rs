@@ -892,11 +892,11 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'map.duration_s' = { from = 1.0, to = 2.0 }",
-            "[map] says what is asked of them",
+            "[map] describes a study",
         ),
         (
             "'verify.confidence_factor' = { from = 1.0, to = 1.2 }",
-            "[verify] says what is asked of them",
+            "[verify] describes a study",
         ),
         (
             "arch.depth_m = { from = 1.0, to = 2.0 }",
@@ -939,10 +939,14 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'arch.depth_m' = { from = 0.5, deviation = 0.1 }",
-            "must be a range, such as",
+            "`deviation` cannot be combined with `from`",
         ),
         (
             "'arch.depth_m' = { from = 0.5 }",
+            "`from = 0.5` needs `to` beside it",
+        ),
+        (
+            "'arch.depth_m' = { spacing = 'linear' }",
             "must be a range, such as",
         ),
         ("'arch.depth_m' = 3.0", "must be a table"),
@@ -961,7 +965,7 @@ fn what_cannot_be_uncertain_is_refused() {
         ),
         (
             "'arch.span_m' = { from = 9.0, to = 11.0 }",
-            "[arch] lacks `measured_at`",
+            "cannot be combined with `mean_radius_m`",
         ),
         (
             "total_indices = 3\n'arch.depth_m' = { deviation = 0.1 }",

@@ -1,16 +1,17 @@
 //! How the file of a record is read: its format, and for tables the places of times and accelerations.
 
 use std::ffi::OsStr;
-use std::ops::Bound::Included;
 use std::path::Path;
 
 use serde::Serialize;
-use toml::de::DeValue;
+use serde_json::{Value, json};
 
 use super::unit::AnyUnit;
 use super::{LineFault, MAX_TIME_S, MIN_STEP_S, Samples, Unit, asc, at2, csv, knet};
+use crate::scenario::document::Node;
+use crate::scenario::rule::{Count, Rule, Switch, one_of, within};
 use crate::scenario::source::not_plain;
-use crate::scenario::table::{Count, Number, OneOf, Reading, Rule, Switch, Table};
+use crate::scenario::table::Table;
 
 named! {
     /// Format of a record's file.
@@ -169,7 +170,6 @@ pub struct Contents {
     pub wrapped: bool,
 }
 
-const STEP_S: Number = Number(Included(MIN_STEP_S), Included(MAX_TIME_S));
 pub(super) const COLUMN_NUMBER: Count = Count {
     range: 1..=10_000,
     why: "the first column",
@@ -215,12 +215,8 @@ impl Format {
         Self::of_ending(file.to_str()?).ok()
     }
 
-    pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Reading<Option<Self>> {
-        let formats = OneOf {
-            all: Self::ALL,
-            name: Self::name,
-        };
-        table.optional("format", &formats)
+    pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
+        table.optional("format", &one_of(Self::ALL, Self::name))
     }
 }
 
@@ -252,99 +248,85 @@ impl Layout {
         Ok(contents)
     }
 
-    pub(in crate::scenario) fn read(
-        table: &mut Table<'_>,
-        format: Reading<Format>,
-    ) -> Reading<Self> {
-        let dt_s = table.optional("dt_s", &STEP_S);
+    /// Reads the keys that describe files of this format; `None`: the format is unknown, which is a fault elsewhere.
+    pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
+        let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
+        let dt_s = table.optional("dt_s", &step_s);
         let time_column = table.optional("time_column", &AnyColumn);
         let acceleration_column = table.optional("acceleration_column", &AnyColumn);
         let wrapped = table.or("wrapped", &Switch, false);
         let skip_rows = table.or("skip_rows", &SKIPPED, 0);
-        let decimals = OneOf {
-            all: Decimal::ALL,
-            name: Decimal::name,
-        };
+        let decimals = one_of(Decimal::ALL, Decimal::name);
         let decimal = table.or("decimal", &decimals, Decimal::Point);
         let unit = table.optional("unit", &AnyUnit);
-        let quantities = OneOf {
-            all: Recorded::ALL,
-            name: Recorded::name,
-        };
+        let quantities = one_of(Recorded::ALL, Recorded::name);
         let quantity = table.or("quantity", &quantities, Recorded::Acceleration);
         let remove_mean = table.or("remove_mean", &Switch, false);
-        let format = format?;
+        let mut layout = Self {
+            form: Form::Asc,
+            quantity,
+            remove_mean,
+        };
+        let Some(format) = format else {
+            return layout;
+        };
         if format != Format::Csv
             && let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key))
         {
-            return Err(table.wrong(key, "applies to `format = \"csv\"` only"));
+            table.wrong(key, "applies to `format = \"csv\"` only");
         }
-        let (unit, quantity, remove_mean) = (unit?, quantity?, remove_mean?);
-        if let Some(unit) = unit
-            && unit.quantity() != quantity
-        {
-            return Err(table.wrong("unit", format!("is {}", unit.other_quantity())));
+        if let Some(unit) = unit.filter(|unit| unit.quantity() != quantity) {
+            table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
         if quantity == Recorded::Velocity {
             if format == Format::Knet {
                 let wrong = "does not apply to a file of K-NET, which holds accelerations";
-                return Err(table.wrong("quantity", wrong));
+                table.wrong("quantity", wrong);
             }
             if remove_mean {
                 let wrong =
                     "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-                return Err(table.wrong("remove_mean", wrong));
+                table.wrong("remove_mean", wrong);
             }
         }
-        let form = match format {
-            Format::At2 => Ok(Form::At2 { unit }),
-            Format::Asc if table.gives("unit") => Err(table.wrong(
-                "unit",
-                "does not apply to an ASC file, whose header has UNITS",
-            )),
-            Format::Asc => Ok(Form::Asc),
-            Format::Knet if table.gives("unit") => Err(table.wrong(
-                "unit",
-                "does not apply to a file of K-NET, whose header has a Scale Factor",
-            )),
-            Format::Knet => Ok(Form::Knet),
+        let header = match format {
+            Format::Asc => Some("does not apply to an ASC file, whose header has UNITS"),
+            Format::Knet => {
+                Some("does not apply to a file of K-NET, whose header has a Scale Factor")
+            }
+            Format::At2 | Format::Csv => None,
+        };
+        if let Some(wrong) = header.filter(|_| table.gives("unit")) {
+            table.wrong("unit", wrong);
+        }
+        layout.form = match format {
+            Format::At2 => Form::At2 { unit },
+            Format::Asc => Form::Asc,
+            Format::Knet => Form::Knet,
             Format::Csv => {
-                let unit = match unit {
-                    Some(unit) => Ok(unit),
-                    None => table.required("unit", &AnyUnit),
-                };
-                if table.gives("dt_s") && table.gives("time_column") {
+                if dt_s.is_some() && time_column.is_some() {
                     let wrong = "cannot be combined with `time_column`; give one of them";
-                    return Err(table.wrong("dt_s", wrong));
+                    table.wrong("dt_s", wrong);
                 }
-                let times = match dt_s? {
-                    Some(step_s) => Times::Step(step_s),
-                    None => Times::Column(time_column?.unwrap_or(TableColumn::Number(1))),
-                };
-                let (acceleration_column, wrapped) = (acceleration_column?, wrapped?);
                 if wrapped && acceleration_column.is_some() {
                     let wrong = "cannot be combined with `acceleration_column`; give one of them";
-                    return Err(table.wrong("wrapped", wrong));
-                }
-                if wrapped && matches!(times, Times::Column(_)) {
+                    table.wrong("wrapped", wrong);
+                } else if wrapped && !table.gives("dt_s") {
                     let wrong = "needs `dt_s`: rows of several samples have no column of times";
-                    return Err(table.wrong("wrapped", wrong));
+                    table.wrong("wrapped", wrong);
                 }
-                Ok(Form::Csv(TableLayout {
-                    times,
+                let column = time_column.unwrap_or(TableColumn::Number(1));
+                Form::Csv(TableLayout {
+                    times: dt_s.map_or(Times::Column(column), Times::Step),
                     acceleration_column,
                     wrapped,
-                    unit: unit?,
-                    skip_rows: skip_rows?,
-                    decimal: decimal?,
-                }))
+                    unit: table.needed("unit", &AnyUnit, unit),
+                    skip_rows,
+                    decimal,
+                })
             }
         };
-        Ok(Self {
-            form: form?,
-            quantity,
-            remove_mean,
-        })
+        layout
     }
 
     /// Whether a key of `[ground.record]` describes tables: the keys that only tables have, and `unit`.
@@ -398,11 +380,19 @@ impl Rule for AnyColumn {
         format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
     }
 
-    fn read(&self, value: &DeValue<'_>) -> Result<TableColumn, String> {
+    fn read(&self, value: &Node) -> Result<TableColumn, String> {
         match value {
-            DeValue::String(name) => Ok(TableColumn::Name(name.to_string())),
+            Node::Text(name) => Ok(TableColumn::Name(name.clone())),
             _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
         }
+    }
+
+    fn stand_in(&self) -> TableColumn {
+        TableColumn::Number(1)
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "anyOf": [{ "type": "string" }, COLUMN_NUMBER.schema()] })
     }
 }
 

@@ -33,7 +33,6 @@ use std::borrow::Cow;
 use std::fmt;
 use std::fs;
 use std::io::Read as _;
-use std::ops::Bound::{Excluded, Included};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -46,9 +45,10 @@ pub use unit::Unit;
 use super::assignment::Assignment;
 use super::error::{ScenarioErrors, excerpt};
 use super::ground::{MAX_ACCELERATION_G, free_fall};
+use super::relation::Relation;
+use super::rule::{Number, Text, above, one_of, within};
 use super::shown;
-use super::source::Source;
-use super::table::{self, Number, OneOf, Reading, Rule as _, Table, Text};
+use super::table::{self, Reading, Reported, Table};
 use crate::argument::{plain, short};
 use crate::dynamics::ground::GroundMotion;
 
@@ -66,9 +66,9 @@ const MIN_STEP_S: f64 = 1e-6;
 /// Largest sample in any unit: no product or square derived from it leaves the range of an `f64`.
 const MAX_SAMPLE: f64 = 1e12;
 
-const SCALE: Number = Number(Included(-1e6), Included(1e6));
-pub(super) const PEAK_G: Number = Number(Excluded(0.0), Included(MAX_ACCELERATION_G));
-const START_S: Number = Number(Included(0.0), Included(MAX_TIME_S));
+pub(super) const SCALE: Number = within(&(-1e6..=1e6));
+pub(super) const PEAK_G: Number = above(0.0, MAX_ACCELERATION_G);
+const START_S: Number = within(&(0.0..=MAX_TIME_S));
 
 named! {
     /// The direction of the accelerations of a record.
@@ -182,43 +182,6 @@ impl Record {
         Ok(rescaled.motion(gravity_m_s2))
     }
 
-    /// The same record with other numbers for some of its keys.
-    pub(super) fn with_values(
-        &self,
-        values: &[(&str, f64)],
-        gravity_m_s2: f64,
-    ) -> Result<Self, String> {
-        let mut record = self.clone();
-        for (index, (key, value)) in values.iter().enumerate() {
-            let rule = match *key {
-                "scale" => &SCALE,
-                "peak_g" => &PEAK_G,
-                "start_s" => &START_S,
-                _ => {
-                    return Err(format!(
-                        "of a record `scale`, `peak_g` and `start_s` are numbers, not `{key}`"
-                    ));
-                }
-            };
-            if !rule.contains(*value) {
-                let allowed = rule.allowed();
-                return Err(format!(
-                    "`{key} = {value}` is out of range; must be {allowed}"
-                ));
-            }
-            if *key != "start_s" && values[..index].iter().any(|(other, _)| *other != "start_s") {
-                return Err("`scale` cannot be combined with `peak_g`; give one of them".to_owned());
-            }
-            match *key {
-                "scale" => record.main = record.main.scaled(Scaling::Factor(*value)),
-                "peak_g" => record.main = record.main.scaled(Scaling::PeakG(*value)),
-                _ => record.start_s = *value,
-            }
-        }
-        record.main.check_strength(gravity_m_s2)?;
-        Ok(record)
-    }
-
     /// The time at which the last of its records ends.
     pub(super) fn end_s(&self) -> f64 {
         let ends = self.series().map(Series::last_s);
@@ -239,41 +202,37 @@ impl Record {
         }
     }
 
-    /// Reads `[ground.record]` and builds its motion.
+    /// Reads `[ground.record]` and builds its motion; `known` records are not read from their files again.
     pub(super) fn read(
         table: &mut Table<'_>,
-        folder: &Path,
-        gravity_m_s2: Reading<f64>,
+        known: &[Series],
+        gravity_m_s2: Option<f64>,
     ) -> Reading<(Self, GroundMotion)> {
-        let components = OneOf {
-            all: Component::ALL,
-            name: Component::name,
-        };
+        let components = one_of(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
-        let main = Series::read(table, folder, start_s, gravity_m_s2);
+        let main = Series::read(table, known, start_s, gravity_m_s2);
         let vertical = table.table("vertical", |table| {
-            Series::read(table, folder, start_s, gravity_m_s2)
+            Series::read(table, known, start_s, gravity_m_s2)
         });
-        if let (Ok(Component::Vertical), Ok(Some(_))) = (&component, &vertical) {
+        if component == Component::Vertical && table.gives("vertical") {
             let wrong =
                 "cannot be combined with `component = \"vertical\"`; give one record per direction";
             return Err(table.wrong("vertical", wrong));
         }
-        let (record, gravity_m_s2) = (
-            Self {
-                main: main?,
-                component: component?,
-                start_s: start_s?,
-                vertical: vertical?,
-            },
-            gravity_m_s2?,
-        );
+        table.sound()?;
+        let gravity_m_s2 = gravity_m_s2.ok_or(Reported)?;
+        let record = Self {
+            main: main?,
+            component,
+            start_s,
+            vertical,
+        };
         let motion = record.motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
             let wrong = free_fall(time_s);
             return Err(match record.vertical {
-                Some(_) => table.wrong_in("vertical", "file", wrong),
+                Some(_) => table.wrong_in(&["vertical"], "file", wrong),
                 None => table.wrong("file", wrong),
             });
         }
@@ -315,16 +274,18 @@ impl Series {
     /// file.
     pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
-        let layout = table::read_text("", keys, |table| {
+        let layout = table::read_text(("", Path::new("")), keys, |table| {
             table.rename("the record");
-            let format = Format::read(table)?;
-            let format = format.map_or_else(|| Format::of_ending(&name), Ok);
-            let format = format.map_err(|wrong| table.wrong_itself(wrong));
-            Layout::read(table, format)
+            let format = match Format::read(table) {
+                Some(format) => Some(format),
+                None if table.gives("format") => None,
+                None => Format::of_ending(&name)
+                    .map_err(|wrong| table.wrong_itself(wrong))
+                    .ok(),
+            };
+            Ok(Layout::read(table, format))
         })
-        .map_err(|faults| {
-            ScenarioErrors::placed(&Source::of_text("", &name), keys, faults).without_places()
-        })?;
+        .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
         match read_contents(path, &layout) {
             Ok(contents) => Ok(Self::new(name, layout, contents)),
             Err(FileFault::Unreadable(wrong)) => Err(ScenarioErrors::unreadable(&name, wrong)),
@@ -455,24 +416,34 @@ impl Series {
 
     fn read(
         table: &mut Table<'_>,
-        folder: &Path,
-        start_s: Reading<f64>,
-        gravity_m_s2: Reading<f64>,
+        known: &[Self],
+        start_s: f64,
+        gravity_m_s2: Option<f64>,
     ) -> Reading<Self> {
         let file = table.required("file", &Text);
         let format = Format::read(table);
-        let scaling = Scaling::read(table);
-        let format = match (&file, format?) {
-            (_, Some(format)) => Ok(format),
-            (Ok(file), None) => Format::of_ending(file).map_err(|wrong| table.wrong("file", wrong)),
-            (Err(reported), None) => Err(*reported),
+        let scale = table.optional("scale", &SCALE);
+        let peak_g = table.optional("peak_g", &PEAK_G);
+        let at_most = "give at most one of them";
+        let related = table.relate(&[Relation::AtMostOne(&["scale", "peak_g"], at_most)]);
+        let format = match format {
+            None if table.gives("file") && !table.gives("format") => Format::of_ending(&file)
+                .map_err(|wrong| table.wrong("file", wrong))
+                .ok(),
+            format => format,
         };
         let layout = Layout::read(table, format);
-        let (file, scaling, layout) = (file?, scaling?, layout?);
-        let series = Self::of_file(folder, file, layout)
-            .map_err(|wrong| table.wrong_file("file", wrong))?
-            .scaled(scaling);
-        series.check(table, start_s?, gravity_m_s2?)?;
+        related.and(table.sound())?;
+        let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
+        let mut known = known.iter();
+        let known = known.find(|known| known.file == file && known.layout == layout);
+        let series = match known {
+            Some(known) => known.clone(),
+            None => Self::of_file(table.folder(), file, layout)
+                .map_err(|wrong| table.wrong_file("file", wrong))?,
+        };
+        let series = series.scaled(scaling);
+        series.check(table, start_s, gravity_m_s2.ok_or(Reported)?)?;
         Ok(series)
     }
 
@@ -495,21 +466,6 @@ impl Series {
             return Err(table.wrong("file", wrong));
         }
         Ok(())
-    }
-}
-
-impl Scaling {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let scale = table.optional("scale", &SCALE);
-        let peak_g = table.optional("peak_g", &PEAK_G);
-        match (scale?, peak_g?) {
-            (Some(_), Some(_)) => Err(table.wrong(
-                "peak_g",
-                "cannot be combined with `scale`; give at most one of them",
-            )),
-            (scale, None) => Ok(Self::Factor(scale.unwrap_or(1.0))),
-            (None, Some(peak_g)) => Ok(Self::PeakG(peak_g)),
-        }
     }
 }
 

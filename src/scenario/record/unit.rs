@@ -1,9 +1,10 @@
 //! Units of recorded accelerations and velocities.
 
-use toml::de::DeValue;
+use serde_json::{Value, json};
 
-use super::Recorded;
-use crate::scenario::table::{OneOf, Rule};
+use super::layout::Recorded;
+use crate::scenario::document::Node;
+use crate::scenario::rule::{OneOf, Rule, one_of};
 
 named! {
     /// Unit of the samples in a file.
@@ -73,10 +74,7 @@ impl Unit {
 /// A unit, by its name or in a spelling that files have.
 pub(super) struct AnyUnit;
 
-const NAMES: OneOf<'static, Unit> = OneOf {
-    all: Unit::ALL,
-    name: Unit::name,
-};
+const NAMES: OneOf<Unit> = one_of(Unit::ALL, Unit::name);
 
 impl Rule for AnyUnit {
     type Value = Unit;
@@ -85,11 +83,20 @@ impl Rule for AnyUnit {
         format!("{} or \"gal\"", NAMES.allowed())
     }
 
-    fn read(&self, value: &DeValue<'_>) -> Result<Unit, String> {
-        match value.as_str().and_then(Unit::written) {
-            Some(unit) => Ok(unit),
-            None => NAMES.read(value),
-        }
+    fn read(&self, value: &Node) -> Result<Unit, String> {
+        let written = match value {
+            Node::Text(text) => Unit::written(text),
+            _ => None,
+        };
+        written.map_or_else(|| NAMES.read(value), Ok)
+    }
+
+    fn stand_in(&self) -> Unit {
+        Unit::Gravity
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "string", "examples": Unit::ALL })
     }
 }
 

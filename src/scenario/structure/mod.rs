@@ -9,15 +9,16 @@ pub use dimensions::{Dimension, DimensionSide, metres};
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Bound::{Excluded, Included};
-use std::path::Path;
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::masonry::{self, Additions};
 use super::motion::Hinges;
+use super::relation::Relation::{AtMostOne, OneOf};
+use super::rule::{Count, List, Number, Switch, within};
 use super::span::Circular;
-use super::table::{Count, List, Number, Reading, Switch, Table};
+use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
 use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
@@ -36,19 +37,13 @@ use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::Tie;
 
 /// Range of lengths and densities.
-pub(super) const MAGNITUDE: Number = Number(
-    Included(*arch::MAGNITUDE.start()),
-    Included(*arch::MAGNITUDE.end()),
-);
+pub(super) const MAGNITUDE: Number = within(&arch::MAGNITUDE);
 pub(super) const THICKNESS_RATIO: Number = Number(
     Included(arch::MIN_THICKNESS_RATIO),
     Excluded(arch::THICKNESS_RATIO_BOUND),
 );
-pub(super) const EMBRACE_DEG: Number = Number(
-    Included(*arch::EMBRACE_DEG.start()),
-    Included(*arch::EMBRACE_DEG.end()),
-);
-const JOINT_DEG: Number = Number(Included(0.0), Included(*arch::EMBRACE_DEG.end()));
+pub(super) const EMBRACE_DEG: Number = within(&arch::EMBRACE_DEG);
+const JOINT_DEG: Number = within(&(0.0..=*arch::EMBRACE_DEG.end()));
 pub(super) const VOUSSOIRS: Count = Count {
     range: arch::VOUSSOIRS,
     why: "four hinges need four joints",
@@ -82,12 +77,11 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure for a model of motion, with its ties. Files are relative to `folder`.
+    /// Reads the structure for a model of motion, with its ties.
     pub(super) fn read(
         table: &mut Table<'_>,
-        folder: &Path,
         hinges: Hinges,
-        gravity_m_s2: Reading<f64>,
+        gravity_m_s2: Option<f64>,
     ) -> Reading<(Self, Vec<TieTable>)> {
         let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
@@ -96,13 +90,12 @@ impl Structure {
         let column = table.table("column", |table| {
             read_column(table, free_hinges).map(Read::Column)
         });
-        let mut candidates = vec![("arch", arch), ("column", column)];
-        for (key, shape) in masonry::read_shapes(table, folder) {
-            candidates.push((key, shape.map(|shape| shape.map(Read::Shape))));
-        }
-        let read = table.exactly_one("tables", candidates);
-        let beside = beside?;
-        let (read, gravity_m_s2) = (read?, gravity_m_s2?);
+        let shape = masonry::read_shapes(table).map(Read::Shape);
+        let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
+        let tables = ["arch", "column", pointed, elliptic, basket, blocks];
+        table.relate(&[OneOf(&tables, None)])?;
+        let read = arch.or(column).or(shape).ok_or(Reported)?;
+        let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(Reported)?);
         let ties = beside.ties.clone();
         let structure = match read {
             Read::Arch(arch) => Self::Arch(arch),
@@ -296,8 +289,10 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
     let joints_deg = table.optional("joints_deg", &List(&JOINT_DEG));
-    let (depth_m, density_kg_m3, voussoirs) = (depth_m?, density_kg_m3?, voussoirs?);
-    let joints_deg = joints_deg?;
+    let equal = "`voussoirs` are equal: give one of them";
+    table
+        .relate(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])
+        .and(table.sound())?;
     let Circular {
         mean_radius_m,
         thickness_ratio,
@@ -313,10 +308,6 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
         })
         .expect("the ranges of the keys are those of an arch")
         .with_measured_at(measured_at);
-    if joints_deg.is_some() && voussoirs.is_some() {
-        let wrong = "cannot be combined with `voussoirs`, which are equal; give one of them";
-        return Err(table.wrong("joints_deg", wrong));
-    }
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
         let why = if free_hinges {
             "joints open between blocks"
@@ -400,26 +391,18 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &Switch, false);
-    if !free_hinges {
-        for key in DRUM_KEYS {
-            if table.gives(key) {
-                let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
-                return Err(table.wrong(key, wrong));
-            }
-        }
+    if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
+        let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
+        table.wrong(key, wrong);
     }
-    if table.gives("drums") && table.gives("drum_heights_m") {
-        let wrong = "cannot be combined with `drums`; give one of them";
-        return Err(table.wrong("drum_heights_m", wrong));
-    }
-    let (height_m, width_m, depth_m, density_kg_m3) =
-        (height_m?, width_m?, depth_m?, density_kg_m3?);
-    let (drums, drum_heights_m, top_width_m) = (drums?, drum_heights_m?, top_width_m?);
+    table
+        .relate(&[AtMostOne(&["drums", "drum_heights_m"], "give one of them")])
+        .and(table.sound())?;
     let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
         .expect("the ranges of the keys are within those of a column")
-        .on_pedestal(pedestal?);
+        .on_pedestal(pedestal);
     if let Some(drums) = drums {
         column = column
             .with_drums(drums)

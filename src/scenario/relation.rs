@@ -1,0 +1,119 @@
+//! Relations between the keys of a table, as data.
+
+use serde_json::{Value, json};
+
+use super::table::{Reading, Reported, Table};
+
+/// A relation between keys that a table gives.
+pub(super) enum Relation<'a> {
+    /// Exactly one of these keys. The text replaces the message if there is none.
+    OneOf(&'a [&'a str], Option<&'a str>),
+    /// At most one of these keys. The text says what to do if there are two.
+    AtMostOne(&'a [&'a str], &'a str),
+    /// All of these keys or none.
+    Together(&'a [&'a str]),
+    /// The first key needs the second. The text says why, or what else to do.
+    Requires(&'a str, &'a str, &'a str),
+    /// The first key excludes the second. The text says why and what to do; it follows the second.
+    Excludes(&'a str, &'a str, &'a str),
+}
+
+use Relation::{AtMostOne, Excludes, OneOf, Requires, Together};
+
+impl Relation<'_> {
+    /// The relation as a JSON schema.
+    pub(super) fn schema(&self) -> Value {
+        let given = |key: &&str| json!({ "required": [key] });
+        match self {
+            OneOf(keys, _) => json!({ "oneOf": keys.iter().map(given).collect::<Vec<_>>() }),
+            AtMostOne(keys, _) => {
+                let pairs = keys.iter().enumerate().flat_map(|(index, one)| {
+                    let others = keys[..index].iter();
+                    others.map(move |other| json!({ "not": { "required": [other, one] } }))
+                });
+                json!({ "allOf": pairs.collect::<Vec<_>>() })
+            }
+            Together(keys) => {
+                let all = keys.iter().map(|key| ((*key).to_owned(), json!(keys)));
+                json!({ "dependencies": Value::Object(all.collect()) })
+            }
+            Requires(key, other, _) => json!({ "dependencies": { *key: [other] } }),
+            Excludes(key, other, _) => json!({ "not": { "required": [key, other] } }),
+        }
+    }
+
+    /// Reports where a table breaks the relation.
+    fn check(&self, table: &mut Table<'_>) {
+        match self {
+            OneOf(keys, message) => {
+                let rule = format!(
+                    "exactly one of the {} {}",
+                    if keys.iter().all(|key| table.is_table(key)) {
+                        "tables"
+                    } else {
+                        "keys"
+                    },
+                    keys.join(", ")
+                );
+                let at_most_one = |remedy: &str| format!("give {remedy}");
+                if !exclude(table, keys, &at_most_one(&rule)) && !table.may_give(keys) {
+                    match message {
+                        Some(message) => table.wrong_itself(message),
+                        None => table.wrong_itself(format!("needs {rule}")),
+                    };
+                }
+            }
+            AtMostOne(keys, remedy) => {
+                exclude(table, keys, remedy);
+            }
+            Together(keys) => {
+                let given = keys.iter().find(|key| table.gives(key));
+                let lacking = keys.iter().find(|key| !table.may_give(&[key]));
+                if let Some((key, other)) = given.zip(lacking) {
+                    table.wrong(key, format!("needs `{other}` beside it"));
+                }
+            }
+            Requires(key, other, why) => {
+                if table.gives(key) && !table.may_give(&[other]) {
+                    table.wrong(key, format!("needs `{other}`{why}"));
+                }
+            }
+            Excludes(key, other, why) => {
+                if table.gives(key) && table.gives(other) {
+                    table.wrong(other, why);
+                }
+            }
+        }
+    }
+}
+
+/// Reports all keys but the first in the file if more than one of them is given, and returns whether any is.
+fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
+    let mut given: Vec<_> = keys
+        .iter()
+        .copied()
+        .filter(|key| table.gives(key))
+        .collect();
+    given.sort_by_key(|key| table.place(key));
+    if let [first, others @ ..] = &given[..] {
+        for key in others {
+            table.excluded(key, first, remedy);
+        }
+    }
+    !given.is_empty()
+}
+
+impl Table<'_> {
+    /// Reports all relations that the table breaks.
+    pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
+        let before = self.faults();
+        for relation in relations {
+            self.constrain(|| relation.schema());
+            relation.check(self);
+        }
+        if self.faults() > before {
+            return Err(Reported);
+        }
+        Ok(())
+    }
+}

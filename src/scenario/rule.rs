@@ -1,0 +1,335 @@
+//! Rules for single values: what a key takes, in words, as a reader and as a JSON schema.
+
+use std::ops::{Bound, RangeBounds as _, RangeInclusive};
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::document::{Entry, Node};
+use super::error::excerpt;
+use crate::argument::short;
+
+/// A rule for a value.
+pub(super) trait Rule {
+    /// The type it is read as.
+    type Value: Serialize;
+    /// The rule in words.
+    fn allowed(&self) -> String;
+    /// The value, or what is wrong with it.
+    fn read(&self, value: &Node) -> Result<Self::Value, String>;
+    /// Any value that follows the rule: it stands for one that is missing or wrong, and nothing is computed from it.
+    fn stand_in(&self) -> Self::Value;
+    /// The rule as a JSON schema.
+    fn schema(&self) -> Value;
+}
+
+/// A finite number between two bounds. Whole numbers need no decimal point.
+pub(super) struct Number(pub(super) Bound<f64>, pub(super) Bound<f64>);
+
+/// Any finite number.
+pub(super) const ANY_NUMBER: Number = Number(Bound::Unbounded, Bound::Unbounded);
+
+/// A number in a range.
+pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
+    Number(
+        Bound::Included(*range.start()),
+        Bound::Included(*range.end()),
+    )
+}
+
+/// A number above the first bound and up to the second.
+pub(super) const fn above(low: f64, high: f64) -> Number {
+    Number(Bound::Excluded(low), Bound::Included(high))
+}
+
+impl Number {
+    pub(super) fn contains(&self, x: f64) -> bool {
+        (self.0, self.1).contains(&x)
+    }
+}
+
+impl Rule for Number {
+    type Value = f64;
+
+    fn allowed(&self) -> String {
+        if let (Bound::Included(low), Bound::Included(high)) = (self.0, self.1) {
+            return format!("a number from {} to {}", short(low), short(high));
+        }
+        let bounds = [
+            match self.0 {
+                Bound::Included(low) => Some(format!("of at least {}", short(low))),
+                Bound::Excluded(low) => Some(format!("above {}", short(low))),
+                Bound::Unbounded => None,
+            },
+            match self.1 {
+                Bound::Included(high) => Some(format!("at most {}", short(high))),
+                Bound::Excluded(high) => Some(format!("below {}", short(high))),
+                Bound::Unbounded => None,
+            },
+        ];
+        let bounds: Vec<_> = bounds.into_iter().flatten().collect();
+        format!("a number {}", bounds.join(" and "))
+    }
+
+    fn read(&self, value: &Node) -> Result<f64, String> {
+        #[expect(clippy::cast_precision_loss, reason = "as for a number with a point")]
+        let x = match value {
+            Node::Number(number) => *number,
+            Node::Whole(whole) => *whole as f64,
+            _ => return Err(format!("is {}", value.kind())),
+        };
+        match x {
+            x if !x.is_finite() => Err("is not finite".to_owned()),
+            x if self.contains(x) => Ok(x),
+            _ => Err("is out of range".to_owned()),
+        }
+    }
+
+    fn stand_in(&self) -> f64 {
+        match (self.0, self.1) {
+            (Bound::Included(low), _) => low,
+            (_, Bound::Included(high)) => high,
+            _ => 1.0,
+        }
+    }
+
+    fn schema(&self) -> Value {
+        let mut schema = json!({ "type": "number" });
+        for (bound, inclusive, exclusive) in [
+            (self.0, "minimum", "exclusiveMinimum"),
+            (self.1, "maximum", "exclusiveMaximum"),
+        ] {
+            match bound {
+                Bound::Included(bound) => schema[inclusive] = json!(bound),
+                Bound::Excluded(bound) => schema[exclusive] = json!(bound),
+                Bound::Unbounded => {}
+            }
+        }
+        schema
+    }
+}
+
+/// An array whose elements follow a rule.
+pub(super) struct List<'a, R>(pub(super) &'a R);
+
+impl<R: Rule> Rule for List<'_, R> {
+    type Value = Vec<R::Value>;
+
+    fn allowed(&self) -> String {
+        format!("an array, each element {}", self.0.allowed())
+    }
+
+    fn read(&self, value: &Node) -> Result<Self::Value, String> {
+        let Node::Array(elements) = value else {
+            return Err(format!("is {}", value.kind()));
+        };
+        let read = |(index, element): (usize, &Entry)| {
+            let place = index + 1;
+            let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
+            self.0.read(&element.value).map_err(wrong)
+        };
+        elements.iter().enumerate().map(read).collect()
+    }
+
+    fn stand_in(&self) -> Self::Value {
+        Vec::new()
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "array", "items": self.0.schema() })
+    }
+}
+
+/// Values that follow a rule: a single one, or an array of at least one.
+pub(super) struct OneOrMore<'a, R>(pub(super) &'a R);
+
+impl<R: Rule> Rule for OneOrMore<'_, R> {
+    type Value = Vec<R::Value>;
+
+    fn allowed(&self) -> String {
+        format!("{} or an array of at least one", self.0.allowed())
+    }
+
+    fn read(&self, value: &Node) -> Result<Self::Value, String> {
+        match value {
+            Node::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
+            Node::Array(_) => List(self.0).read(value),
+            _ => Ok(vec![self.0.read(value)?]),
+        }
+    }
+
+    fn stand_in(&self) -> Self::Value {
+        Vec::new()
+    }
+
+    fn schema(&self) -> Value {
+        let one = self.0.schema();
+        json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
+    }
+}
+
+/// True or false.
+pub(super) struct Switch;
+
+impl Rule for Switch {
+    type Value = bool;
+
+    fn allowed(&self) -> String {
+        "true or false".to_owned()
+    }
+
+    fn read(&self, value: &Node) -> Result<bool, String> {
+        match value {
+            Node::Boolean(value) => Ok(*value),
+            _ => Err(format!("is {}", value.kind())),
+        }
+    }
+
+    fn stand_in(&self) -> bool {
+        false
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "boolean" })
+    }
+}
+
+/// A whole number in a range.
+pub(super) struct Count {
+    pub(super) range: RangeInclusive<usize>,
+    /// Why the range begins where it does.
+    pub(super) why: &'static str,
+}
+
+impl Rule for Count {
+    type Value = usize;
+
+    fn allowed(&self) -> String {
+        let (low, high) = (self.range.start(), self.range.end());
+        format!("a whole number from {low} ({}) to {high}", self.why)
+    }
+
+    fn read(&self, value: &Node) -> Result<usize, String> {
+        let Node::Whole(whole) = value else {
+            return Err(format!("is {}", value.kind()));
+        };
+        let count = usize::try_from(*whole).ok();
+        let count = count.filter(|count| self.range.contains(count));
+        count.ok_or_else(|| "is out of range".to_owned())
+    }
+
+    fn stand_in(&self) -> usize {
+        *self.range.start()
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "integer", "minimum": self.range.start(), "maximum": self.range.end() })
+    }
+}
+
+/// Any string.
+pub(super) struct Text;
+
+impl Rule for Text {
+    type Value = String;
+
+    fn allowed(&self) -> String {
+        "a string".to_owned()
+    }
+
+    fn read(&self, value: &Node) -> Result<String, String> {
+        match value {
+            Node::Text(text) => Ok(text.clone()),
+            _ => Err(format!("is {}", value.kind())),
+        }
+    }
+
+    fn stand_in(&self) -> String {
+        String::new()
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "type": "string" })
+    }
+}
+
+/// One of several things, each by its name.
+pub(super) struct OneOf<T: 'static> {
+    all: &'static [T],
+    name: fn(T) -> &'static str,
+}
+
+/// One of these things by its name.
+pub(super) const fn one_of<T>(all: &'static [T], name: fn(T) -> &'static str) -> OneOf<T> {
+    OneOf { all, name }
+}
+
+impl<T: Copy> OneOf<T> {
+    fn names(&self) -> Vec<&'static str> {
+        self.all.iter().map(|&one| (self.name)(one)).collect()
+    }
+}
+
+impl<T: Copy + Serialize> Rule for OneOf<T> {
+    type Value = T;
+
+    fn allowed(&self) -> String {
+        let names: Vec<_> = self.names().iter().map(|s| format!("{s:?}")).collect();
+        format!("one of {}", names.join(", "))
+    }
+
+    fn read(&self, value: &Node) -> Result<T, String> {
+        let Node::Text(text) = value else {
+            return Err(format!("is {}", value.kind()));
+        };
+        let mut all = self.all.iter().copied();
+        all.find(|&one| (self.name)(one) == text)
+            .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
+    }
+
+    fn stand_in(&self) -> T {
+        self.all[0]
+    }
+
+    fn schema(&self) -> Value {
+        json!({ "enum": self.names() })
+    }
+}
+
+/// A number in a range, and the reason for its bounds.
+pub(super) struct Because(pub(super) Number, pub(super) &'static str);
+
+impl Rule for Because {
+    type Value = f64;
+
+    fn allowed(&self) -> String {
+        format!("{} ({})", self.0.allowed(), self.1)
+    }
+
+    fn read(&self, value: &Node) -> Result<f64, String> {
+        self.0.read(value)
+    }
+
+    fn stand_in(&self) -> f64 {
+        self.0.stand_in()
+    }
+
+    fn schema(&self) -> Value {
+        self.0.schema()
+    }
+}
+
+/// Suggests the known name nearest to `name`; empty when none is near.
+pub(super) fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
+    // At least half the name in common: enough to match a forgotten unit or prefix, too much for a chance match.
+    const NEAR: f64 = 0.5;
+    let name = excerpt(name);
+    known
+        .iter()
+        .map(AsRef::as_ref)
+        .map(|known: &str| (strsim::normalized_damerau_levenshtein(&name, known), known))
+        .filter(|(likeness, _)| *likeness > NEAR)
+        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+        .map(|(_, known)| format!(" (did you mean `{known}`?)"))
+        .unwrap_or_default()
+}
