@@ -617,6 +617,42 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
     assert!(most == 4 && yielded > 0.01, "{most} {yielded}");
 }
 
+/// Steps of a way grow while blocks turn evenly, but not across the yielding of a tie: one long movement gives the yielding and the capacities
+/// of 1000 short ones, to a millionth of the radius, of the weight and of gravity.
+#[test]
+fn ties_yield_in_long_steps_as_in_short_ones() {
+    for (way, end_m) in [(OUT, 0.03), (DOWN, 0.24)] {
+        let law = |yields_at| [75.0, 0.0, yields_at];
+        let (row, _) = with_bars(16, |blocks| {
+            let bars = [(4, 0.06), (3, 0.04)];
+            let bars = bars.map(|(joint, yields_at)| bar(blocks, joint, law(yields_at), false));
+            bars.to_vec()
+        });
+        let [one, many] = [1, 1000].map(|pieces| {
+            let mut follower = Follower::new(&row).unwrap();
+            let at_m = |piece: u32| end_m * f64::from(piece) / f64::from(pieces);
+            for piece in 0..pieces {
+                let ends_m = [piece, piece + 1].map(at_m);
+                let reached = follower.move_supports(right(way), ends_m[0], ends_m[1]);
+                assert_eq!(reached, Ok(Reached::End), "{way:?} {ends_m:?}");
+            }
+            let weight_n = row.mass_kg() * 9.81;
+            let ties = follower.stance.ties.iter();
+            let mut numbers: Vec<f64> = ties
+                .flat_map(|tie| [tie.yielded_m.0[0], tie.force_n.0[0] / weight_n])
+                .collect();
+            for sway in [Sway::Right, Sway::Left] {
+                numbers.extend(follower.pushes_g(sway).unwrap().unwrap());
+            }
+            numbers
+        });
+        assert!(one[0].max(one[2]) > 1e-3, "{way:?}: {one:?}");
+        for (one, many) in one.iter().zip(&many) {
+            assert!((one - many).abs() < 1e-6, "{way:?}: {one} {many}");
+        }
+    }
+}
+
 /// Two stiff bars at different heights hold an arch on five hinges. Each pulls as its twin does where the energy of blocks and bars is
 /// least; where an arch has both, what one pulls with depends on the other.
 #[test]

@@ -48,6 +48,8 @@ const MOST_TRIALS: usize = 60;
 const FLAT: f64 = 0.1;
 /// A response to ties is rounding below this part of what they would do to free blocks.
 const NO_MOTION: f64 = 1e-9;
+/// Where the forces of ties are not found a step is shortened, at most to this part.
+const SHORTEST: f64 = 1e-6;
 /// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
 const LONGEST: f64 = 1e3;
 
@@ -272,9 +274,18 @@ impl<'a> Descent<'a> {
         longest: &mut f64,
     ) -> Result<f64, SettlingError> {
         let mut step = Step::new(self.row, stance, force_g);
+        let (before_kg, shortest) = (self.ties_kg.clone(), SHORTEST * *longest);
         loop {
             step.length = *longest;
-            let fastest = self.balance_ties(&mut step)?;
+            let fastest = match self.balance_ties(&mut step) {
+                // The shorter a step, the less forces change in it.
+                Err(SettlingError::Ties) if *longest > shortest => {
+                    *longest *= 0.1;
+                    self.ties_kg.clone_from(&before_kg);
+                    continue;
+                }
+                result => result?,
+            };
             if *longest * fastest <= farthest_m {
                 return Ok(fastest);
             }
@@ -289,12 +300,14 @@ impl<'a> Descent<'a> {
             let [least_kg, most_kg] = step.bounds_kg[tie];
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
-        self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+        let mut fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
+            let mut responded = false;
             let lacks_m = self.lacks_m(step);
             if step.pressing != self.program.active {
                 step.pressing = self.program.active.to_vec();
                 step.lengthen = self.lengthen(step);
+                responded = true;
             }
             let Some(way_kg) = self.way_kg(step, &lacks_m) else {
                 break;
@@ -303,10 +316,13 @@ impl<'a> Descent<'a> {
             let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * step.length);
             let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
             if left_kg <= FORCE * self.row.mass_kg() {
-                // Responses of the row have taken the place of its velocities.
-                return Ok(self.solve(step.stance, &step.lines, step.force_g, 1.0)?);
+                if responded {
+                    // Responses of the row have taken the place of its velocities.
+                    fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+                }
+                return Ok(fastest);
             }
-            self.go_along(step, &way_kg, lacks_m.dot(&way_kg))?;
+            fastest = self.go_along(step, &way_kg, lacks_m.dot(&way_kg))?;
         }
         Err(SettlingError::Ties)
     }
@@ -450,7 +466,7 @@ impl<'a> Descent<'a> {
         step: &Step<'_>,
         way_kg: &DVector<f64>,
         falls: f64,
-    ) -> Result<(), ContactError> {
+    ) -> Result<f64, ContactError> {
         let from_kg = self.ties_kg.clone();
         let ends = (0..from_kg.len()).map(|tie| self.ends_at(step, tie, way_kg[tie]));
         let ends: Vec<f64> = ends.collect();
@@ -465,14 +481,14 @@ impl<'a> Descent<'a> {
                     from_kg + part * way_kg[tie]
                 };
             }
-            self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+            let fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
             let falls_on = self.lacks_m(step).component_mul(way_kg);
             // A tie that has come to its end stays there, unless it should come back.
             let goes = falls_on.iter().zip(&ends);
             let goes = goes.filter(|(falls, end)| part <= **end || **falls < 0.0);
             let left: f64 = goes.map(|(falls, _)| falls).sum();
             if left.abs() <= FLAT * falls || (part >= all && left > 0.0) {
-                return Ok(());
+                return Ok(fastest);
             }
             if part > all {
                 part = all;
@@ -491,8 +507,7 @@ impl<'a> Descent<'a> {
                 0.5 * (near + far)
             };
         }
-        self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
-        Ok(())
+        self.solve(step.stance, &step.lines, step.force_g, 1.0)
     }
 
     /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
