@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
-use archrock::dynamics::free_hinges::{Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::internals::contact::{Load, Program};
+use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::internals::joints::Placement;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::incipient;

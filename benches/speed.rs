@@ -6,7 +6,7 @@
 use std::sync::LazyLock;
 
 use archrock::internals::hybrid::engine::HybridSystem;
-use archrock::internals::hybrid::rocking::{Rocking, RockingState};
+use archrock::internals::hybrid::rocking::{Moment, Rocking, RockingState};
 use archrock::{
     Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
 };
@@ -51,8 +51,13 @@ fn right_hand_side(bencher: Bencher) {
     let ground = pulse(-0.3, 0.2);
     let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, 1e-8);
     let mode = rocking.released(Sway::Right);
-    let state = RockingState::new(0.02, 0.1, 0.0);
-    bencher.bench(|| rocking.slope(mode, 0, 0.1, divan::black_box(&state)));
+    let now = Moment {
+        time_s: 0.1,
+        piece: 0,
+        mode,
+        state: RockingState::new(0.02, 0.1, 0.0),
+    };
+    bencher.bench(|| rocking.slope(divan::black_box(&now)));
 }
 
 /// From the start of a pulse to the end, which is rest or overturning.

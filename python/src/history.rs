@@ -7,8 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use archrock::dynamics::fall::FallEnd;
-use archrock::dynamics::history::{Recording, Samples, Summary};
-use archrock::dynamics::spread::Repetitions;
+use archrock::dynamics::history::Summary;
+use archrock::dynamics::recording::{Recording, Samples};
+use archrock::dynamics::repeatability::Repetitions;
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::Point;
 use archrock::output::scene::Scene;
@@ -497,7 +498,7 @@ impl History {
         let spread = repeats.then(|| {
             py.detach(|| {
                 Repetitions::start(model, scenario.ground_motion(), &scenario.request())
-                    .spread(&self.summary)
+                    .compare(&self.summary)
             })
         });
         if let Some(Err(error)) = &spread {

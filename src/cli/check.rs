@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
-use archrock::dynamics::ground::intensity::{Intensity, PeakMotion};
+use archrock::dynamics::ground::intensity::Intensity;
 use archrock::dynamics::model::Request;
+use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
 use archrock::scenario::{Form, Format, Layout, Recorded, Scenario, Series};
@@ -212,7 +213,7 @@ fn record_json(series: &Series, intensity: &Intensity) -> Value {
 fn record_text(series: &Series, intensity: &Intensity) -> String {
     let mut text = format!("{}: {}\n", series.name(), kind(series));
     let _ = writeln!(text, "  {}", series.sampling());
-    let PeakMotion { value, time_s } = intensity.acceleration_m_s2;
+    let Peak { value, time_s } = intensity.acceleration_m_s2;
     let _ = writeln!(
         text,
         "  peak acceleration {:.4} g = {value:.4} m/s2 at {time_s:.3} s",

@@ -142,7 +142,9 @@ impl From<SimulationError> for Failure {
             | SimulationError::FreeFall { .. }
             | SimulationError::Feet
             | SimulationError::Memory(_) => Self::Input(error.to_string()),
-            SimulationError::Computation(_) => Self::Work(error.to_string()),
+            SimulationError::Row(_) | SimulationError::Computation(_) => {
+                Self::Work(error.to_string())
+            }
         }
     }
 }

@@ -22,6 +22,10 @@ pub mod internals {
     pub mod coulomb {
         pub use crate::mechanics::coulomb::*;
     }
+    pub mod free_hinges {
+        pub use crate::dynamics::free_hinges::motion::simulate;
+        pub use crate::dynamics::free_hinges::settings::Settings;
+    }
     pub mod hybrid {
         pub use crate::dynamics::hybrid::*;
     }

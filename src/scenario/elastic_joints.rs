@@ -10,8 +10,8 @@ use super::rule::{Because, Count, Number, one_of, within};
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use crate::argument::short;
-use crate::dynamics::elastic_joints::{ElasticJoints, ElasticJointsError, ElasticOptions};
-use crate::dynamics::free_hinges::FreeHingesError;
+use crate::dynamics::elastic_joints::{ElasticJoints, ElasticOptions};
+use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
 };
@@ -228,16 +228,15 @@ impl ElasticTable {
     /// # Errors
     /// When the structure has no joints, or does not stand on joints like these.
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
-        let row = structure.row().map_err(FreeHingesError::from)?;
+        let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        let model =
-            ElasticJoints::new(row, self.properties(depth_m))?.on_supports(self.supports)?;
         let options = ElasticOptions {
             longest_step_s: self.longest_step_s,
         };
-        Ok(model
-            .with_options(options)
-            .map_err(ElasticJointsError::from)?)
+        ElasticJoints::new(row, self.properties(depth_m))
+            .and_then(|model| model.on_supports(self.supports))
+            .and_then(|model| Ok(model.with_options(options)?))
+            .map_err(ModelError::ElasticJoints)
     }
 }
 

@@ -4,7 +4,8 @@ use super::rule::within;
 use super::structure::Structure;
 use super::table::{Reading, Table};
 use crate::argument::{plain, rounded_up};
-use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
+use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
+use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::settling::Movements;
 
@@ -22,7 +23,7 @@ impl FreeTable {
     ///
     /// # Errors
     /// When it is an arch without voussoirs, cannot stand, or falls or slides as its supports move.
-    pub fn model(&self, structure: &Structure) -> Result<FreeHinges, FreeHingesError> {
+    pub fn model(&self, structure: &Structure) -> Result<FreeHinges, RowModelError> {
         let built = structure.free_hinges(RowOptions {
             friction_coefficient: None,
             ..self.options
@@ -51,7 +52,7 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
 /// Refuses friction that does not hold the structure where its springings have gone; whether it does as it was built is asked before.
 pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTable) -> Reading<()> {
     match free.model(structure) {
-        Err(FreeHingesError::Friction(FrictionError::CannotStand(_))) => {
+        Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
             let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
             Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
         }

@@ -64,9 +64,9 @@ use std::sync::Arc;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
+use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
@@ -563,7 +563,7 @@ impl Scenario {
         Ok(match &self.structure {
             Structure::Masonry(masonry) => Some(masonry.row().clone()),
             Structure::Column(column) if !column.is_one_prism() => {
-                Some(self.structure.row().map_err(FreeHingesError::from)?)
+                Some(self.structure.row().map_err(RowModelError::from)?)
             }
             Structure::Arch(_) | Structure::Column(_) => None,
         })

@@ -669,7 +669,7 @@ fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, Strin
         .iter()
         .map(|(_, [period_s, acceleration_g])| (*period_s, *acceleration_g));
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
-        let line = error.row().and_then(|row| rows.get(row)).map(|row| row.0);
+        let line = error.row.and_then(|row| rows.get(row)).map(|row| row.0);
         match line {
             Some(line) => {
                 let message = error.to_string();

@@ -7,7 +7,7 @@ pub mod program;
 pub mod prose;
 pub mod results;
 
-use archrock::dynamics::ground::Pulse;
+use archrock::dynamics::ground::{Pulse, PulseShape};
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
@@ -408,7 +408,9 @@ pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, 
         let kind = Pulse::ALL[random.pick(Pulse::ALL.len())];
         let amplitude = Vector2::new(strength_g, random.next() - 0.5) * GRAVITY;
         let duration_s = 0.05 + random.next();
-        GroundMotion::pulse_along(kind, amplitude, duration_s, 0.1, Default::default()).unwrap()
+        PulseShape::new(kind, duration_s, 0.1, Default::default())
+            .and_then(|shape| shape.motion(amplitude))
+            .unwrap()
     } else {
         let vertical_g = random.next() * 1.0;
         noise(random, [2.0 * strength_g, 2.0 * vertical_g], length_s)

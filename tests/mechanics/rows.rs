@@ -1,7 +1,8 @@
 //! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
 use crate::common::{between_faces, number, straight_sided_arch};
-use archrock::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
+use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
+use archrock::dynamics::row::error::RowModelError;
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability::StabilityError;
@@ -25,12 +26,12 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
     let sized = fine || (1e-3..1e6).contains(&row.size_m());
     let model = match FreeHinges::new(row) {
         Ok(model) => model,
-        Err(FreeHingesError::Stability(StabilityError::CannotStand(opening))) => {
+        Err(RowModelError::Stability(StabilityError::CannotStand(opening))) => {
             prop_assert!(!fine || !opening.is_empty());
             return Ok(());
         }
         // If numbers of all magnitudes are mixed, the velocities are not always found.
-        Err(FreeHingesError::Stability(StabilityError::Contact(error))) => {
+        Err(RowModelError::Stability(StabilityError::Contact(error))) => {
             prop_assert!(!fine, "{error}");
             return Ok(());
         }
@@ -60,7 +61,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             prop_assert!(numbers.iter().all(|x| x.is_finite()), "{summary:?}");
             prop_assert!(summary.peak_rotations_rad.iter().all(|x| x.is_finite()));
         }
-        Err(SimulationError::Computation(error)) => prop_assert!(!fine, "{error}"),
+        Err(SimulationError::Row(error)) => prop_assert!(!fine, "{error}"),
         Err(SimulationError::Argument(error)) => prop_assert!(!sized, "{error}"),
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     }
@@ -278,7 +279,7 @@ proptest! {
         let allowed = |step_s: f64| (1e-9..=1.0).contains(&step_s);
         match FreeHinges::of_column(&column).unwrap().with_options(options) {
             Ok(_) => prop_assert!(longest_s >= shortest_s && allowed(shortest_s) && allowed(longest_s)),
-            Err(FreeHingesError::Argument(error)) => match error.argument {
+            Err(RowModelError::Argument(error)) => match error.argument {
                 "longest_step_s" => prop_assert!(!allowed(longest_s) || longest_s < shortest_s),
                 "shortest_step_s" => prop_assert!(!allowed(shortest_s)),
                 _ => return Err(TestCaseError::fail(error.to_string())),

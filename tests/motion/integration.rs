@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
 use archrock::internals::hybrid::engine::{
-    EngineError, Finish, GuardValue, HybridSystem, Observer, Settings, Transition, simulate,
+    EngineError, Finish, GuardValue, HybridSystem, Moment, Observer, Settings, Transition, simulate,
 };
 use archrock::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
 
@@ -218,9 +218,9 @@ impl HybridSystem<2> for Ball {
         lies
     }
 
-    fn slope(&self, _: bool, piece: usize, _: f64, state: &State<2>) -> State<2> {
-        let wind = if piece == 1 { self.wind } else { 0.0 };
-        State::<2>::new(state[1], wind - self.gravity)
+    fn slope(&self, now: &Moment<bool, 2>) -> State<2> {
+        let wind = if now.piece == 1 { self.wind } else { 0.0 };
+        State::<2>::new(now.state[1], wind - self.gravity)
     }
 
     fn between(&self, step: &Step<2>, time_s: f64) -> State<2> {
@@ -232,11 +232,11 @@ impl HybridSystem<2> for Ball {
         )
     }
 
-    fn scale(&self, _: bool, _: &State<2>) -> State<2> {
+    fn scale(&self, _: &Moment<bool, 2>) -> State<2> {
         State::<2>::repeat(1.0)
     }
 
-    fn step_sizes_s(&self, _: bool, _: usize, _: f64, _: &State<2>, _: f64) -> (f64, f64) {
+    fn step_sizes_s(&self, _: &Moment<bool, 2>, _: f64) -> (f64, f64) {
         // So long that a whole hop fits into one step.
         (self.longest_step_s.min(10.0), self.longest_step_s)
     }
@@ -245,19 +245,19 @@ impl HybridSystem<2> for Ball {
         if lies { &[] } else { &[()] }
     }
 
-    fn guard_value(&self, (): (), _: bool, _: usize, _: f64, state: &State<2>) -> GuardValue {
+    fn guard_value(&self, (): (), now: &Moment<bool, 2>) -> GuardValue {
         GuardValue {
-            value: state[0],
-            rate: state[1],
+            value: now.state[0],
+            rate: now.state[1],
         }
     }
 
-    fn fired_at_once(&self, _: bool, _: usize, _: f64, _: &State<2>) -> Option<()> {
+    fn fired_at_once(&self, _: &Moment<bool, 2>) -> Option<()> {
         None
     }
 
-    fn reset(&self, (): (), _: bool, _: usize, _: f64, state: &State<2>) -> (bool, State<2>) {
-        let rate = -self.restitution * state[1];
+    fn reset(&self, (): (), now: &Moment<bool, 2>) -> (bool, State<2>) {
+        let rate = -self.restitution * now.state[1];
         if rate < self.stop_rate {
             (true, State::<2>::zeros())
         } else {
@@ -284,17 +284,12 @@ fn until(count: usize, most: Option<usize>) -> ControlFlow<()> {
 }
 
 impl Observer<Ball, 2> for Log {
-    fn step(&mut self, _: &Ball, _: bool, _: usize, step: &Step<2>) -> ControlFlow<()> {
+    fn step(&mut self, _: &Ball, _: &Moment<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
         self.steps.push(*step);
         until(self.steps.len(), self.most_steps)
     }
 
-    fn transition(
-        &mut self,
-        _: &Ball,
-        _: usize,
-        transition: &Transition<bool, (), 2>,
-    ) -> ControlFlow<()> {
+    fn transition(&mut self, _: &Ball, transition: &Transition<bool, (), 2>) -> ControlFlow<()> {
         self.bounces
             .push((transition.time_s, transition.before, transition.after));
         until(self.bounces.len(), self.most_bounces)
@@ -304,7 +299,7 @@ impl Observer<Ball, 2> for Log {
 fn throw(ball: &Ball, state: State<2>, end_s: f64) -> (Log, Result<f64, EngineError>) {
     let mut log = Log::default();
     let finish = throw_and_log(ball, state, end_s, &mut log);
-    (log, finish.map(|finish| finish.time_s))
+    (log, finish.map(|finish| finish.now.time_s))
 }
 
 fn throw_and_log(
@@ -337,7 +332,7 @@ fn an_observer_that_breaks_ends_the_simulation_there() {
         let finish = throw_and_log(&ball, height, 100.0, &mut log).unwrap();
         let (time_s, _, after) = whole.bounces[most_bounces - 1];
         assert!(finish.stopped && log.bounces.len() == most_bounces);
-        assert_eq!((finish.time_s, finish.state), (time_s, after));
+        assert_eq!((finish.now.time_s, finish.now.state), (time_s, after));
     }
     for most_steps in [1, 7, 40] {
         let mut log = Log {
@@ -347,7 +342,10 @@ fn an_observer_that_breaks_ends_the_simulation_there() {
         let finish = throw_and_log(&ball, height, 100.0, &mut log).unwrap();
         let last = &whole.steps[most_steps - 1];
         assert!(finish.stopped && log.steps.len() == most_steps);
-        assert_eq!((finish.time_s, finish.state), (last.end_s, last.end));
+        assert_eq!(
+            (finish.now.time_s, finish.now.state),
+            (last.end_s, last.end)
+        );
     }
 }
 

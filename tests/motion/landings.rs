@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random};
 use archrock::Sway;
-use archrock::dynamics::free_hinges::{Settings, simulate};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Summary};
 use archrock::dynamics::model::Recorder;
+use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::four_link::certificate;

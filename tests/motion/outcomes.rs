@@ -436,7 +436,7 @@ fn the_largest_slips_and_tie_forces_are_those_before_it_overturns() {
         let history = model
             .history(scenario.ground_motion(), &scenario.request())
             .unwrap();
-        let (summary, row) = (&history.summary, history.summary.row.as_ref().unwrap());
+        let (summary, row) = (&history.summary, history.summary.row().unwrap());
         assert!(matches!(summary.outcome, Outcome::Overturned(_)), "{text}");
         let largest = |of: &dyn Fn(&Sample) -> f64, until_s: f64| {
             let before = history

@@ -121,7 +121,7 @@ proptest! {
         }
         // The defect adds up the errors of tens of steps, relative to the largest energy: the barrier, or the
         // energy that a blow many times stronger gave.
-        let barrier = Rocking::new(&arch, &ground, gravity, 1e-8).barrier();
+        let barrier = Rocking::new(&arch, &ground, gravity, 1e-8).barrier;
         let rates = history.samples.rates_rad_s.iter();
         let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
         let inertia = link.mechanism.coefficients(0.0).inertia;

@@ -4,12 +4,13 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random, between_faces, random_history};
-use archrock::dynamics::free_hinges::{FreeHinges, Settings, simulate};
-use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
+use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
 use archrock::internals::complementarity;
 use archrock::internals::coulomb::{Along, Program};
+use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::internals::slip::{Contact, Faces, Position};
 use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::chain::Hinge;
@@ -121,7 +122,7 @@ fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Summary {
 }
 
 fn slid(run: &Summary) -> &Sliding {
-    run.row.as_ref().unwrap().sliding.as_ref().unwrap()
+    run.row().unwrap().sliding.as_ref().unwrap()
 }
 
 /// Newmark's block: under a rectangular pulse `a` of duration `t` it slips by `a t^2/2 (a/(mu g) - 1)` relative to the ground, and
@@ -381,7 +382,9 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     let peaks = Vector2::new(-1.2, -0.2) * GRAVITY;
     let kind = Pulse::Rectangular;
     let train = WaveTrain::default();
-    let ground = GroundMotion::pulse_along(kind, peaks, duration_s, 0.0, train).unwrap();
+    let ground = PulseShape::new(kind, duration_s, 0.0, train)
+        .and_then(|shape| shape.motion(peaks))
+        .unwrap();
     let loads = |time: f64| {
         if time < duration_s {
             [1.2 * GRAVITY, 0.8 * GRAVITY]

@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use crate::common::GRAVITY;
-use archrock::dynamics::free_hinges::{Settings, simulate};
-use archrock::dynamics::ground::{GroundMotion, Pulse, WaveTrain};
+use archrock::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 use archrock::dynamics::history::{Event, Impact, Sample, Summary};
 use archrock::dynamics::model::Recorder;
+use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::geometry::ring::Ring;
 use nalgebra::Vector2;
@@ -59,7 +59,7 @@ fn run(
         .iter()
         .map(|(_, impact)| taken_j(impact) - impact.friction_j.unwrap())
         .sum();
-    let all_j = summary.row.as_ref().unwrap().energy_taken_j;
+    let all_j = summary.row().unwrap().energy_taken_j;
     assert!(
         (in_rows_j - all_j).abs() <= 1e-9 * all_j,
         "{in_rows_j} {all_j}"
@@ -126,7 +126,9 @@ fn an_impact_of_a_sliding_slab_divides_its_energy_between_landing_and_friction()
     let (time_s, coefficient, push_g) = (0.1, 0.3, 1.0);
     let peaks = Vector2::new(-push_g, -4.0 / 3.0) * GRAVITY;
     let train = WaveTrain::default();
-    let ground = GroundMotion::pulse_along(Pulse::Rectangular, peaks, time_s, 0.0, train).unwrap();
+    let ground = PulseShape::new(Pulse::Rectangular, time_s, 0.0, train)
+        .and_then(|shape| shape.motion(peaks))
+        .unwrap();
     let [landing, sliding] = [2.0 / 3.0, push_g].map(|part| part * GRAVITY * time_s);
     let slower = sliding - coefficient * landing;
     let energy_j = |rate: f64| 0.5 * row.mass_kg() * rate * rate;
@@ -164,7 +166,7 @@ fn rows_of_an_arch_that_slips_add_up() {
     for step_s in [2e-4, 7e-5] {
         let (summary, rows) = run(&row, &ground, [step_s, 4.0], 0.45);
         assert!(rows.len() > 20, "{}", rows.len());
-        let sliding = summary.row.unwrap().sliding.unwrap();
+        let sliding = summary.row().unwrap().sliding.as_ref().unwrap();
         let rubbed_j: f64 = rows
             .iter()
             .filter_map(|(_, impact)| impact.friction_j)

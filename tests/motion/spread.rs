@@ -203,7 +203,7 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
     for model in [model.clone(), slipping(model, 3.0)] {
         let history = history(&model, &push(0.002, Sway::Right, 0.05), 0.6);
         let summary = &history.summary;
-        let of_row = summary.row.as_ref().unwrap();
+        let of_row = summary.row().unwrap();
         assert_eq!(summary.outcome, Outcome::StillRocking);
         assert!(summary.impacts == 0 && of_row.ties[0].peak_force_n > 0.0);
         assert!(
@@ -348,7 +348,7 @@ fn both_ways_to_move_rigid_blocks_agree() {
                 Outcome::Rest
             };
             assert_eq!(summary.outcome, expected);
-            let of_row = summary.row.as_ref().unwrap();
+            let of_row = summary.row().unwrap();
             // In weights times radii: measured 1.3e-7 at most, over some two thousand impacts.
             assert!(
                 summary.energy_defect_ratio < 1e-6,

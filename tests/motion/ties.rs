@@ -258,7 +258,7 @@ fn a_tied_block_swings_on_its_toe() {
         let force_n = sample.ties[0].force_n;
         assert!((force_n - toe.force_n(*due)).abs() < 0.1, "{force_n}");
     }
-    let peak_n = history.summary.row.as_ref().unwrap().ties[0].peak_force_n;
+    let peak_n = history.summary.row().unwrap().ties[0].peak_force_n;
     assert!((peak_n - toe.force_n(top)).abs() < 1.0, "{peak_n}");
     // 0.340 s is the period of 2.941541 Hz: there it is back, hardly moving.
     let back = due.last().unwrap() / top;
@@ -381,7 +381,7 @@ fn a_block_slides_against_its_tie() {
         let force_n = sample.ties[0].force_n;
         assert!((force_n / stiffness_n_m - due_m).abs() < 1e-6 * far_m);
     }
-    let of_row = history.summary.row.as_ref().unwrap();
+    let of_row = history.summary.row().unwrap();
     let rubbed_j = of_row.sliding.as_ref().unwrap().friction_j;
     let due_j = coefficient * mass_kg * GRAVITY_M_S2 * far_m;
     assert!((rubbed_j / due_j - 1.0).abs() < 1e-5, "{rubbed_j} {due_j}");
@@ -414,7 +414,7 @@ fn a_yielding_tie_takes_the_area_of_its_loop() {
     for (model, defect) in models {
         let history = model.history(&ground, &sampled(4.0, 1e-3)).unwrap();
         let summary = &history.summary;
-        let told = summary.row.as_ref().unwrap().ties[0];
+        let told = summary.row().unwrap().ties[0];
         assert_eq!(told.peak_force_n, 1.2e4);
         assert!(told.yielded_m > 1e-3, "{}", told.yielded_m);
         // But for the one step in which each yielding begins.
@@ -525,7 +525,7 @@ fn a_tie_that_breaks_holds_no_more() {
             "{elastic} {:?}",
             history.summary
         );
-        let told = history.summary.row.as_ref().unwrap().ties[0];
+        let told = history.summary.row().unwrap().ties[0];
         let at_s = told.broken_s.unwrap();
         let kinds: Vec<_> = history
             .events
@@ -573,12 +573,9 @@ fn ties_side_by_side_are_as_ties_alone() {
     for ((ground, request), together) in cases.iter().zip(model.simulate_all(&cases)) {
         let together = together.unwrap();
         let alone = model.simulate(ground, request, None).unwrap();
-        assert_eq!(
-            alone.row.as_ref().unwrap().ties,
-            together.row.as_ref().unwrap().ties
-        );
+        assert_eq!(alone.row().unwrap().ties, together.row().unwrap().ties);
         assert_eq!(alone.peak_rotations_rad, together.peak_rotations_rad);
-        breaks += usize::from(alone.row.unwrap().ties[0].broken_s.is_some());
+        breaks += usize::from(alone.row().unwrap().ties[0].broken_s.is_some());
     }
     assert!((1..10).contains(&breaks), "{breaks}");
 }
@@ -601,7 +598,7 @@ fn tied_arches_have_mirror_images() {
     let peaks = |model: &dyn Model, amplitude_g: f64| {
         let ground = pulse(Pulse::OneSine, amplitude_g, 0.3);
         let summary = model.simulate(&ground, &sampled(0.3, 0.01), None).unwrap();
-        let tie = summary.row.as_ref().unwrap().ties[0];
+        let tie = summary.row().unwrap().ties[0];
         (summary.peak_rotations_rad, tie.peak_force_n)
     };
     let free = FreeHinges::new(row.clone()).unwrap();

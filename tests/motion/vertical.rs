@@ -8,7 +8,7 @@ use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::studies::run::{Run, Wanted};
-use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway, WaveTrain};
+use archrock::{GroundMotion, Initial, Outcome, Pulse, PulseShape, Scenario, Sway, WaveTrain};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -51,14 +51,9 @@ fn a_steady_vertical_acceleration_is_gravity() {
         assert!(after.iter().all(|row| row.state == State::Rest));
     }
     // The same for a release on ground with pulses in both directions at once.
-    let shake = GroundMotion::pulse_along(
-        Pulse::Rectangular,
-        Vector2::new(0.05 * G, 2.0),
-        50.0,
-        0.0,
-        WaveTrain::default(),
-    )
-    .unwrap();
+    let shake = PulseShape::new(Pulse::Rectangular, 50.0, 0.0, WaveTrain::default())
+        .and_then(|shape| shape.motion(Vector2::new(0.05 * G, 2.0)))
+        .unwrap();
     let push = GroundMotion::pulse(Pulse::Rectangular, 0.05 * G, 50.0, 0.0).unwrap();
     let (_, rows_a) = run(&arch, &shake, G, release(0.03), 3.0);
     let (_, rows_b) = run(&arch, &push, G + 2.0, release(0.03), 3.0);
@@ -144,9 +139,9 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
         path.push(q);
     }
     let amplitude = Vector2::new(horizontal, vertical);
-    let ground =
-        GroundMotion::pulse_along(Pulse::OneSine, amplitude, period, 0.0, WaveTrain::default())
-            .unwrap();
+    let ground = PulseShape::new(Pulse::OneSine, period, 0.0, WaveTrain::default())
+        .and_then(|shape| shape.motion(amplitude))
+        .unwrap();
     let (history, rows) = run(&arch, &ground, G, release(released), end);
     assert!(history.summary.impacts == 0 && q > 0.0);
     // The ground moves all the time; on quiet ground the history would end once it is decided.

@@ -47,7 +47,8 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
             | Outcome::StillRocking
             | Outcome::Incomplete => {}
         }
-        let [usual_peak, exact_peak] = [&usual, &exact].map(|end| end.peak_over_critical.unwrap());
+        let [usual_peak, exact_peak] =
+            [&usual, &exact].map(|end| end.peak_over_critical().unwrap());
         let difference = (usual_peak - exact_peak).abs();
         assert!(
             difference < PEAK_TOLERANCE,

@@ -7,7 +7,7 @@ use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, State, Summary};
 use archrock::dynamics::model::Model;
-use archrock::dynamics::spread::{Repetitions, Spread, Verdict};
+use archrock::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
 use archrock::dynamics::until::Until;
 use archrock::scenario::Scenario;
 use archrock::studies::ending::Ending;
@@ -70,14 +70,16 @@ fn campaign(cases: usize) -> Counts {
         };
         let own = model.simulate(&ground, &request, None).unwrap();
         let repeated = Repetitions::start(&model, &ground, &request);
-        let spread = repeated.spread(&own).unwrap();
+        let spread = repeated.compare(&own).unwrap();
         let cycles = own.half_cycles();
         let certain = spread.same_outcome();
         let same = spread.same_until_half_cycle;
         counts.outcomes += usize::from(certain);
         counts.moved += usize::from(!cycles.is_empty());
         counts.first_peaks += usize::from(same > 0 || cycles.is_empty());
-        let largest = spread.largest.is_some_and(|largest| largest.is_same());
+        let largest = spread
+            .largest_rad
+            .is_some_and(|largest| largest.is_certain());
         let longest_s = 3.4e-4 * (model.row().size_m() / GRAVITY).sqrt();
         let mut failed = [false; 4];
         for factor in OTHER_STEPS {
@@ -187,7 +189,7 @@ fn outcomes_called_certain_near_an_edge_hold_with_other_steps() {
         let most = if cases > 3 { 8 } else { 3 };
         let (model, ground, request) = near_an_edge(&mut random, most);
         let own = model.simulate(&ground, &request, None).unwrap();
-        let Ok(spread) = Repetitions::start(&model, &ground, &request).spread(&own) else {
+        let Ok(spread) = Repetitions::start(&model, &ground, &request).compare(&own) else {
             continue;
         };
         let verdict = Verdict::from(own.outcome);
@@ -200,7 +202,7 @@ fn outcomes_called_certain_near_an_edge_hold_with_other_steps() {
         if !is_certain[0] {
             continue;
         }
-        let longest_s = own.row.as_ref().unwrap().longest_step_s;
+        let longest_s = own.row().unwrap().longest_step_s;
         let others = [0.37, 0.61, 1.7, 2.9];
         let ends_otherwise = others.iter().any(|factor| {
             let options = RowOptions {
@@ -240,7 +242,7 @@ fn an_outcome_that_an_early_half_cycle_decides_is_uncertain() {
     );
     let own = model.simulate(ground, &request, None).unwrap();
     let repeated = Repetitions::start(&*model, ground, &request);
-    let spread = repeated.spread(&own).unwrap();
+    let spread = repeated.compare(&own).unwrap();
     assert_eq!(Verdict::from(own.outcome), Verdict::Survives);
     assert!(spread.same_outcome() && spread.is_uncertain());
     let early = spread.early.unwrap();
@@ -252,10 +254,10 @@ fn an_outcome_that_an_early_half_cycle_decides_is_uncertain() {
     assert!(doubt.contains("survives; the half cycle at 0."), "{doubt}");
     // Slips at the end differ too.
     let joint = spread.uncertain_slip().unwrap();
-    let slip = spread.slips[joint];
-    assert!(slip.min_m < slip.max_m && (slip.min_m..=slip.max_m).contains(&slip.own_m));
+    let slip = spread.slips_m[joint];
+    assert!(slip.min < slip.max && (slip.min..=slip.max).contains(&slip.own));
     // A motion is as good as itself.
-    let same = Spread::new(&own, &[("equal steps", own.clone())]);
+    let same = Repeatability::new(&own, &[("equal steps", own.clone())]);
     assert!(!same.is_uncertain() && same.uncertain_slip().is_none() && same.has_slipped());
 }
 
@@ -456,7 +458,7 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
             }
             if let (true, Some(barrier_j)) = (falls(whole.outcome), barrier_j) {
                 overturned += 1;
-                let elastic = whole.row.as_ref().unwrap().elastic.unwrap();
+                let elastic = whole.elastic().unwrap();
                 let times_s = ground.end_s()..whole.outcome_time_s;
                 let on_its_way = energies.iter().filter(|(time, _)| times_s.contains(time));
                 if elastic.friction_j < 0.01 * barrier_j {

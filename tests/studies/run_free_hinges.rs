@@ -7,8 +7,8 @@ use std::path::PathBuf;
 
 use crate::common::program::{archrock, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::history::HalfCycle;
-use archrock::dynamics::spread::Spread;
+use archrock::dynamics::history::{Details, HalfCycle, Summary};
+use archrock::dynamics::repeatability::Repeatability;
 use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -564,6 +564,13 @@ fn the_largest_half_cycles_are_reported() {
     );
 }
 
+fn half_cycles_mut(summary: &mut Summary) -> &mut Vec<HalfCycle> {
+    match &mut summary.details {
+        Details::Rigid(row) => &mut row.half_cycles,
+        Details::Mechanisms { .. } | Details::Elastic(..) => panic!("its joints are rigid"),
+    }
+}
+
 /// A repetition whose half cycles before the largest differ in number from those of the motion itself, as rattling does, has the same large
 /// ones.
 #[test]
@@ -574,7 +581,7 @@ fn half_cycles_are_compared_at_the_same_time() {
     let own = model.simulate(&ground, &Request::default(), None).unwrap();
     assert!(own.half_cycles().len() > 2);
     let mut rattles = own.clone();
-    let cycles = &mut rattles.row.as_mut().unwrap().half_cycles;
+    let cycles = half_cycles_mut(&mut rattles);
     let before = HalfCycle {
         start_s: 0.1,
         duration_s: 0.1,
@@ -583,15 +590,15 @@ fn half_cycles_are_compared_at_the_same_time() {
         ..cycles[0]
     };
     cycles.insert(0, before);
-    let spread = Spread::new(&own, &[("double steps", rattles)]);
+    let spread = Repeatability::new(&own, &[("double steps", rattles)]);
     assert_eq!(spread.parts_at_s, None);
-    assert!(spread.half_cycles.iter().all(|cycle| cycle.is_same()));
+    assert!(spread.half_cycles.iter().all(|cycle| cycle.is_certain()));
     // One that has no such half cycle differs there.
     let mut shorter = own.clone();
-    shorter.row.as_mut().unwrap().half_cycles.truncate(1);
-    let spread = Spread::new(&own, &[("double steps", shorter)]);
+    half_cycles_mut(&mut shorter).truncate(1);
+    let spread = Repeatability::new(&own, &[("double steps", shorter)]);
     assert_eq!(spread.same_until_half_cycle, 1);
-    assert_eq!(spread.half_cycles[1].peak, None);
+    assert_eq!(spread.half_cycles[1].peak_rad, None);
     assert_eq!(spread.parts_at_s, Some(own.half_cycles()[1].start_s));
 }
 
@@ -738,11 +745,11 @@ fn a_spread_knows_other_outcomes() {
         model.simulate(&ground, &Request::default(), None).unwrap()
     };
     let (rests, falls) = (pulse(3.0), pulse(20.0));
-    let alike = Spread::new(&rests, &[("double steps", rests.clone())]);
+    let alike = Repeatability::new(&rests, &[("double steps", rests.clone())]);
     assert!(alike.same_outcome());
     assert_eq!(alike.parts_at_s, None);
     assert_eq!(alike.same_until_half_cycle, alike.half_cycles.len());
-    let other = Spread::new(
+    let other = Repeatability::new(
         &rests,
         &[
             ("double steps", rests.clone()),

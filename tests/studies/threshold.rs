@@ -12,7 +12,7 @@ use crate::common::program::{archrock, printed, refused, stderr, stdout};
 use crate::common::pulse;
 use crate::common::results::{Row, Table};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use archrock::dynamics::history::Cost;
+use archrock::dynamics::history::{Cost, Details};
 use archrock::dynamics::model::Repetition;
 use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
@@ -24,8 +24,8 @@ use archrock::studies::threshold::{
     EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, ThresholdError, thresholds,
 };
 use archrock::{
-    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
-    Scenario, SimulationError, Summary, Sway, WaveTrain,
+    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, PulseShape, Recorder, Request,
+    RockingColumn, Scenario, SimulationError, Summary, Sway, WaveTrain,
 };
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -166,7 +166,9 @@ fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
     let amplitude = Vector2::new(0.3, 0.2) * GRAVITY;
     let train = WaveTrain::default();
-    let ground = GroundMotion::pulse_along(Pulse::OneSine, amplitude, 1.2, 0.0, train).unwrap();
+    let ground = PulseShape::new(Pulse::OneSine, 1.2, 0.0, train)
+        .and_then(|shape| shape.motion(amplitude))
+        .unwrap();
     let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
     for sample in &threshold.samples {
         assert_eq!(
@@ -221,12 +223,12 @@ impl Model for Rule {
             end_s: 1.0,
             impacts: 0,
             peak_rotations_rad: vec![0.0],
-            peak_over_critical: None,
-            peak_potential_over_barrier: None,
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),
-            row: None,
+            details: Details::Mechanisms {
+                peak_over_critical: 0.0,
+            },
         })
     }
 }

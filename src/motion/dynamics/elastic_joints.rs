@@ -3,10 +3,8 @@
 //! `motion` is the leapfrog of one or several histories side by side; `stepper` drives and judges each of them, for the driver of
 //! all rows.
 
-mod error;
 mod model;
 mod motion;
 mod stepper;
 
-pub use error::{ElasticJointError, ElasticJointsError};
 pub use model::{ElasticJoints, ElasticOptions};

@@ -1,5 +1,5 @@
-//! The fall: how a motion goes on after its structure has overturned. It is followed for the eye and is no part of a history, whose
-//! results end where the structure can no longer come back.
+//! The fall of a structure that has overturned. It is computed for pictures only and is no part of a history, whose results end where
+//! the structure can no longer come back.
 
 use std::f64::consts::FRAC_PI_4;
 use std::fmt;

@@ -1,12 +1,9 @@
-//! The history of a motion: samples, events and a summary, the same for every model.
+//! The parts of a history, for every model: samples, events and a summary.
 
-use std::ops::ControlFlow;
 use std::time::Duration;
 
 use nalgebra::Vector2;
-use thiserror::Error;
 
-use super::model::Recorder;
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
 use crate::mechanics::geometry::pose::Pose;
@@ -55,7 +52,7 @@ impl Outcome {
     }
 }
 
-/// What a structure is doing.
+/// State of motion of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// It is at rest, undeformed.
@@ -110,7 +107,7 @@ pub struct Sample {
     pub feet_apart_m: Vector2<f64>,
     /// Events so far.
     pub phase: usize,
-    /// What the structure is doing.
+    /// Rest, rocking or overturned.
     pub state: State,
     /// Rotations of the bodies.
     pub rotations_rad: Vec<f64>,
@@ -125,7 +122,7 @@ pub struct Sample {
     pub demand: Demand,
     /// Kinetic and potential energy, in J.
     pub energy_j: f64,
-    /// The same over the energy barrier of the mechanism that moves, or of the first mechanism of a row of blocks; `None` where
+    /// Kinetic and potential energy over the energy barrier of the mechanism that moves, or of the first mechanism of a row of blocks; `None` where
     /// no barrier is known.
     pub energy_ratio: Option<f64>,
     /// Rotation (anticlockwise) of the body that carries the coordinate, over its rotation at the unstable
@@ -136,21 +133,21 @@ pub struct Sample {
     pub gaps_m: Vec<[f64; 2]>,
     /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
     /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
-    /// where there is no pressure. Empty unless a [`Recorder`] wants it and the model knows it; elastic joints
+    /// where there is no pressure. Empty unless a [`Recorder`](super::recorder::Recorder) wants it and the model knows it; elastic joints
     /// always give it.
     pub eccentricity_ratios: Vec<Option<f64>>,
     /// Offsets of the joints, in m, of the right face towards the extrados; only for a row whose joints slip.
     pub offsets_m: Vec<f64>,
     /// Forces and stresses of the joints; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
-    /// What each tie does; none where there are none.
+    /// Forces and elongations of the ties; none without ties.
     pub ties: Vec<TieSample>,
 }
 
-/// What a tie does at an instant.
+/// Force and elongation of a tie at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieSample {
-    /// What it pulls with, in N.
+    /// Tension, in N.
     pub force_n: f64,
     /// By how much it is longer than in the undeformed structure, in m.
     pub elongation_m: f64,
@@ -159,7 +156,7 @@ pub struct TieSample {
 }
 
 impl TieSample {
-    /// Of a tie that remembers this.
+    /// Of a tie with this memory.
     pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
         Self {
             force_n: memory.force_n.0[0],
@@ -169,7 +166,7 @@ impl TieSample {
     }
 }
 
-/// What a tie did in a history.
+/// The largest force of a tie in a history, and its state at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieSummary {
     /// The largest force with which it pulled, in N; of a tie that breaks, also where it broke.
@@ -182,11 +179,11 @@ pub struct TieSummary {
     pub broken_s: Option<f64>,
     /// By how much it has yielded, in m.
     pub yielded_m: f64,
-    /// What it pulls with at the end, in N.
+    /// Tension at the end, in N.
     pub force_n: f64,
     /// Elastic energy in it at the end, in J.
     pub elastic_j: f64,
-    /// What it took as it yielded and broke, in J.
+    /// Energy that it took as it yielded and broke, in J.
     pub taken_j: f64,
 }
 
@@ -209,7 +206,7 @@ impl TieSummary {
         }
     }
 
-    /// Notes what it does at a time; what happened to it since the last time.
+    /// Notes its force and state at a time; returns the events since the last time.
     pub(in crate::dynamics) fn note(
         &mut self,
         tie: &Tie,
@@ -246,9 +243,9 @@ pub struct JointPressure {
     pub normal_n: f64,
     /// Shear force, in N, positive where it keeps the right face from slipping towards the extrados.
     pub shear_n: f64,
-    /// How far the normal force lies towards the extrados from the middle of the joint, over its length; `None` where nothing presses.
+    /// How far the normal force lies towards the extrados from the middle of the joint, over its length; `None` without contact.
     pub eccentricity_ratio: Option<f64>,
-    /// Fraction of the joint that presses.
+    /// Fraction of the joint in contact.
     pub contact_ratio: f64,
     /// Compressive stress at intrados and extrados, in Pa.
     pub edge_stresses_pa: [f64; 2],
@@ -280,6 +277,27 @@ impl Sample {
             ties: Vec::new(),
         }
     }
+
+    /// Makes of this the sample of another instant, at rest, with the memory of its lists, which are empty.
+    pub(super) fn begin(&mut self, time_s: f64, ground_m_s2: Vector2<f64>, phase: usize) {
+        self.time_s = time_s;
+        // Adding zero makes a negative zero positive.
+        self.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
+        self.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
+        self.feet_apart_m = Vector2::zeros();
+        self.phase = phase;
+        self.state = State::Rest;
+        self.rotations_rad.clear();
+        self.rates_rad_s.clear();
+        self.poses.clear();
+        self.hinges.clear();
+        self.demand = Demand::NONE;
+        self.gaps_m.clear();
+        self.eccentricity_ratios.clear();
+        self.offsets_m.clear();
+        self.pressures.clear();
+        self.ties.clear();
+    }
 }
 
 named! {
@@ -305,9 +323,9 @@ named! {
 pub struct Event {
     /// Instant in seconds.
     pub time_s: f64,
-    /// What happened.
+    /// The kind of the event.
     pub kind: EventKind,
-    /// What the structure does from here on.
+    /// Rest, rocking or overturned, from here on.
     pub state: State,
     /// Impacts since uplift, which is the index of its mechanism; `None` at rest, and for a row of blocks.
     pub mechanism: Option<usize>,
@@ -327,27 +345,39 @@ pub struct Event {
 }
 
 impl Event {
+    /// An event of which nothing else is known: all lists are empty.
+    pub(super) const fn new(time_s: f64, kind: EventKind, state: State) -> Self {
+        Self {
+            time_s,
+            kind,
+            state,
+            mechanism: None,
+            rotations_rad: Vec::new(),
+            rates_rad_s: Vec::new(),
+            energy_j: 0.0,
+            hinges: Vec::new(),
+            impact: None,
+            tie: None,
+        }
+    }
+
     /// Memory that it takes.
-    fn bytes(&self) -> u64 {
-        let impact = self.impact.as_ref();
-        let numbers = [&self.rotations_rad, &self.rates_rad_s]
-            .into_iter()
-            .chain(impact.map(|impact| &impact.rates_before_rad_s))
-            .chain(impact.map(|impact| &impact.rates_after_rad_s));
-        let hinges = [&self.hinges]
-            .into_iter()
-            .chain(impact.map(|impact| &impact.closed))
-            .chain(impact.map(|impact| &impact.opened));
-        let impulses = impact.map_or(0, |impact| impact.impulses_n_s.len());
-        let bytes = size_of::<Self>()
-            + numbers.map(|list| size_of_val(&list[..])).sum::<usize>()
-            + hinges.map(|list| size_of_val(&list[..])).sum::<usize>()
-            + impulses * size_of::<Vector2<f64>>();
-        bytes as u64
+    pub(super) fn bytes(&self) -> u64 {
+        let impact = self.impact.as_ref().map_or(0, |impact| {
+            size_of_val(&impact.rates_before_rad_s[..])
+                + size_of_val(&impact.rates_after_rad_s[..])
+                + size_of_val(&impact.closed[..])
+                + size_of_val(&impact.opened[..])
+                + size_of_val(&impact.impulses_n_s[..])
+        });
+        let own = size_of_val(&self.rotations_rad[..])
+            + size_of_val(&self.rates_rad_s[..])
+            + size_of_val(&self.hinges[..]);
+        (size_of::<Self>() + own + impact) as u64
     }
 }
 
-/// What an impact did.
+/// An impact: hinges that close, others that open, and the energy that is lost.
 ///
 /// The mechanism after is the one that the impact leads to, with its rates just after, even where these are so
 /// small that the structure comes to rest.
@@ -400,12 +430,6 @@ pub struct Summary {
     pub impacts: usize,
     /// Largest magnitudes of the rotations of the bodies.
     pub peak_rotations_rad: Vec<f64>,
-    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity
-    /// alone overturns. `None` where it is not known.
-    pub peak_over_critical: Option<f64>,
-    /// For a row of blocks, its largest potential energy over the barrier of its first mechanism, which may not be the one by
-    /// which it overturns. `None` where no barrier is known, or if joints slipped so far that friction took a hundredth of it.
-    pub peak_potential_over_barrier: Option<f64>,
     /// Largest difference between the energy of the structure and its initial energy plus the work of the
     /// ground minus the losses at impacts, over the energy barrier of the first mechanism; for a row of
     /// blocks, over its weight times its size.
@@ -415,11 +439,58 @@ pub struct Summary {
     pub thrust: Option<ThrustRecord>,
     /// Work done.
     pub cost: Cost,
-    /// Results that only rows of blocks have.
-    pub row: Option<Box<RowSummary>>,
+    /// Results that only one kind of model has.
+    pub details: Details,
+}
+
+/// Results that only one kind of model has.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Details {
+    /// Of a chain of mechanisms.
+    Mechanisms {
+        /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity alone overturns.
+        peak_over_critical: f64,
+    },
+    /// Of a row of blocks with rigid joints.
+    Rigid(Box<RowSummary>),
+    /// Of a row of blocks with elastic joints.
+    Elastic(Box<RowSummary>, ElasticSummary),
 }
 
 impl Summary {
+    /// Results of a row of blocks; `None` for mechanisms.
+    #[must_use]
+    pub const fn row(&self) -> Option<&RowSummary> {
+        match &self.details {
+            Details::Mechanisms { .. } => None,
+            Details::Rigid(row) | Details::Elastic(row, _) => Some(row),
+        }
+    }
+
+    /// Results of elastic joints; `None` for other models.
+    #[must_use]
+    pub const fn elastic(&self) -> Option<&ElasticSummary> {
+        match &self.details {
+            Details::Elastic(_, elastic) => Some(elastic),
+            Details::Mechanisms { .. } | Details::Rigid(_) => None,
+        }
+    }
+
+    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved; `None` for rows of blocks.
+    #[must_use]
+    pub const fn peak_over_critical(&self) -> Option<f64> {
+        match self.details {
+            Details::Mechanisms { peak_over_critical } => Some(peak_over_critical),
+            Details::Rigid(_) | Details::Elastic(..) => None,
+        }
+    }
+
+    /// Largest potential energy over the barrier of the first mechanism, as of [`RowSummary`]; `None` for mechanisms.
+    #[must_use]
+    pub fn peak_potential_over_barrier(&self) -> Option<f64> {
+        self.row()?.peak_potential_over_barrier
+    }
+
     /// Largest magnitude of the rotation of any body, in radians.
     #[must_use]
     pub fn largest_rotation_rad(&self) -> f64 {
@@ -440,8 +511,7 @@ impl Summary {
     /// Number of impacts; `None` for elastic joints, whose contact lasts.
     #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
-        let gives_way = self.row.as_ref().and_then(|row| row.elastic.as_ref());
-        gives_way.is_none().then_some(self.impacts)
+        self.elastic().is_none().then_some(self.impacts)
     }
 
     /// When it overturned, in seconds; `None` where it did not.
@@ -454,7 +524,7 @@ impl Summary {
     /// are vibration and rattling, of which a motion has any number.
     #[must_use]
     pub fn half_cycles(&self) -> Vec<HalfCycle> {
-        let all = self.row.as_ref().map_or(&[][..], |row| &row.half_cycles);
+        let all = self.row().map_or(&[][..], |row| &row.half_cycles);
         let peaks_rad = all.iter().map(|cycle| cycle.peak_rad);
         let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
         let counts = |cycle: &&HalfCycle| cycle.peak_rad >= least_rad;
@@ -472,7 +542,7 @@ pub struct Cost {
 }
 
 /// Additional summary of a row of blocks.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RowSummary {
     /// All half cycles, however small; [`Summary::half_cycles`] omits those that are no rocking.
     pub half_cycles: Vec<HalfCycle>,
@@ -480,9 +550,10 @@ pub struct RowSummary {
     pub half_cycles_with_fall: usize,
     /// Slip; `None` where joints do not slip.
     pub sliding: Option<Sliding>,
-    /// Energies and stresses of elastic joints; `None` where joints are rigid.
-    pub elastic: Option<ElasticSummary>,
-    /// What its ties did.
+    /// Largest potential energy over the barrier of its first mechanism, which may not be the one by which it overturns. `None` where no
+    /// barrier is known, or if joints slipped so far that friction took a hundredth of it.
+    pub peak_potential_over_barrier: Option<f64>,
+    /// Forces and energies of its ties.
     pub ties: Vec<TieSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
@@ -600,7 +671,7 @@ pub struct ElasticSummary {
     pub friction_j: f64,
     /// Energy that crushing took, in J.
     pub crushed_j: f64,
-    /// What ties took as they yielded and broke, in J.
+    /// Energy that ties took as they yielded and broke, in J.
     pub ties_j: f64,
     /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
     pub rest_eccentricity_ratio: f64,
@@ -626,292 +697,5 @@ pub struct Elapsed(pub Option<Duration>);
 impl PartialEq for Elapsed {
     fn eq(&self, _: &Self) -> bool {
         true
-    }
-}
-
-/// A history with all its samples and events.
-#[derive(Clone, Debug, PartialEq)]
-pub struct History {
-    /// Names of the bodies, as of [`Model::bodies`](super::model::Model::bodies).
-    pub bodies: Vec<String>,
-    /// Its summary.
-    pub summary: Summary,
-    /// The state at every output step and at the end.
-    pub samples: Samples,
-    /// All events: the phase that follows the `i`-th is `i + 1`.
-    pub events: Vec<Event>,
-}
-
-impl History {
-    /// The events that are impacts, with their instants in seconds.
-    pub fn impacts(&self) -> impl Iterator<Item = (f64, &Impact)> {
-        impacts(&self.events)
-    }
-}
-
-/// The events that are impacts, with their instants in seconds.
-pub(crate) fn impacts(events: &[Event]) -> impl Iterator<Item = (f64, &Impact)> {
-    events
-        .iter()
-        .filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
-}
-
-/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have one entry for each body and
-/// sample, sample by sample.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Samples {
-    /// Times.
-    pub time_s: Vec<f64>,
-    /// Ground accelerations, positive to +x.
-    pub ground_acceleration_m_s2: Vec<f64>,
-    /// Vertical ground accelerations, positive upwards.
-    pub vertical_acceleration_m_s2: Vec<f64>,
-    /// How far the right foot has gone from the left one, to the right and upwards, in m.
-    pub feet_apart_m: Vec<[f64; 2]>,
-    /// Events so far.
-    pub phase: Vec<usize>,
-    /// What the structure is doing.
-    pub state: Vec<State>,
-    /// Rotations, by body.
-    pub rotations_rad: Vec<f64>,
-    /// Rotation rates, by body.
-    pub rates_rad_s: Vec<f64>,
-    /// Poses by body: rotation in radians and displacement in metres, to the right and upwards; see [`Pose`].
-    pub poses: Vec<[f64; 3]>,
-    /// Open hinges: those of sample `i` are from `first_hinge[i]` up to `first_hinge[i + 1]`, or the end.
-    pub hinges: Vec<OpenHinge>,
-    /// Where the hinges of each sample begin.
-    pub first_hinge: Vec<usize>,
-    /// Thrust excess and friction demand of the sections.
-    pub demand: Vec<Demand>,
-    /// Kinetic and potential energies, in J.
-    pub energy_j: Vec<f64>,
-    /// Energies over the barrier of the mechanism that moves, where it is known.
-    pub energy_ratio: Vec<Option<f64>>,
-    /// Rotations over the critical ones, where these are known.
-    pub rotation_over_critical: Vec<Option<f64>>,
-    /// Gaps of the joints at intrados and extrados, in m, joint by joint; only for a row of blocks.
-    pub gaps_m: Vec<[f64; 2]>,
-    /// Offsets of the joints, in m, joint by joint; only for a row whose joints slip.
-    pub offsets_m: Vec<f64>,
-    /// Forces and stresses of the joints, joint by joint; only for a row with elastic joints.
-    pub pressures: Vec<JointPressure>,
-    /// Forces and elongations of the ties, tie by tie.
-    pub ties: Vec<TieSample>,
-}
-
-impl Samples {
-    /// Number of samples.
-    #[must_use]
-    pub const fn len(&self) -> usize {
-        self.time_s.len()
-    }
-
-    /// Whether there are none.
-    #[must_use]
-    pub const fn is_empty(&self) -> bool {
-        self.time_s.is_empty()
-    }
-
-    /// Adds a sample.
-    pub fn push(&mut self, sample: &Sample) {
-        self.time_s.push(sample.time_s);
-        self.ground_acceleration_m_s2
-            .push(sample.ground_acceleration_m_s2);
-        self.vertical_acceleration_m_s2
-            .push(sample.vertical_acceleration_m_s2);
-        self.feet_apart_m.push(sample.feet_apart_m.into());
-        self.phase.push(sample.phase);
-        self.state.push(sample.state);
-        self.rotations_rad.extend(&sample.rotations_rad);
-        self.rates_rad_s.extend(&sample.rates_rad_s);
-        let poses = sample.poses.iter();
-        self.poses.extend(
-            poses.map(|pose| [pose.rotation_rad(), pose.translation.x, pose.translation.y]),
-        );
-        self.first_hinge.push(self.hinges.len());
-        self.hinges.extend(&sample.hinges);
-        self.demand.push(sample.demand);
-        self.energy_j.push(sample.energy_j);
-        self.energy_ratio.push(sample.energy_ratio);
-        self.gaps_m.extend(&sample.gaps_m);
-        self.offsets_m.extend(&sample.offsets_m);
-        self.pressures.extend(&sample.pressures);
-        self.ties.extend(&sample.ties);
-        self.rotation_over_critical
-            .push(sample.rotation_over_critical);
-    }
-
-    /// A sample; `None` beyond the last.
-    #[must_use]
-    pub fn get(&self, index: usize) -> Option<Sample> {
-        let time_s = *self.time_s.get(index)?;
-        let bodies = self.rotations_rad.len() / self.len();
-        let by_body = index * bodies..(index + 1) * bodies;
-        let joints = self.gaps_m.len() / self.len();
-        let by_joint = index * joints..(index + 1) * joints;
-        let slipping = self.offsets_m.len() / self.len();
-        let slipping = index * slipping..(index + 1) * slipping;
-        let pressing = self.pressures.len() / self.len();
-        let pressing = index * pressing..(index + 1) * pressing;
-        let ties = self.ties.len() / self.len();
-        let ties = index * ties..(index + 1) * ties;
-        let hinges_end = self.first_hinge.get(index + 1).copied();
-        let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
-        Some(Sample {
-            time_s,
-            ground_acceleration_m_s2: *self.ground_acceleration_m_s2.get(index)?,
-            vertical_acceleration_m_s2: *self.vertical_acceleration_m_s2.get(index)?,
-            feet_apart_m: (*self.feet_apart_m.get(index)?).into(),
-            phase: *self.phase.get(index)?,
-            state: *self.state.get(index)?,
-            rotations_rad: self.rotations_rad.get(by_body.clone())?.to_vec(),
-            rates_rad_s: self.rates_rad_s.get(by_body.clone())?.to_vec(),
-            poses: self.poses.get(by_body)?.iter().map(pose).collect(),
-            hinges: self.hinges.get(hinges)?.to_vec(),
-            demand: *self.demand.get(index)?,
-            energy_j: *self.energy_j.get(index)?,
-            energy_ratio: *self.energy_ratio.get(index)?,
-            rotation_over_critical: *self.rotation_over_critical.get(index)?,
-            gaps_m: self.gaps_m.get(by_joint)?.to_vec(),
-            eccentricity_ratios: Vec::new(),
-            offsets_m: self.offsets_m.get(slipping)?.to_vec(),
-            pressures: self.pressures.get(pressing)?.to_vec(),
-            ties: self.ties.get(ties)?.to_vec(),
-        })
-    }
-
-    /// The samples, one after another.
-    pub fn iter(&self) -> impl Iterator<Item = Sample> {
-        (0..self.len()).map_while(|index| self.get(index))
-    }
-}
-
-/// The pose of an entry of [`Samples::poses`].
-fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
-    Pose::new(rotation_rad, Vector2::new(x_m, y_m))
-}
-
-/// The size of the samples of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shape {
-    /// Number of bodies.
-    pub bodies: usize,
-    /// Number of joints that have gaps.
-    pub joints: usize,
-    /// Number of joints that have offsets.
-    pub slipping: usize,
-    /// Number of joints whose forces and stresses are sampled.
-    pub pressing: usize,
-    /// Number of ties.
-    pub ties: usize,
-}
-
-impl Shape {
-    /// Bytes of this many samples, at most: as if all hinges were open all the time.
-    #[must_use]
-    pub fn bytes(self, samples: u64) -> u64 {
-        // Times, two accelerations, two displacements of feet, energies; events so far and where the hinges begin; two ratios that may be unknown.
-        let alone = 6 * size_of::<f64>()
-            + 2 * size_of::<usize>()
-            + 2 * size_of::<Option<f64>>()
-            + size_of::<State>()
-            + size_of::<Demand>();
-        let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
-        // There is at most one hinge more than bodies, as a row between supports has one joint more than blocks.
-        let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
-        let by_joint = self.joints * size_of::<[f64; 2]>()
-            + self.slipping * size_of::<f64>()
-            + self.pressing * size_of::<JointPressure>()
-            + self.ties * size_of::<TieSample>();
-        let each = alone + self.bodies * by_body + hinges + by_joint;
-        samples.saturating_mul(each as u64)
-    }
-}
-
-/// Memory that a history may take by default, in bytes.
-pub const MEMORY_BYTES: u64 = 4_000_000_000;
-
-/// A history takes more memory than it may.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error(
-    "a history of so many samples and events takes {} of memory, and {} are allowed: take a longer output_step_s or a \
-     shorter duration_s, or allow more",
-    in_words(*.needed_bytes), in_words(*.allowed_bytes)
-)]
-pub struct MemoryError {
-    /// Memory that it needs in all, or needs already.
-    pub needed_bytes: u64,
-    /// What it may take.
-    pub allowed_bytes: u64,
-}
-
-/// A size in readable units.
-fn in_words(bytes: u64) -> String {
-    let megabytes = bytes as f64 / 1e6;
-    if megabytes < 1e3 {
-        format!("{megabytes:.1} MB")
-    } else {
-        format!("{:.1} GB", megabytes / 1e3)
-    }
-}
-
-/// Collects all samples and events, as long as they do not take more memory than they may.
-#[derive(Clone, Debug)]
-pub struct Recording {
-    samples: Samples,
-    events: Vec<Event>,
-    /// Memory of all samples and of the events so far.
-    memory: MemoryError,
-}
-
-impl Recording {
-    /// A recording of at most this many samples, which together with the events may take this much memory.
-    ///
-    /// # Errors
-    /// When the samples alone may take more.
-    pub fn new(shape: Shape, samples: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
-        let recording = Self {
-            samples: Samples::default(),
-            events: Vec::new(),
-            memory: MemoryError {
-                needed_bytes: shape.bytes(samples),
-                allowed_bytes,
-            },
-        };
-        recording.check()?;
-        Ok(recording)
-    }
-
-    const fn check(&self) -> Result<(), MemoryError> {
-        if self.memory.needed_bytes > self.memory.allowed_bytes {
-            return Err(self.memory);
-        }
-        Ok(())
-    }
-
-    /// All that was collected.
-    ///
-    /// # Errors
-    /// When it took too much memory, which ended the history.
-    pub fn finish(self) -> Result<(Samples, Vec<Event>), MemoryError> {
-        self.check()?;
-        Ok((self.samples, self.events))
-    }
-}
-
-impl Recorder for Recording {
-    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self.samples.push(sample);
-        ControlFlow::Continue(())
-    }
-
-    fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.memory.needed_bytes += event.bytes();
-        if self.check().is_err() {
-            return ControlFlow::Break(());
-        }
-        self.events.push(event.clone());
-        ControlFlow::Continue(())
     }
 }

@@ -2,18 +2,17 @@
 
 use std::error::Error;
 use std::fmt::Debug;
-use std::ops::{ControlFlow, Range, RangeInclusive};
+use std::ops::Range;
 use std::sync::Arc;
 
-use serde::Serialize;
-
-use super::fall::FallEnd;
 use super::ground::GroundMotion;
-use super::history::{
-    Event, History, MEMORY_BYTES, MemoryError, Outcome, Recording, Sample, Shape, Summary,
-};
+use super::history::{Outcome, Summary};
+pub use super::recorder::{Recorder, WithoutDemand};
+use super::recording::{History, MEMORY_BYTES, MemoryError, Recording, Shape};
+pub use super::request::{Initial, Request};
+use super::row::error::RowMotionError;
 use super::until::{Until, UntilSafe};
-use crate::argument::{ArgumentError, within};
+use crate::argument::ArgumentError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::Hinge;
@@ -44,7 +43,7 @@ pub trait Model: Debug + Send + Sync {
         None
     }
 
-    /// The same structure, computed in other, equally good ways: where they disagree, the result is not known. Empty if
+    /// Copies of this model that are computed in other, equally good ways: where they disagree, the result is uncertain. Empty if
     /// the way of computing does not matter.
     fn repetitions(&self) -> Vec<Repetition> {
         Vec::new()
@@ -63,7 +62,7 @@ pub trait Model: Debug + Send + Sync {
     ) -> Result<Summary, SimulationError>;
 
     /// Energy above that at rest, in J, that it must reach to overturn while no joint slips; only for elastic joints, and where it is
-    /// known. What slips may overturn with less.
+    /// known. A structure that slips may overturn with less.
     fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
         None
     }
@@ -132,30 +131,16 @@ pub trait Model: Debug + Send + Sync {
     /// Its motion with all samples and events, which may take [`MEMORY_BYTES`] of memory.
     ///
     /// # Errors
-    /// Those of [`Model::history_within`].
+    /// Those of [`Model::simulate`], and when the history takes more memory: if that is known beforehand, nothing is
+    /// computed.
     fn history(
         &self,
         ground: &GroundMotion,
         request: &Request,
     ) -> Result<History, SimulationError> {
-        self.history_within(MEMORY_BYTES, ground, request)
-    }
-
-    /// The same with another bound of memory, in bytes. [`Shape::bytes`] of [`Request::most_samples`] gives the
-    /// memory of the samples.
-    ///
-    /// # Errors
-    /// Those of [`Model::simulate`], and when the history takes more memory: if that is known beforehand, nothing is
-    /// computed.
-    fn history_within(
-        &self,
-        memory_bytes: u64,
-        ground: &GroundMotion,
-        request: &Request,
-    ) -> Result<History, SimulationError> {
         request.check(ground)?;
         let most_samples = request.most_samples(ground);
-        let mut recording = Recording::new(self.shape(), most_samples, memory_bytes)?;
+        let mut recording = Recording::new(self.shape(), most_samples, MEMORY_BYTES)?;
         let summary = self.simulate(ground, request, Some(&mut recording))?;
         let (samples, events) = recording.finish()?;
         Ok(History {
@@ -229,7 +214,7 @@ impl Jobs for All {
 pub struct Repetition {
     /// The other way, in words.
     pub name: &'static str,
-    /// The same structure.
+    /// The copy.
     pub model: Box<dyn Model>,
 }
 
@@ -239,38 +224,18 @@ pub trait MechanismModel: Model {
     /// to this side, 1 for the first; `None` when an impact before it stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
-    /// The same after a first sway to the right; for a structure that is its own mirror image, to either side.
-    fn restitution_after(&self, impacts: usize) -> Option<f64> {
-        self.restitution_from(Sway::Right, impacts)
-    }
-
     /// Hinges of that mechanism from left to right when it sways to that side; none if there is no such
     /// mechanism.
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
 
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism, swaying to this side, in radians.
-    fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64>;
-
-    /// The same swaying right.
-    fn critical_rotations_rad(&self) -> Vec<f64> {
-        self.critical_rotations_towards_rad(Sway::Right)
-    }
+    fn critical_rotations_rad(&self, sway: Sway) -> Vec<f64>;
 
     /// Coordinate at the limit position of the first mechanism to this side: no release can start from there or beyond.
-    fn limit_towards_rad(&self, sway: Sway) -> f64;
-
-    /// The same to the right.
-    fn limit_rad(&self) -> f64 {
-        self.limit_towards_rad(Sway::Right)
-    }
+    fn limit_rad(&self, sway: Sway) -> f64;
 
     /// The free-standing blocks that rock like the first mechanism to this side.
-    fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
-
-    /// The same to the right.
-    fn equivalent(&self, gravity_m_s2: f64) -> Option<Equivalent> {
-        self.equivalent_towards(Sway::Right, gravity_m_s2)
-    }
+    fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
 
     /// Its first mechanism to this side, displaced by this fraction of the way to the unstable equilibrium; `None` if it has
     /// none.
@@ -295,126 +260,13 @@ pub trait MechanismModel: Model {
     ) -> Result<Option<Sway>, SimulationError>;
 }
 
-/// What is to be simulated, and how accurately.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Request {
-    /// Acceleration of gravity, in 0.001 to 1000.
-    pub gravity_m_s2: f64,
-    /// Upper bound of the time, in 1e-6 to 1e6: a history ends earlier if the structure overturns, or rests on ground that stays
-    /// quiet.
-    pub end_s: f64,
-    /// Interval of the samples, in 1e-6 to 1e6, of which there are at most 1e7. Some models end their steps there.
-    pub output_step_s: f64,
-    /// Where the motion starts from; `None`: from rest.
-    pub initial: Option<Initial>,
-    /// Error that the integrator may make in a step, relative to the state, in 1e-13 to 1e-3.
-    pub relative_tolerance: f64,
-    /// An impact that leaves less than this fraction of the energy barrier of the first mechanism ends in rest; in 1e-16 to 0.1.
-    pub rest_energy_ratio: f64,
-}
-
-/// A rotated position from which a structure is released at no velocity.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Initial {
-    /// The side to which it has swayed.
-    pub sway: Sway,
-    /// Magnitude of the rotation of the body that carries the coordinate: the end body on the side from which
-    /// the structure sways (the left one of a sway to the right), or the column.
-    pub rotation_rad: f64,
-}
-
-impl Initial {
-    /// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.
-    pub const MIN_ROTATION_RAD: f64 = 1e-100;
-}
-
-impl Default for Request {
-    /// Ten seconds from rest under gravity of 9.81 m/s2, with the defaults of a scenario.
-    fn default() -> Self {
-        Self {
-            gravity_m_s2: 9.81,
-            end_s: 10.0,
-            output_step_s: 0.005,
-            initial: None,
-            relative_tolerance: 1e-9,
-            rest_energy_ratio: 1e-8,
-        }
-    }
-}
-
-impl Request {
-    /// Accelerations of gravity.
-    pub const GRAVITY_M_S2: RangeInclusive<f64> = 1e-3..=1e3;
-    /// Lengths of a history, and intervals of its samples. At shorter times the errors of a step fall below the resolution of
-    /// numbers.
-    pub const TIME_S: RangeInclusive<f64> = 1e-6..=1e6;
-    /// Tolerances of the integrator.
-    pub const RELATIVE_TOLERANCE: RangeInclusive<f64> = 1e-13..=1e-3;
-    /// Energies at which a structure is at rest.
-    pub const REST_ENERGY_RATIO: RangeInclusive<f64> = 1e-16..=0.1;
-    /// Samples that a history may have: about a gigabyte of rows.
-    pub const MOST_SAMPLES: f64 = 1e7;
-
-    /// Largest number of samples of a history on this ground: one at the start, at every output step and at the end.
-    #[must_use]
-    pub fn most_samples(&self, ground: &GroundMotion) -> u64 {
-        let before = if ground.start_s() < 0.0 { 1 } else { 0 };
-        // Numbers that cannot count samples are refused elsewhere.
-        (self.lasts_s(ground) / self.output_step_s) as u64 + 2 + before
-    }
-
-    /// Longest time from the start of the ground motion to the end of a history, in seconds.
-    fn lasts_s(&self, ground: &GroundMotion) -> f64 {
-        self.end_s - ground.start_s()
-    }
-
-    /// Refuses numbers that no simulation on this ground can work with, and ground that falls away under the structure: no model follows a
-    /// structure that flies.
-    pub(in crate::dynamics) fn check_on(
-        &self,
-        ground: &GroundMotion,
-    ) -> Result<(), SimulationError> {
-        self.check(ground)?;
-        match ground.free_fall_s(self.gravity_m_s2) {
-            Some(time_s) => Err(SimulationError::FreeFall { time_s }),
-            None => Ok(()),
-        }
-    }
-
-    /// Refuses numbers that no simulation on this ground can work with.
-    pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
-        within("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2)?;
-        within("end_s", self.end_s, Self::TIME_S)?;
-        within("output_step_s", self.output_step_s, Self::TIME_S)?;
-        within(
-            "relative_tolerance",
-            self.relative_tolerance,
-            Self::RELATIVE_TOLERANCE,
-        )?;
-        within(
-            "rest_energy_ratio",
-            self.rest_energy_ratio,
-            Self::REST_ENERGY_RATIO,
-        )?;
-        if let Some(initial) = self.initial {
-            within(
-                "rotation_rad",
-                initial.rotation_rad,
-                Initial::MIN_ROTATION_RAD..=std::f64::consts::PI,
-            )?;
-        }
-        let lasts_s = self.lasts_s(ground);
-        if lasts_s / self.output_step_s <= Self::MOST_SAMPLES {
-            return Ok(());
-        }
-        Err(ArgumentError {
-            argument: "output_step_s",
-            value: self.output_step_s,
-            allowed: format!(
-                "at least {:?}, for ten million samples",
-                lasts_s / Self::MOST_SAMPLES
-            ),
-        })
+/// Refuses numbers that no simulation on this ground can work with, and ground that falls away under the structure: no model follows a
+/// structure that flies.
+pub(super) fn check(ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
+    request.check(ground)?;
+    match ground.free_fall_s(request.gravity_m_s2) {
+        Some(time_s) => Err(SimulationError::FreeFall { time_s }),
+        None => Ok(()),
     }
 }
 
@@ -442,6 +294,9 @@ pub enum SimulationError {
     /// The history takes too much memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
+    /// The motion of a row of blocks could not be computed.
+    #[error(transparent)]
+    Row(#[from] RowMotionError),
     /// The motion could not be computed, for a reason of its model.
     #[error(transparent)]
     Computation(Arc<dyn Error + Send + Sync>),
@@ -451,64 +306,5 @@ impl SimulationError {
     /// An error for a reason of the model.
     pub fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
-    }
-}
-
-/// Receives the samples and events of a history. Breaking ends the history there.
-///
-/// Samples arrive in order of time, and so do events; the last sample before an event may arrive after it.
-pub trait Recorder {
-    /// A sample: one at every multiple of the output step from zero on, and a last one at the end.
-    fn sample(&mut self, _sample: &Sample) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    /// An event.
-    fn event(&mut self, _event: &Event) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    /// Whether samples need the thrust excess and the friction demand, which take most of the time of a history of four links. Without
-    /// them, the summary of mechanisms has no record of thrust.
-    fn wants_demand(&self) -> bool {
-        true
-    }
-
-    /// Whether samples need the line of thrust, which takes time to compute.
-    fn wants_thrust_line(&self) -> bool {
-        false
-    }
-
-    /// Whether it follows the fall of a structure that has overturned.
-    fn wants_fall(&self) -> bool {
-        false
-    }
-
-    /// A sample of the fall. They come after all samples and events of the history, of which they are no part. Breaking ends the fall.
-    fn fall(&mut self, _sample: &Sample) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    /// Why the fall is followed no further.
-    fn fell(&mut self, _end: FallEnd) {}
-}
-
-/// A function records samples.
-impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for F {
-    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self(sample)
-    }
-}
-
-/// A function records samples without the demand of the line of thrust.
-pub struct WithoutDemand<F>(pub F);
-
-impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for WithoutDemand<F> {
-    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        (self.0)(sample)
-    }
-
-    fn wants_demand(&self) -> bool {
-        false
     }
 }

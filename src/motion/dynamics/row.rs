@@ -2,4 +2,5 @@
 //! what is known of a row of rigid blocks before it moves.
 
 pub(super) mod course;
+pub mod error;
 pub(super) mod standing;

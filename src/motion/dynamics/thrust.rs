@@ -1,5 +1,6 @@
 //! The thrust line along a history: how far the four-link assumption holds.
 
+use super::peak::Peak;
 use crate::mechanics::chain::Demand;
 
 /// Largest thrust excess and friction demand of a history, and the share of its rocking time in which the thrust
@@ -16,23 +17,6 @@ pub struct ThrustRecord {
     moving: u64,
     /// Of these, the number with an excess of at most each of [`EXCESS_LEVELS`].
     within: [u64; 2],
-}
-
-/// Largest value and its time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Peak {
-    /// The value.
-    pub value: f64,
-    /// Its time in seconds.
-    pub time_s: f64,
-}
-
-impl Peak {
-    fn note(&mut self, value: f64, time_s: f64) {
-        if value > self.value {
-            *self = Self { value, time_s };
-        }
-    }
 }
 
 /// Levels of the excess, over the thickness, for the shares of time. They grade the assumption and do not bound

@@ -1,10 +1,11 @@
-//! How far a motion is followed, in studies of many cases that ask only whether it overturns.
+//! How far a motion is followed, in studies of many cases that need only whether it overturns.
 
 use std::ops::ControlFlow;
 
 use super::ground::GroundMotion;
 use super::history::{Sample, State};
-use super::model::{Recorder, Request};
+use super::recorder::Recorder;
+use super::request::Request;
 use crate::mechanics::sway::Sway;
 
 /// How far a motion is followed. One that is followed no further is [`StillRocking`](super::history::Outcome::StillRocking) before its

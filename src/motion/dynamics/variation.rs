@@ -1,4 +1,4 @@
-//! What a motion depends on: the same motion with other values of properties that are not known exactly.
+//! Variations of a motion: other values of properties that are uncertain.
 
 use std::panic;
 use std::thread::{self, JoinHandle};
@@ -10,37 +10,54 @@ use super::model::{Model, Request, SimulationError};
 /// A copy of a model with a property that is equally likely.
 #[derive(Debug)]
 pub struct Variation {
-    /// What is different, in words that follow "with".
+    /// The difference, in words that follow "with".
     pub name: String,
-    /// The same structure; or why it does not stand.
+    /// The model; or why the structure does not stand.
     pub model: Result<Box<dyn Model>, String>,
 }
 
 /// The outcome of a variation.
 #[derive(Clone, Debug)]
 pub struct Varied {
-    /// What is different.
+    /// The difference.
     pub name: String,
     /// Its motion; or why there is none.
     pub result: Result<Summary, String>,
 }
 
-/// The motions of variations, computed on threads of their own. If the motion itself fails nobody waits for them.
+/// A motion that is computed on a thread of its own. If nobody waits for it, it ends with the program.
+#[derive(Debug)]
+pub(super) struct Running(JoinHandle<Result<Summary, SimulationError>>);
+
+impl Running {
+    pub(super) fn start(model: Box<dyn Model>, ground: &GroundMotion, request: &Request) -> Self {
+        let (ground, request) = (ground.clone(), *request);
+        Self(thread::spawn(move || {
+            model.simulate(&ground, &request, None)
+        }))
+    }
+
+    /// Waits for it. A panic of its thread continues here.
+    pub(super) fn ended(self) -> Result<Summary, SimulationError> {
+        self.0
+            .join()
+            .unwrap_or_else(|panicked| panic::resume_unwind(panicked))
+    }
+}
+
+/// The motions of variations, while they are computed.
 #[derive(Debug)]
 pub struct Variations(Vec<(String, Result<Running, String>)>);
-
-type Running = JoinHandle<Result<Summary, SimulationError>>;
 
 impl Variations {
     /// Starts them.
     #[must_use]
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
         let start = |Variation { name, model }| {
-            let running = model.map(|model| {
-                let (ground, request) = (ground.clone(), *request);
-                thread::spawn(move || model.simulate(&ground, &request, None))
-            });
-            (name, running)
+            (
+                name,
+                model.map(|model| Running::start(model, ground, request)),
+            )
         };
         Self(variations.into_iter().map(start).collect())
     }
@@ -48,13 +65,9 @@ impl Variations {
     /// Waits for them.
     #[must_use]
     pub fn ended(self) -> Vec<Varied> {
-        let ended = |(name, running): (String, Result<Running, String>)| {
-            let result = running.and_then(|running| {
-                let ended = running.join();
-                let ended = ended.unwrap_or_else(|panicked| panic::resume_unwind(panicked));
-                ended.map_err(|error| error.to_string())
-            });
-            Varied { name, result }
+        let ended = |(name, running): (_, Result<Running, String>)| Varied {
+            name,
+            result: running.and_then(|running| running.ended().map_err(|error| error.to_string())),
         };
         self.0.into_iter().map(ended).collect()
     }

@@ -22,9 +22,9 @@ use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
 use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
-use crate::dynamics::elastic_joints::ElasticJointsError;
-use crate::dynamics::free_hinges::{FreeHinges, FreeHingesError, RowOptions};
+use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
 use crate::dynamics::model::MechanismModel;
+use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::arch::{self, Arch};
 use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError, Supports};
 use crate::mechanics::column::{Column, RockingColumn};
@@ -70,10 +70,10 @@ pub enum ModelError {
     FourLinks(#[from] FourLinkError),
     /// It is not a row of blocks that stands.
     #[error(transparent)]
-    FreeHinges(#[from] FreeHingesError),
+    FreeHinges(#[from] RowModelError),
     /// It does not stand on its elastic joints.
     #[error(transparent)]
-    ElasticJoints(#[from] ElasticJointsError),
+    ElasticJoints(RowModelError),
 }
 
 impl Structure {
@@ -223,12 +223,12 @@ impl Structure {
             Self::Arch(arch) => {
                 // The limit position does not depend on the impact model.
                 let arch = FourLinks::of_arch(arch, ImpactModel::MaxRestitution);
-                arch.ok().map(|arch| arch.limit_rad())
+                arch.ok().map(|arch| arch.limit_rad(Sway::Right))
             }
             Self::Column(_) => Some(FRAC_PI_2),
             Self::Masonry(masonry) => {
                 let row = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution).ok()?;
-                let sides = Sway::ALL.iter().map(|sway| row.limit_towards_rad(*sway));
+                let sides = Sway::ALL.iter().map(|sway| row.limit_rad(*sway));
                 Some(sides.fold(f64::INFINITY, f64::min))
             }
         }
@@ -260,7 +260,7 @@ impl Structure {
     ///
     /// # Errors
     /// When it is an arch without voussoirs, or cannot stand.
-    pub fn free_hinges(&self, options: RowOptions) -> Result<FreeHinges, FreeHingesError> {
+    pub fn free_hinges(&self, options: RowOptions) -> Result<FreeHinges, RowModelError> {
         FreeHinges::new(self.row()?)?.with_options(options)
     }
 }

@@ -1,4 +1,4 @@
-//! How a history ended, as studies record it, and whether the ending is [certain](crate::dynamics::spread).
+//! How a history ended, as studies record it, and whether the ending is [certain](crate::dynamics::repeatability).
 
 pub(crate) mod columns;
 
@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Case, Model, Request};
-pub use crate::dynamics::spread::Verdict;
-use crate::dynamics::spread::{Checked, checked};
+pub use crate::dynamics::repeatability::Verdict;
+use crate::dynamics::repeatability::{Checked, checked};
 use crate::dynamics::until::Until;
 
 /// The steps of a history.
@@ -63,9 +63,9 @@ pub enum PeakRotation {
 
 impl PeakRotation {
     fn of(summary: &Summary) -> Self {
-        match summary.row {
+        match summary.row() {
             Some(_) => Self::Rad(summary.largest_rotation_rad()),
-            None => Self::OverCritical(summary.peak_over_critical),
+            None => Self::OverCritical(summary.peak_over_critical()),
         }
     }
 
@@ -189,7 +189,7 @@ impl Ending {
             energy_defect_ratio: summary.energy_defect_ratio,
             peak: PeakRotation::of(summary),
             peak_rotation_rad: summary.largest_rotation_rad(),
-            steps: summary.row.as_ref().map(|row| Steps {
+            steps: summary.row().map(|row| Steps {
                 longest_s: row.longest_step_s,
                 shortest_s: row.shortest_step_s,
             }),

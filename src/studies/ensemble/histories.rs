@@ -8,7 +8,7 @@ use super::statistics::{Share, band, quantile};
 use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
 use crate::dynamics::model::{Model, WithoutDemand};
-use crate::dynamics::spread::repeated;
+use crate::dynamics::repeatability::repeated;
 use crate::output::OutputError;
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::{Ending, Verdict};
@@ -135,7 +135,7 @@ impl Histories {
         Ok(Went {
             ending,
             peak_rotation_rad: summary.largest_rotation_rad(),
-            potential_over_barrier: summary.peak_potential_over_barrier,
+            potential_over_barrier: summary.peak_potential_over_barrier(),
             course_rad,
         })
     }

@@ -10,7 +10,7 @@ pub use self::report::{
     Summary, TieLimits, Ties, YieldingJoint, YieldingTies,
 };
 use super::results::Answer;
-use crate::dynamics::free_hinges::FreeHingesError;
+use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
@@ -33,7 +33,7 @@ pub enum NoLimit {
     FourLinks(#[from] FourLinkError),
     /// The structure is not a row of blocks whose joints can slip.
     #[error(transparent)]
-    FreeHinges(#[from] FreeHingesError),
+    FreeHinges(#[from] RowModelError),
     /// The structure does not stand.
     #[error(transparent)]
     Stability(#[from] StabilityError),
@@ -54,7 +54,7 @@ pub enum NoLimit {
 /// # Errors
 /// When the structure does not stand, or the analysis does not apply to it.
 pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
-    let row = || scenario.structure().row().map_err(FreeHingesError::from);
+    let row = || scenario.structure().row().map_err(RowModelError::from);
     let coefficient = scenario.motion().friction_coefficient();
     if let Some(movements) = scenario.motion().supports() {
         return Ok(of_moved_row(scenario, &row()?, &movements, coefficient)?.answer()?);
@@ -99,8 +99,8 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
             summary.bodies = model.bodies();
             FourLinks::Sides(Sides::of(|sway| FourLinkSide {
                 hinges: model.hinges_after(0, sway),
-                unstable_equilibrium_rad: model.critical_rotations_towards_rad(sway),
-                equivalent_block: model.equivalent_towards(sway, gravity_m_s2),
+                unstable_equilibrium_rad: model.critical_rotations_rad(sway),
+                equivalent_block: model.equivalent(sway, gravity_m_s2),
             }))
         }
     });

@@ -236,7 +236,10 @@ impl Summary {
     /// The summary of a structure that starts as a mechanism of one degree of freedom.
     pub(super) fn of_mechanism(model: &dyn MechanismModel, gravity_m_s2: f64) -> Self {
         let bodies = model.bodies();
-        let unstable = model.critical_rotations_rad().into_iter().map(Value::from);
+        let unstable = model
+            .critical_rotations_rad(Sway::Right)
+            .into_iter()
+            .map(Value::from);
         let unstable = columns(&bodies, "rotation", "rad")
             .into_iter()
             .zip(unstable);
@@ -247,7 +250,7 @@ impl Summary {
         let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
         Self {
             unstable_rotations: Some(unstable.collect()),
-            equivalent_block: model.equivalent(gravity_m_s2),
+            equivalent_block: model.equivalent(Sway::Right, gravity_m_s2),
             bodies,
             ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
         }

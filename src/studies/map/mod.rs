@@ -15,11 +15,11 @@ use serde::{Deserialize, Serialize};
 use super::ending::{Ending, answered};
 use super::runner::Study;
 use crate::argument::ArgumentError;
-use crate::dynamics::free_hinges::FreeHingesError;
 use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
-use crate::dynamics::spread::objection;
+use crate::dynamics::repeatability::objection;
+use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::LimitError;
@@ -47,7 +47,7 @@ impl From<ModelError> for CellResult {
     fn from(error: ModelError) -> Self {
         match error {
             ModelError::FourLinks(FourLinkError::Limit(LimitError::CannotStand))
-            | ModelError::FreeHinges(FreeHingesError::Stability(StabilityError::CannotStand(_))) => {
+            | ModelError::FreeHinges(RowModelError::Stability(StabilityError::CannotStand(_))) => {
                 Self::CannotStand
             }
             ModelError::FourLinks(FourLinkError::Limit(

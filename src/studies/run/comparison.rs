@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::Run;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::spread::Verdict;
+use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::Varied;
 use crate::scenario::Hinges;
 

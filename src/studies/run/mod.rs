@@ -41,7 +41,7 @@ pub use self::words::{heading, warnings};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
-use crate::dynamics::spread::Repetitions;
+use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::{Variation, Variations, Varied};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
@@ -242,7 +242,7 @@ impl<'a> Run<'a> {
         };
         let spread = repetitions.map(|repetitions| {
             watch(Stage::Repeating);
-            repetitions.spread(&history)
+            repetitions.compare(&history)
         });
         let spread = spread.as_ref();
         let varied = variations.ended();
@@ -260,7 +260,7 @@ impl<'a> Run<'a> {
         if !self.wanted.points_m.is_empty() {
             summary["points"] = shown.points.summary()?;
         }
-        let row = history.row.as_ref();
+        let row = history.row();
         if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
             // The cost of a computation is reported here; the results do not contain it.
             summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();

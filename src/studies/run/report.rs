@@ -240,10 +240,10 @@ impl Report {
             let end = |mark: Mark| json!([body_number(mark.body), mark.at_m.x, mark.at_m.y]);
             json!(ends.map(end))
         });
-        let of_row = history.row.iter();
+        let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
         let energy_label = if self.in_barriers {
-            match history.row {
+            match history.row() {
                 None => "Kinetic and potential energy over the barrier of the mechanism that moves",
                 Some(_) => "Kinetic and potential energy over the barrier of the first mechanism",
             }

@@ -129,7 +129,7 @@ impl Picture for RowTimeline {
             };
             let mut curves = vec![energy];
             // A barrier far above the curve would flatten it.
-            let over_barrier = summary.peak_potential_over_barrier;
+            let over_barrier = summary.peak_potential_over_barrier();
             if over_barrier.is_some_and(|peak| peak >= FAR) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Mark::curve("barrier", BARRIER, ends));
@@ -192,7 +192,7 @@ fn states(summary: &Summary) -> States {
             None
         }
     };
-    let row = summary.row.iter();
+    let row = summary.row().into_iter();
     let changes = row
         .flat_map(|row| &row.half_cycles)
         .map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)))

@@ -21,7 +21,10 @@ impl Scales {
         let incipient_m_s2 = [Sway::Right, Sway::Left]
             .map(|sway| incipient_g(sway).map_or(f64::INFINITY, |start_g| start_g * gravity_m_s2));
         Some(Self {
-            frequency_rad_s: model.equivalent(gravity_m_s2)?.at_critical?.frequency_rad_s,
+            frequency_rad_s: model
+                .equivalent(Sway::Right, gravity_m_s2)?
+                .at_critical?
+                .frequency_rad_s,
             incipient_m_s2,
         })
     }

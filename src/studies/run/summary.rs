@@ -8,7 +8,7 @@ use super::verdict::Evidence;
 use super::words::{first_peak_rad, warnings};
 use crate::dynamics::history::{ElasticSummary, Outcome, RowSummary, Summary, TieSummary};
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::spread::{PeakSpread, Spread, SpreadError};
+use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, RepeatedValue};
 use crate::dynamics::variation::Varied;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
@@ -36,7 +36,7 @@ pub fn summary(
     scenario: &Scenario,
     model: &dyn Model,
     history: &Summary,
-    spread: Option<&Result<Spread, SpreadError>>,
+    spread: Option<&Result<Repeatability, RepeatabilityError>>,
 ) -> Result<Value, OutputError> {
     let mut object = Object::default();
     object.put("program", json!(env!("CARGO_PKG_NAME")));
@@ -57,7 +57,7 @@ pub fn summary(
     for (name, peak_rad) in peaks.iter().zip(&history.peak_rotations_rad) {
         object.number(name, *peak_rad)?;
     }
-    match (model.as_mechanisms(), &history.row) {
+    match (model.as_mechanisms(), history.row()) {
         (Some(model), _) => object.mechanisms(scenario, model, history)?,
         (None, Some(row)) => object.row(scenario, model, history, row)?,
         (None, None) => {}
@@ -126,7 +126,7 @@ impl Object {
         model: &dyn MechanismModel,
         history: &Summary,
     ) -> Result<(), OutputError> {
-        self.number("peak_rotation_over_critical", history.peak_over_critical)?;
+        self.number("peak_rotation_over_critical", history.peak_over_critical())?;
         self.incipient(model);
         if let Some(scales) = Scales::new(model, scenario.gravity_m_s2()) {
             let p_rad_s = scales.frequency_rad_s;
@@ -219,7 +219,7 @@ impl Object {
         row: &RowSummary,
     ) -> Result<(), OutputError> {
         self.number("largest_peak_rotation_rad", history.largest_rotation_rad())?;
-        let over_barrier = history.peak_potential_over_barrier;
+        let over_barrier = history.peak_potential_over_barrier();
         self.number("peak_potential_over_barrier", over_barrier)?;
         self.incipient(model);
         let mut half_cycles = Vec::new();
@@ -234,7 +234,7 @@ impl Object {
             half_cycles.push(Value::Object(object.0));
         }
         self.put("half_cycles", half_cycles.into());
-        if let Some(elastic) = &row.elastic {
+        if let Some(elastic) = history.elastic() {
             self.elastic(elastic)?;
         // There is none if the row was released beyond the point where it overturns.
         } else if history.cost.steps > 0 {
@@ -252,7 +252,7 @@ impl Object {
             self.number("largest_friction_demand", friction.value)?;
             self.number("largest_friction_demand_time_s", friction.time_s)?;
         }
-        if row.elastic.is_none() {
+        if history.elastic().is_none() {
             self.number("energy_taken_j", row.energy_taken_j)?;
         }
         self.number("ground_j", row.ground_j)?;
@@ -267,7 +267,7 @@ impl Object {
             self.numbers("largest_slips_m", &sliding.largest_offsets_m)?;
             self.number("friction_j", sliding.friction_j)?;
         }
-        if row.elastic.is_some() {
+        if history.elastic().is_some() {
             self.counts([("steps", history.cost.steps)]);
             self.number("longest_step_s", row.longest_step_s)?;
             self.number("shortest_step_s", row.shortest_step_s)?;
@@ -315,20 +315,20 @@ pub(super) fn of_variations(varied: &[Varied]) -> Result<Value, OutputError> {
     varied.iter().map(variation).collect()
 }
 
-fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
-    let peak = |peak: &PeakSpread| -> Result<Value, OutputError> {
+fn of_spread(spread: &Repeatability) -> Result<Value, OutputError> {
+    let peak = |peak: &RepeatedValue| -> Result<Value, OutputError> {
         let mut object = Object::default();
-        object.number("own", peak.own_rad)?;
-        object.number("min", peak.min_rad)?;
-        object.number("max", peak.max_rad)?;
+        object.number("own", peak.own)?;
+        object.number("min", peak.min)?;
+        object.number("max", peak.max)?;
         Ok(Value::Object(object.0))
     };
     let mut slips_m = Vec::new();
-    for slip in &spread.slips {
+    for slip in &spread.slips_m {
         let mut object = Object::default();
-        object.number("own", slip.own_m)?;
-        object.number("min", slip.min_m)?;
-        object.number("max", slip.max_m)?;
+        object.number("own", slip.own)?;
+        object.number("min", slip.min)?;
+        object.number("max", slip.max)?;
         slips_m.push(Value::Object(object.0));
     }
     let early = spread.early.map(|early| {
@@ -340,14 +340,14 @@ fn of_spread(spread: &Spread) -> Result<Value, OutputError> {
     });
     let mut half_cycles = Vec::new();
     for cycle in &spread.half_cycles {
-        let peak_rad = cycle.peak.as_ref().map(peak).transpose()?;
+        let peak_rad = cycle.peak_rad.as_ref().map(peak).transpose()?;
         half_cycles.push(json!({ "peak_time_s": cycle.own.peak_time_s, "peak_rad": peak_rad }));
     }
     let names = std::iter::once("own").chain(spread.repeated.iter().copied());
     let names = names.map(|name| name.replace(' ', "_"));
     let outcomes = spread.outcomes.iter().map(|outcome| json!(outcome.name()));
     let outcomes: Map<_, _> = names.zip(outcomes).collect();
-    let largest = spread.largest.as_ref().map(peak).transpose()?;
+    let largest = spread.largest_rad.as_ref().map(peak).transpose()?;
     Ok(json!({
         "outcomes": outcomes,
         "half_cycles": half_cycles,

@@ -3,7 +3,7 @@
 use super::comparison::otherwise;
 use super::words::{in_percent, needs};
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::spread::{Spread, SpreadError, Verdict};
+use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Verdict};
 use crate::dynamics::thrust::EXCESS_LEVELS;
 use crate::dynamics::variation::Varied;
 use crate::scenario::{Hinges, Scenario};
@@ -13,7 +13,7 @@ use crate::scenario::{Hinges, Scenario};
 pub(super) struct Evidence<'a> {
     pub(super) scenario: &'a Scenario,
     pub(super) history: &'a Summary,
-    pub(super) spread: Option<&'a Result<Spread, SpreadError>>,
+    pub(super) spread: Option<&'a Result<Repeatability, RepeatabilityError>>,
     pub(super) varied: &'a [Varied],
 }
 
@@ -21,7 +21,7 @@ impl Evidence<'_> {
     /// Whether the structure overturns, as far as this is known.
     pub(super) fn verdict(&self) -> Verdict {
         let own = Verdict::from(self.history.outcome);
-        if own != Verdict::Incomplete && self.repeated().is_some_and(Spread::is_uncertain) {
+        if own != Verdict::Incomplete && self.repeated().is_some_and(Repeatability::is_uncertain) {
             return Verdict::Uncertain;
         }
         own
@@ -40,7 +40,7 @@ impl Evidence<'_> {
         format!("  {}\n", doubts.join("; "))
     }
 
-    fn repeated(&self) -> Option<&Spread> {
+    fn repeated(&self) -> Option<&Repeatability> {
         self.spread.and_then(|spread| spread.as_ref().ok())
     }
 
@@ -87,8 +87,8 @@ impl Evidence<'_> {
             Outcome::Incomplete => no_verdict(self.scenario, history),
             Outcome::Rest | Outcome::StillRocking => {
                 let (rotation, energy) = (
-                    history.peak_over_critical,
-                    history.peak_potential_over_barrier,
+                    history.peak_over_critical(),
+                    history.peak_potential_over_barrier(),
                 );
                 let elastic = self.scenario.motion().hinges() == Hinges::Elastic;
                 match (rotation, energy) {
@@ -141,7 +141,7 @@ impl Evidence<'_> {
 }
 
 /// In which sense repetitions agree that the structure overturns or survives: it may overturn to either side, or rest earlier.
-fn agreement(spread: &Spread, own: Outcome) -> String {
+fn agreement(spread: &Repeatability, own: Outcome) -> String {
     if spread.same_outcome() {
         return "the same with other steps".to_owned();
     }

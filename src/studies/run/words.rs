@@ -8,11 +8,14 @@ use super::verdict::{Evidence, no_verdict};
 use crate::argument::fixed;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{
-    ElasticSummary, Event, Impact, Outcome, RowSummary, Sliding, Stress, Summary, TieSummary,
+    ElasticSummary, Event, Impact, Outcome, Sliding, Stress, Summary, TieSummary,
 };
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::spread::{HalfCycleSpread, PeakSpread, SAME_PEAK_RATIO, Spread, Verdict};
-use crate::dynamics::thrust::{EXCESS_LEVELS, Peak, ThrustRecord};
+use crate::dynamics::peak::Peak;
+use crate::dynamics::repeatability::{
+    Repeatability, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO, Verdict,
+};
+use crate::dynamics::thrust::{EXCESS_LEVELS, ThrustRecord};
 use crate::dynamics::variation::Varied;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
@@ -48,14 +51,14 @@ pub(super) fn words(
         varied,
     } = *evidence;
     let impacts = &shown.notable;
-    let row = history.row.as_ref();
+    let row = history.row();
     let sliding = row.and_then(|row| row.sliding.as_ref());
     let mut text = evidence.in_words();
     text += &outcome(history);
     if let Some(model) = model.as_mechanisms() {
         text += &of_mechanisms(model, history, impacts);
-    } else if let Some(row) = row {
-        text += &of_row(history, row, impacts);
+    } else {
+        text += &of_row(history, impacts);
     }
     text += &shown.points.words();
     if let (Some(row), Some(sliding)) = (model.row(), sliding) {
@@ -66,7 +69,7 @@ pub(super) fn words(
     if sliding.is_none() {
         text += &trusted(scenario, model, history, beside);
     }
-    if let Some(elastic) = row.and_then(|row| row.elastic.as_ref()) {
+    if let Some(elastic) = history.elastic() {
         text += &of_elastic_joints(scenario, elastic);
     }
     text += &row.map_or(String::new(), |row| of_ties(&row.ties));
@@ -170,7 +173,7 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
     }
     let (defect, steps) = (history.energy_defect_ratio, history.cost.steps);
     let evaluations = history.cost.evaluations;
-    let row = match (&history.row, model.as_mechanisms()) {
+    let row = match (history.row(), model.as_mechanisms()) {
         (Some(row), None) => row,
         _ => {
             return format!(
@@ -179,7 +182,7 @@ fn computed(scenario: &Scenario, model: &dyn Model, history: &Summary) -> String
         }
     };
     let mut text = format!("  energy defect {defect:.1e} of weight times size, {steps} steps");
-    if row.elastic.is_none() {
+    if history.elastic().is_none() {
         let _ = write!(text, ", {evaluations} iterations");
     }
     if row.halvings > 0 {
@@ -263,7 +266,7 @@ fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notabl
         "  peak rotation in rad: {}",
         by_body(&model.bodies(), &history.peak_rotations_rad),
     );
-    if let Some(peak) = history.peak_over_critical {
+    if let Some(peak) = history.peak_over_critical() {
         text += &reached(
             history.outcome,
             peak,
@@ -285,7 +288,7 @@ pub(super) fn is_unmoved(history: &Summary) -> bool {
 
 /// Whether a joint slipped.
 fn has_slipped(history: &Summary) -> bool {
-    let sliding = history.row.as_ref().and_then(|row| row.sliding.as_ref());
+    let sliding = history.row().and_then(|row| row.sliding.as_ref());
     sliding.is_some_and(|sliding| sliding.largest_offsets_m.iter().any(|slip_m| *slip_m > 0.0))
 }
 
@@ -303,7 +306,7 @@ fn reached(outcome: Outcome, peak: f64, passed: &str, of: &str) -> String {
 }
 
 /// The report on the motion of a row.
-fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
+fn of_row(history: &Summary, impacts: &Notable) -> String {
     let mut text = String::new();
     let [first, hardest] = impacts.of(history);
     if let Some((time_s, impact)) = first {
@@ -343,12 +346,12 @@ fn of_row(history: &Summary, row: &RowSummary, impacts: &Notable) -> String {
             history.peak_rotations_rad.len()
         );
     }
-    if let Some(peak) = history.peak_potential_over_barrier {
+    if let Some(peak) = history.peak_potential_over_barrier() {
         text += &reached(
             history.outcome,
             peak,
             "passed the barrier beyond which it overturns",
-            match row.elastic {
+            match history.elastic() {
                 None => "the potential energy at which its first mechanism overturns",
                 Some(_) => {
                     "the potential energy at which its first mechanism overturns with rigid joints"
@@ -471,7 +474,7 @@ pub(super) fn taken_j(impact: &Impact) -> f64 {
 /// How the history ended.
 fn outcome(history: &Summary) -> String {
     let time_s = history.outcome_time_s;
-    let elastic = history.row.as_ref().and_then(|row| row.elastic.as_ref());
+    let elastic = history.elastic();
     let impacts = match history.impacts {
         // Elastic joints have no impacts.
         _ if elastic.is_some() => String::new(),
@@ -602,7 +605,7 @@ fn feet(scenario: &Scenario, history: &Summary) -> String {
             }
         }
     }
-    if let Some(row) = &history.row {
+    if let Some(row) = history.row() {
         let _ = write!(
             text,
             "\n  beside the left foot, the shaken ground worked {:.3} J, and the right foot {:.3} J",
@@ -778,7 +781,7 @@ fn joints(hinges: &[Hinge]) -> String {
 }
 
 /// Which results the repetitions confirm.
-fn sure(spread: &Spread) -> String {
+fn sure(spread: &Repeatability) -> String {
     let repeated = spread.repeated.join("; ");
     let mut text = if spread.same_outcome() {
         format!("  repeated ({repeated}): the same outcome")
@@ -792,7 +795,7 @@ fn sure(spread: &Spread) -> String {
     };
     let percent = 100.0 * SAME_PEAK_RATIO;
     let described = largest(&spread.half_cycles, |cycle| cycle.own.peak_rad);
-    let (same, differ): (Vec<_>, Vec<_>) = described.partition(|cycle| cycle.is_same());
+    let (same, differ): (Vec<_>, Vec<_>) = described.partition(|cycle| cycle.is_certain());
     let count = same.len() + differ.len();
     if count == 0 {
         text.push('\n');
@@ -822,9 +825,9 @@ fn sure(spread: &Spread) -> String {
     }
     let differ: Vec<String> = differ
         .iter()
-        .map(|cycle: &&HalfCycleSpread| {
+        .map(|cycle: &&RepeatedHalfCycle| {
             let (side, time_s) = (cycle.own.sway.name(), cycle.own.peak_time_s);
-            match cycle.peak {
+            match cycle.peak_rad {
                 Some(peak) => format!("{side} {} rad (at {time_s:.4} s)", ends(&peak)),
                 None => format!("{side} only in some (at {time_s:.4} s)"),
             }
@@ -833,8 +836,8 @@ fn sure(spread: &Spread) -> String {
     if !differ.is_empty() {
         let _ = write!(text, ":\n    {}", differ.join(", "));
     }
-    if let Some(largest) = spread.largest {
-        let _ = if largest.is_same() {
+    if let Some(largest) = spread.largest_rad {
+        let _ = if largest.is_certain() {
             write!(text, "\n    largest rotation within {percent} %")
         } else {
             write!(text, "\n    LARGEST ROTATION {} rad", ends(&largest))
@@ -842,7 +845,7 @@ fn sure(spread: &Spread) -> String {
     }
     if let Some(joint) = spread.uncertain_slip() {
         let [min_mm, max_mm] =
-            [spread.slips[joint].min_m, spread.slips[joint].max_m].map(|m| 1e3 * m);
+            [spread.slips_m[joint].min, spread.slips_m[joint].max].map(|m| 1e3 * m);
         let _ = write!(
             text,
             "\n    FINAL SLIP of joint {joint} {min_mm:.3} to {max_mm:.3} mm"
@@ -855,8 +858,8 @@ fn sure(spread: &Spread) -> String {
 }
 
 /// The least and the largest of a peak in all motions.
-fn ends(peak: &PeakSpread) -> String {
-    let [min, max] = range_ends([peak.min_rad, peak.max_rad], 6);
+fn ends(peak: &RepeatedValue) -> String {
+    let [min, max] = range_ends([peak.min, peak.max], 6);
     format!("{min} to {max}")
 }
 

@@ -28,7 +28,7 @@ use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::spread::checked;
+use crate::dynamics::repeatability::checked;
 use crate::dynamics::until::Until;
 
 /// Number of bisection steps whose histories, seven, are computed together if the model is faster that way.

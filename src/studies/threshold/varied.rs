@@ -8,7 +8,7 @@ use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::spread::Verdict;
+use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
 use crate::studies::runner::{Progress, Runner, RunnerError};

@@ -244,7 +244,7 @@ fn small_dampings(one: &StateCheck) -> Vec<String> {
     let mut given: Vec<(&str, f64)> = match &one.spectrum {
         Spectrum::Ground(_) => Vec::new(),
         Spectrum::Floor(_, floor) => {
-            let modes = floor.modes().iter();
+            let modes = floor.modes.iter();
             modes
                 .map(|mode| ("a mode of the building", mode.damping_percent))
                 .collect()

@@ -553,7 +553,7 @@ impl Writer<'_> {
                 continue;
             };
             let damping = one.rule.map_or(5.0, |rule| rule.damping_percent);
-            for (number, mode) in (1..).zip(floor.modes()) {
+            for (number, mode) in (1..).zip(&floor.modes) {
                 body += &row(
                     "",
                     &[

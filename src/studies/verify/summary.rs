@@ -309,7 +309,7 @@ fn demand(check: &Check, one: &StateCheck) -> Value {
         Spectrum::Floor(ground, floor) => {
             let mut demand = parameters(check, ground);
             let damping = one.rule.map_or(5.0, |rule| rule.damping_percent);
-            let modes = floor.modes().iter().map(|mode| {
+            let modes = floor.modes.iter().map(|mode| {
                 json!({
                     "t_s": mode.t_s,
                     "damping_percent": mode.damping_percent,

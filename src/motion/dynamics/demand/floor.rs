@@ -61,7 +61,8 @@ impl Mode {
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorSpectrum {
     ground: GroundSpectrum,
-    modes: Vec<Mode>,
+    /// The modes of the building.
+    pub modes: Vec<Mode>,
 }
 
 impl FloorSpectrum {
@@ -69,12 +70,6 @@ impl FloorSpectrum {
     #[must_use]
     pub fn new(ground: GroundSpectrum, modes: Vec<Mode>) -> Option<Self> {
         (!modes.is_empty()).then_some(Self { ground, modes })
-    }
-
-    /// The modes of the building.
-    #[must_use]
-    pub fn modes(&self) -> &[Mode] {
-        &self.modes
     }
 
     /// The longest period of the building, `T_1`, in seconds.

@@ -1,4 +1,4 @@
-//! What earthquakes demand of an oscillator: elastic spectra of the Italian code NTC 2018 on the ground ([`ground`]) and at a
+//! Demand of earthquakes on an oscillator: elastic spectra of the Italian code NTC 2018 on the ground ([`ground`]) and at a
 //! height in a building ([`floor`]), spectra given by points ([`points`]), and those of records ([`oscillator`]).
 //!
 //! Clauses are those of NTC 2018 (§) and of the Circolare 7/2019 (C). Accelerations are in units of gravity, periods in

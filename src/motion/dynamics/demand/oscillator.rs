@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 /// to the ground, up to the last sample, of an oscillator of this period and damping that is at rest before the first one. Its
 /// unit is that of the accelerations, times s2.
 ///
-/// Over equal steps the motion goes on by one linear map. A peak between two steps is missed by at most the fraction
+/// Over equal steps the motion follows one linear map. A peak between two steps is missed by at most the fraction
 /// `(pi h / T)^2 / 2` of it for the step `h`: steps are cut until that is below a thousandth.
 #[must_use]
 pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent: f64) -> f64 {

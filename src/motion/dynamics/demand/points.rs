@@ -12,49 +12,13 @@ pub struct PointSpectrum {
     damping_percent: f64,
 }
 
-/// Why points do not make a spectrum. Rows are counted from 0.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum PointError {
-    /// There are none, or one.
-    #[error("has fewer than two rows; give a row for each corner of the spectrum")]
-    TooFew,
-    /// A period is negative, or not a number.
-    #[error("the period {period_s:?} s must be a number of at least 0")]
-    Period {
-        /// Which.
-        row: usize,
-        /// The period.
-        period_s: f64,
-    },
-    /// Periods do not rise.
-    #[error("the period {period_s:?} s is not above the one before; sort the rows by period")]
-    Order {
-        /// Which.
-        row: usize,
-        /// The period.
-        period_s: f64,
-    },
-    /// An acceleration is not positive.
-    #[error("the acceleration {acceleration_g:?} g must be a number above 0")]
-    Acceleration {
-        /// Which.
-        row: usize,
-        /// The acceleration.
-        acceleration_g: f64,
-    },
-}
-
-impl PointError {
-    /// The row that is wrong, from 0.
-    #[must_use]
-    pub const fn row(&self) -> Option<usize> {
-        match self {
-            Self::TooFew => None,
-            Self::Period { row, .. } | Self::Order { row, .. } | Self::Acceleration { row, .. } => {
-                Some(*row)
-            }
-        }
-    }
+/// Why points do not make a spectrum.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[error("{reason}")]
+pub struct PointError {
+    /// The row that is wrong, from 0; `None` where there are too few.
+    pub row: Option<usize>,
+    reason: String,
 }
 
 /// A period outside those given.
@@ -73,24 +37,26 @@ impl PointSpectrum {
     /// # Errors
     /// When there are fewer than two points, periods do not rise, or a number is not allowed.
     pub fn new(points: Vec<(f64, f64)>, damping_percent: f64) -> Result<Self, PointError> {
+        let wrong = |row, reason| Err(PointError { row, reason });
         if points.len() < 2 {
-            return Err(PointError::TooFew);
+            let reason = "has fewer than two rows; give a row for each corner of the spectrum";
+            return wrong(None, reason.to_owned());
         }
         let mut before_s = f64::NEG_INFINITY;
-        for (row, (period_s, acceleration_g)) in (0..).zip(points.iter().copied()) {
-            if !(period_s >= 0.0 && period_s.is_finite()) {
-                return Err(PointError::Period { row, period_s });
-            }
-            if period_s <= before_s {
-                return Err(PointError::Order { row, period_s });
-            }
-            if !(acceleration_g > 0.0 && acceleration_g.is_finite()) {
-                return Err(PointError::Acceleration {
-                    row,
-                    acceleration_g,
-                });
-            }
-            before_s = period_s;
+        for (row, (period_s, acceleration_g)) in points.iter().copied().enumerate() {
+            let reason = if !(period_s >= 0.0 && period_s.is_finite()) {
+                format!("the period {period_s:?} s must be a number of at least 0")
+            } else if period_s <= before_s {
+                format!(
+                    "the period {period_s:?} s is not above the one before; sort the rows by period"
+                )
+            } else if !(acceleration_g > 0.0 && acceleration_g.is_finite()) {
+                format!("the acceleration {acceleration_g:?} g must be a number above 0")
+            } else {
+                before_s = period_s;
+                continue;
+            };
+            return wrong(Some(row), reason);
         }
         Ok(Self {
             points,

@@ -3,15 +3,16 @@
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
-use super::error::{ElasticJointError, ElasticJointsError};
 use super::stepper::{ElasticStepper, Group, Start};
 use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Shape, Summary};
+use crate::dynamics::history::{Details, Summary};
 use crate::dynamics::model::{
-    Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, one_by_one,
+    Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, check, one_by_one,
 };
+use crate::dynamics::recording::Shape;
 use crate::dynamics::row::course::{self, Clock, LARGEST_ENERGY_ERROR, Task};
+use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
@@ -67,6 +68,10 @@ const MANY_CASES_STEP_RATIO: f64 = 1.6;
 const SIDE_BY_SIDE: usize = 4;
 /// By what the stiffness is multiplied and divided to see what depends on it.
 const OTHER_STIFFNESS: f64 = 3.0;
+/// The step that is proposed where the energy does not balance, over the longest one.
+const SHORTER: f64 = 0.3;
+/// Remedy for too many steps.
+const TOO_LONG: &str = "take a smaller damping time or stiffness of the joints, or free hinges, the limit of stiff joints";
 /// Gravity under which the equilibrium at rest is found first.
 const GRAVITY_M_S2: f64 = 9.81;
 
@@ -75,7 +80,7 @@ impl ElasticJoints {
     ///
     /// # Errors
     /// When a property is out of range, or the row cannot carry its own weight: with the reason.
-    pub fn new(row: Row, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
+    pub fn new(row: Row, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(&row, &properties)?;
         let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
         Self::standing(rigid, properties, structure, GRAVITY_M_S2)
@@ -86,7 +91,7 @@ impl ElasticJoints {
         properties: ElasticProperties,
         structure: ElasticStructure,
         gravity_m_s2: f64,
-    ) -> Result<Self, ElasticJointsError> {
+    ) -> Result<Self, RowModelError> {
         let rest = structure.rest([0.0, -gravity_m_s2])?;
         Ok(Self {
             rigid,
@@ -100,11 +105,11 @@ impl ElasticJoints {
         })
     }
 
-    /// The same on supports that have moved slowly before time begins, from where they were built.
+    /// This model on supports that moved slowly before time zero, from where they were built.
     ///
     /// # Errors
     /// When it falls on the way, with these joints or with rigid ones.
-    pub fn on_supports(self, movements: Movements) -> Result<Self, ElasticJointsError> {
+    pub fn on_supports(self, movements: Movements) -> Result<Self, RowModelError> {
         if movements.is_none() {
             return Ok(self);
         }
@@ -115,7 +120,7 @@ impl ElasticJoints {
         Ok(Self { options, ..settled })
     }
 
-    /// The same with other options.
+    /// This model with other options.
     ///
     /// # Errors
     /// When a step is out of range.
@@ -126,8 +131,8 @@ impl ElasticJoints {
         Ok(Self { options, ..self })
     }
 
-    /// The same for a study of many cases: where no step is given, steps are longer, as long as most answers stay the same. In what they
-    /// do not, repetitions disagree.
+    /// This model for a study of many cases: where no step is given, steps are longer, as long as most answers allow without changing.
+    /// Where answers do change, repetitions disagree.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
@@ -137,7 +142,7 @@ impl ElasticJoints {
     /// The blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
-        self.rigid.row()
+        &self.rigid.row
     }
 
     /// Properties of its joints.
@@ -156,7 +161,7 @@ impl ElasticJoints {
     ///
     /// # Errors
     /// When it does not rest, with the reason.
-    pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, ElasticJointError> {
+    pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, RowMotionError> {
         let (known_m_s2, rest) = &self.rest;
         if gravity_m_s2 == *known_m_s2 {
             return Ok(rest.clone());
@@ -193,7 +198,7 @@ impl ElasticJoints {
         ratio * structure.stable_step_s()
     }
 
-    /// The same with other steps.
+    /// Copies with other steps.
     fn other_steps(&self) -> [(&'static str, Self); 2] {
         let others = if self.many_cases {
             [
@@ -213,8 +218,7 @@ impl ElasticJoints {
         })
     }
 
-    /// The same structure with other properties that are equally likely: stiffer, softer, and with the stress summed in another
-    /// way.
+    /// Copies with other properties that are equally likely: stiffer, softer, and with the stress summed in another way.
     #[must_use]
     pub fn variations(&self) -> Vec<Variation> {
         let softer = 1.0 / OTHER_STIFFNESS;
@@ -252,20 +256,24 @@ impl ElasticJoints {
         others.into_iter().map(variation).collect()
     }
 
-    fn varied(&self, properties: ElasticProperties) -> Result<Self, ElasticJointsError> {
+    fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
         let structure = structure.on_supports(self.structure.supports);
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
-    fn clock(&self, request: &Request) -> Result<Clock, ElasticJointError> {
+    fn clock(&self, request: &Request) -> Result<Clock, RowMotionError> {
         let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
         if step_s > longest_s {
-            return Err(ElasticJointError::Unstable { step_s, longest_s });
+            return Err(RowMotionError::Unstable { step_s, longest_s });
         }
         let end_s = request.end_s;
         if end_s / step_s > ElasticOptions::MOST_STEPS {
-            return Err(ElasticJointError::TooLong { step_s, end_s });
+            return Err(RowMotionError::TooLong {
+                step_s,
+                end_s,
+                remedy: TOO_LONG,
+            });
         }
         Ok(Clock {
             longest_step_s: step_s,
@@ -277,7 +285,7 @@ impl ElasticJoints {
     }
 
     fn check(&self, ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
-        request.check_on(ground)?;
+        check(ground, request)?;
         match request.initial {
             None => Ok(()),
             Some(initial) => Err(ArgumentError {
@@ -383,7 +391,13 @@ impl ElasticJoints {
         rest: &Rest,
         gravity_m_s2: f64,
     ) -> Result<Summary, SimulationError> {
-        let row = summary.row.as_mut().expect("a row has its summary");
+        let Details::Elastic(row, elastic) = &mut summary.details else {
+            unreachable!("its joints are elastic");
+        };
+        (
+            elastic.rest_eccentricity_joint,
+            elastic.rest_eccentricity_ratio,
+        ) = rest.largest_eccentricity(&self.structure);
         // Stacks have no first mechanism with one degree of freedom and a known barrier; the energy to push them over is known.
         if row.energy_error > LARGEST_ENERGY_ERROR
             && self.barrier_j(gravity_m_s2).is_none()
@@ -393,15 +407,11 @@ impl ElasticJoints {
             let defect_j = summary.energy_defect_ratio * weight_n * self.row().size_m();
             row.energy_error = defect_j / barrier_j.max(row.largest_kinetic_j);
         }
-        if let Some(elastic) = &mut row.elastic {
-            let (joint, ratio) = rest.largest_eccentricity(&self.structure);
-            elastic.rest_eccentricity_ratio = ratio;
-            elastic.rest_eccentricity_joint = joint;
-        }
         match row.energy_error {
-            error if error > LARGEST_ENERGY_ERROR => Err(ElasticJointError::Energy {
+            error if error > LARGEST_ENERGY_ERROR => Err(RowMotionError::Energy {
                 error,
-                longest_step_s: self.longest_step_s(),
+                table: "elastic_joints",
+                longest_step_s: SHORTER * self.longest_step_s(),
             }
             .into()),
             _ => Ok(summary),
@@ -428,7 +438,7 @@ impl Model for ElasticJoints {
     }
 
     fn row(&self) -> Option<&Row> {
-        Some(self.rigid.row())
+        Some(&self.rigid.row)
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {

@@ -22,24 +22,20 @@ struct Moving<R> {
 }
 
 impl<R> Moving<R> {
-    fn parts_mut(&mut self) -> [&mut R; 11] {
+    fn parts_mut(&mut self) -> impl Iterator<Item = &mut R> {
         let Place { moved_m, half_turn } = &mut self.place;
-        let ([x, y], [cos, sin]) = (moved_m, half_turn);
-        let ([u, v], [fx, fy]) = (&mut self.velocity_m_s, &mut self.force_n);
-        let (angle, rate) = (&mut self.angle_rad, &mut self.rate_rad_s);
-        [
-            x,
-            y,
-            cos,
-            sin,
-            angle,
-            u,
-            v,
-            rate,
-            fx,
-            fy,
+        let pairs = [
+            moved_m,
+            half_turn,
+            &mut self.velocity_m_s,
+            &mut self.force_n,
+        ];
+        let turns = [
+            &mut self.angle_rad,
+            &mut self.rate_rad_s,
             &mut self.moment_n_m,
-        ]
+        ];
+        pairs.into_iter().flatten().chain(turns)
     }
 }
 
@@ -60,8 +56,8 @@ fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     both!(end: joint.link.bodies[end].min(right))
 }
 
-/// Motions side by side, each in its lane. What happens in one lane depends on no other.
-pub(super) struct Motion<'a, const L: usize> {
+/// Motions side by side, each in its lane. No lane depends on another.
+pub struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
     gravity_m_s2: f64,
     arch: Arch,
@@ -105,13 +101,13 @@ impl<R: Real> Bearing<R> {
 
 /// Energies spent since the beginning, in J.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Spent<R> {
+pub struct Spent<R> {
     pub friction_j: R,
     /// Energy that the balance misses by slip.
     pub slip_balance_j: R,
     pub damped_j: R,
     pub crushed_j: R,
-    /// What ties took as they yielded and broke.
+    /// Energy that ties took as they yielded and broke.
     pub ties_j: R,
     /// Work of the moving ground.
     pub ground_j: R,
@@ -119,9 +115,9 @@ pub(super) struct Spent<R> {
     pub feet_j: R,
 }
 
-/// A step, by lane. A lane in which all is zero stays as it is.
+/// A step, by lane. A lane in which all is zero does not change.
 #[derive(Clone, Copy)]
-pub(super) struct Step<const L: usize> {
+pub struct Step<const L: usize> {
     /// Time from place to place, in s.
     pub drift_s: Lanes<L>,
     /// Time from velocity to velocity, in s.
@@ -134,9 +130,9 @@ pub(super) struct Step<const L: usize> {
     pub apart_m: [Lanes<L>; 2],
 }
 
-/// What happens to the ground in a step of any lane: what does not is not computed.
+/// Movements of the ground in a step of any lane; those that are absent are not computed.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Happens {
+pub struct Happens {
     /// It shakes.
     pub shakes: bool,
     /// The feet move differently.
@@ -144,7 +140,7 @@ pub(super) struct Happens {
 }
 
 impl<const L: usize> Step<L> {
-    pub(super) fn none() -> Self {
+    pub fn none() -> Self {
         let zero = Lanes([0.0; L]);
         Self {
             drift_s: zero,
@@ -155,7 +151,7 @@ impl<const L: usize> Step<L> {
         }
     }
 
-    pub(super) fn set(&mut self, lane: usize, alone: &Step<1>) {
+    pub fn set(&mut self, lane: usize, alone: &Step<1>) {
         self.drift_s.0[lane] = alone.drift_s.0[0];
         self.kick_s.0[lane] = alone.kick_s.0[0];
         self.damping.0[lane] = alone.damping.0[0];
@@ -167,7 +163,7 @@ impl<const L: usize> Step<L> {
 }
 
 /// A support along whose joint the whole structure may slide.
-pub(super) struct Slide {
+pub struct Slide {
     pub joint: usize,
     /// 0 of the left support, 1 of the right one.
     pub support: usize,
@@ -181,7 +177,7 @@ pub(super) struct Slide {
 
 /// Quantities of motions at an instant.
 #[derive(Clone, Copy)]
-pub(super) struct Observed<R> {
+pub struct Observed<R> {
     pub kinetic_j: R,
     /// Potential energy of gravity, above the undeformed structure.
     pub potential_j: R,
@@ -198,7 +194,7 @@ pub(super) struct Observed<R> {
 }
 
 impl<'a, const L: usize> Motion<'a, L> {
-    pub(super) fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
+    pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let zero = Lanes([0.0; L]);
         let body = Moving {
             place: Place::undeformed(),
@@ -238,13 +234,13 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Starts the motion of a lane from rest.
-    pub(super) fn start(&mut self, lane: usize, rest: &Rest) {
+    pub fn start(&mut self, lane: usize, rest: &Rest) {
         let alone = Motion::at_rest(self.structure, self.gravity_m_s2, rest);
         if self.structure.has_settled() {
             self.datum.clone_from(&rest.moved);
         }
         for (body, from) in self.bodies.iter_mut().zip(&alone.bodies) {
-            for (part, from) in body.parts_mut().into_iter().zip(from.clone().parts_mut()) {
+            for (part, from) in body.parts_mut().zip(from.clone().parts_mut()) {
                 part.0[lane] = from.0[0];
             }
         }
@@ -257,30 +253,22 @@ impl<'a, const L: usize> Motion<'a, L> {
         for (tie, alone) in self.ties.iter_mut().zip(&alone.ties) {
             tie.set(lane, alone);
         }
-        let Spent {
-            friction_j,
-            slip_balance_j,
-            damped_j,
-            crushed_j,
-            ties_j,
-            ground_j,
-            feet_j,
-        } = &mut self.spent;
+        let spent = &mut self.spent;
         for energy in [
-            friction_j,
-            slip_balance_j,
-            damped_j,
-            crushed_j,
-            ties_j,
-            ground_j,
-            feet_j,
+            &mut spent.friction_j,
+            &mut spent.slip_balance_j,
+            &mut spent.damped_j,
+            &mut spent.crushed_j,
+            &mut spent.ties_j,
+            &mut spent.ground_j,
+            &mut spent.feet_j,
         ] {
             energy.0[lane] = 0.0;
         }
     }
 
     /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
-    pub(super) fn step(&mut self, step: &Step<L>, happens: Happens) {
+    pub fn step(&mut self, step: &Step<L>, happens: Happens) {
         let arch = self.arch;
         arch.dispatch(Leap {
             motion: self,
@@ -431,7 +419,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Quantities at the places, with the velocities after half a kick more.
-    pub(super) fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
+    pub fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let arch = self.arch;
         arch.dispatch(Look {
             motion: self,
@@ -514,7 +502,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Velocities and rate of rotation of a body after half a kick more.
     #[inline(always)]
-    pub(super) fn velocity(&self, body: usize, half: &Step<L>) -> [Lanes<L>; 3] {
+    pub fn velocity(&self, body: usize, half: &Step<L>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
         let moving = &self.bodies[body];
         let [sideways, upwards] = half.shift_m_s;
@@ -527,12 +515,12 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Displacement of a body in a lane, in m.
-    pub(super) fn moved_m(&self, body: usize, lane: usize) -> [f64; 2] {
+    pub fn moved_m(&self, body: usize, lane: usize) -> [f64; 2] {
         self.bodies[body].place.moved_m.map(|part| part.0[lane])
     }
 
     /// Rotations, of settled rows from those at rest, and their rates half a step before, in a lane.
-    pub(super) fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
+    pub fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
         let bodies = self.datum.iter().enumerate();
         bodies.map(move |(body, datum)| {
             let (rotation_rad, rate_rad_s) = self.turn(body, lane);
@@ -541,47 +529,43 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Rotation of a body and its rate half a step before, in a lane.
-    pub(super) fn turn(&self, body: usize, lane: usize) -> (f64, f64) {
+    pub fn turn(&self, body: usize, lane: usize) -> (f64, f64) {
         let body = &self.bodies[body];
         (body.angle_rad.0[lane], body.rate_rad_s.0[lane])
     }
 
     /// Permanent slip of a joint in a lane, in m.
-    pub(super) fn slipped_m(&self, joint: usize, lane: usize) -> f64 {
+    pub fn slipped_m(&self, joint: usize, lane: usize) -> f64 {
         self.memories[joint].slipped_m.0[lane]
     }
 
     /// Momentum in a lane, half a step before.
-    pub(super) fn momentum(&self, lane: usize) -> [f64; 2] {
+    pub fn momentum(&self, lane: usize) -> [f64; 2] {
         let bodies = self.structure.bodies.iter().zip(&self.bodies);
         bodies.fold([0.0; 2], |sum, (constants, body)| {
             [0, 1].map(|axis| sum[axis] + constants.mass_kg * body.velocity_m_s[axis].0[lane])
         })
     }
 
-    /// What a joint remembers in a lane.
-    pub(super) fn memory(&self, joint: usize, lane: usize) -> Memory<Lanes<1>> {
+    /// The memory of a joint in a lane.
+    pub fn memory(&self, joint: usize, lane: usize) -> Memory<Lanes<1>> {
         self.memories[joint].lane(lane)
     }
 
-    /// What the places along a joint remember in a lane.
-    pub(super) fn fibres(
-        &self,
-        joint: usize,
-        lane: usize,
-    ) -> impl Iterator<Item = Fibre<Lanes<1>>> {
+    /// The memories of the places along a joint in a lane.
+    pub fn fibres(&self, joint: usize, lane: usize) -> impl Iterator<Item = Fibre<Lanes<1>>> {
         let each = self.structure.fibres();
         let own = &self.fibres[joint * each..(joint + 1) * each];
         own.iter().map(move |fibre| fibre.lane(lane))
     }
 
-    /// What the ties remember in a lane.
-    pub(super) fn ties(&self, lane: usize) -> impl Iterator<Item = TieMemory<Lanes<1>>> {
+    /// The memories of the ties in a lane.
+    pub fn ties(&self, lane: usize) -> impl Iterator<Item = TieMemory<Lanes<1>>> {
         self.ties.iter().map(move |tie| tie.lane(lane))
     }
 
     /// The place of a body in a lane.
-    pub(super) fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
+    pub fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
         let Place { moved_m, half_turn } = self.bodies[body].place;
         let alone = |part: Lanes<L>| Lanes([part.0[lane]]);
         Place {

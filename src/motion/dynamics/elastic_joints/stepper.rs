@@ -4,19 +4,18 @@ use std::cell::OnceCell;
 
 use nalgebra::Vector2;
 
-use super::error::ElasticJointError;
 use super::motion::{Happens, Motion, Observed, Slide, Step};
 use crate::dynamics::ground::{FeetApart, GroundVelocity};
 use crate::dynamics::history::{
     ElasticSummary, EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
-    TieSummary,
 };
-use crate::dynamics::model::Recorder;
+use crate::dynamics::recorder::Recorder;
+use crate::dynamics::repeatability::GONE;
 use crate::dynamics::row::course::{
-    Course, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, Summit, Task,
-    equal_step, open_hinge,
+    Course, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, Task, equal_step,
+    open_hinge,
 };
-use crate::dynamics::spread::GONE;
+use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::until::Until;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -40,12 +39,12 @@ const DECAYED: f64 = 0.25;
 const SLOWER: f64 = 4.0;
 /// Sways within this fraction of the mean displacement under the weight of the structure do not change the side.
 const SIDE_RATIO: f64 = 0.1;
-/// A joint that presses on less than this fraction of its length is drawn as a hinge.
+/// A joint in contact on less than this fraction of its length is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
 
 /// The common start of all motions of a group.
 #[derive(Clone, Copy)]
-pub(super) struct Start<'a> {
+pub struct Start<'a> {
     pub structure: &'a ElasticStructure,
     pub rest: &'a Rest,
     /// Energy above that at rest without which it does not overturn unless joints slip, where that is known; it takes time to find.
@@ -74,7 +73,7 @@ struct Lane<'a> {
     opening: Opening,
     /// The largest energies that count as rest.
     still_j: f64,
-    /// Of rigid joints; where there is none, of these, once that was asked.
+    /// The barrier with rigid joints; where that is unknown, with elastic joints, once computed.
     barrier_j: Option<f64>,
     /// The largest energy so far.
     largest_j: f64,
@@ -87,14 +86,12 @@ struct Lane<'a> {
     /// When a joint was last open beyond its state at rest.
     open_until_s: f64,
     marks: Marks,
-    overturned: bool,
-    /// The error for which it cannot go on.
-    lost: Option<ElasticJointError>,
-    summit: Summit,
+    /// The error that ends it.
+    lost: Option<RowMotionError>,
     elastic: ElasticSummary,
     /// The largest stress up to the last instant from which it may have fallen without return.
     stress_before_fall: Stress,
-    /// What happened to ties since the last look.
+    /// Events of ties since the last observation.
     happened: Vec<(usize, EventKind)>,
 }
 
@@ -121,7 +118,7 @@ impl Opening {
 }
 
 /// Motions side by side.
-pub(super) struct Group<'a, const L: usize> {
+pub struct Group<'a, const L: usize> {
     row: &'a Row,
     start: Start<'a>,
     motion: Motion<'a, L>,
@@ -159,9 +156,7 @@ impl<'a> Lane<'a> {
             quiet_since_s: start_s,
             open_until_s: start_s,
             marks: Marks::new(task.clock, start_s),
-            overturned: false,
             lost: None,
-            summit: Summit::new(0.0, start_s),
             elastic: ElasticSummary::default(),
             stress_before_fall: Stress::default(),
             happened: Vec::new(),
@@ -190,7 +185,7 @@ impl<'a> Lane<'a> {
             step.apart_m = [Lanes([by_m.x]), Lanes([by_m.y])];
             self.apart_m = apart_m;
         }
-        self.course.summary.cost.steps += 1;
+        self.course.cost.steps += 1;
         self.is_seen = false;
         step
     }
@@ -216,7 +211,7 @@ impl<'a> Lane<'a> {
     }
 
     fn ends_stride(&self) -> bool {
-        self.course.summary.cost.steps.is_multiple_of(STRIDE)
+        self.course.cost.steps.is_multiple_of(STRIDE)
     }
 
     fn is_due(&self) -> bool {
@@ -225,7 +220,7 @@ impl<'a> Lane<'a> {
 }
 
 impl<'a, const L: usize> Group<'a, L> {
-    pub(super) fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
+    pub fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
         let [left, right] = row.supports_extend();
         let last = row.joints().len() - 1;
         // At the right support the block is the left one.
@@ -252,7 +247,7 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Starts a motion in a lane.
-    pub(super) fn begin(
+    pub fn begin(
         &mut self,
         lane: usize,
         task: Task<'a>,
@@ -276,13 +271,13 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Whether motions may begin: where the others, if there are any, end a stride. From there on most are observed together.
-    pub(super) fn may_begin(&self) -> bool {
+    pub fn may_begin(&self) -> bool {
         let mut lanes = self.lanes.iter().flatten();
         lanes.all(Lane::ends_stride)
     }
 
     /// Steps until a motion has been observed.
-    pub(super) fn stride(&mut self) {
+    pub fn stride(&mut self) {
         let damping_time_s = self.start.structure.damping_time_s;
         loop {
             let mut step = Step::none();
@@ -333,7 +328,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let (kinetic, elastic) = (of(seen.kinetic_j), of(seen.elastic_j));
         let stored = of(seen.potential_j) + elastic;
         if !(kinetic.is_finite() && stored.is_finite()) {
-            lane.lost = Some(ElasticJointError::Lost { time_s: time });
+            lane.lost = Some(RowMotionError::Lost { time_s: time });
             return;
         }
         let rest_j = *lane.rest_j.get_or_insert_with(|| {
@@ -356,17 +351,8 @@ impl<'a, const L: usize> Group<'a, L> {
         // The balance closes with the slip of the discrete motion, of which the work of friction is an estimate.
         let taken = taken_with(of(spent.slip_balance_j));
         course.of_row.energy_taken_j = taken_with(lane.elastic.friction_j);
-        lane.happened.clear();
-        let bound = self.start.structure.ties.iter();
-        for (tie, (bound, memory)) in bound.zip(self.motion.ties(index)).enumerate() {
-            let Some(known) = course.of_row.ties.get_mut(tie) else {
-                let at_rest = TieSummary::at_rest(&bound.tie, &memory, time);
-                course.of_row.ties.push(at_rest);
-                continue;
-            };
-            let happened = known.note(&bound.tie, &memory, time).into_iter().flatten();
-            lane.happened.extend(happened.map(|kind| (tie, kind)));
-        }
+        let bound = self.start.structure.ties.iter().map(|bound| &bound.tie);
+        lane.happened = course.note_ties(bound.zip(self.motion.ties(index)));
         let of_row = &mut course.of_row;
         (of_row.ground_j, of_row.right_foot_j) = (of(spent.ground_j), of(spent.feet_j));
         let potential = stored - rest_j;
@@ -379,47 +365,23 @@ impl<'a, const L: usize> Group<'a, L> {
                 time_s: time,
             };
         }
-        let joints = &self.start.structure.joints;
-        if course.rocks != Some(true) || !course.moved {
-            let edges = (0..joints.len()).map(|joint| self.motion.memory(joint, index));
-            let penetrations_m = edges.map(|edges| edges.penetrations_m.map(|end| end.0[0]));
-            let slips = lane.elastic.friction_j > REST_ENERGY_RATIO * course.energy_unit;
-            let is_open = lane.opening.is_seen(penetrations_m);
-            if is_open {
-                lane.open_until_s = time;
-            }
-            course.rocks = Some(course.rocks == Some(true) || is_open || slips);
-        }
-        let mut slid = 0.0;
-        for (joint, with_joint) in joints.iter().enumerate() {
-            let slipped_m = self.motion.slipped_m(joint, index);
-            if let Some(sliding) = &mut course.of_row.sliding {
-                sliding.offsets_m[joint] = slipped_m;
-                let largest = &mut sliding.largest_offsets_m[joint];
-                *largest = largest.max(slipped_m.abs());
-            }
-            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
-            match self
-                .slides
-                .iter()
-                .find(|slide| slide.joint == joint && slide.goes_on)
-            {
-                Some(slide) => slid += slipped_m * slide.along_x,
-                None => lane.overturned |= slipped_m.abs() >= with_joint.link.length_m,
-            }
-        }
+        let slid = self.note_joints(index);
+        let Some(lane) = &mut self.lanes[index] else {
+            return;
+        };
+        let course = &mut lane.course;
         // Between feet that part the middle goes half the way.
-        slid += 0.5 * lane.apart_m.x;
+        let slid = slid + 0.5 * lane.apart_m.x;
         let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.mass_kg * slid;
         let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
         lane.returns = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
         let far = OVERTURNED_RATIO * self.row.size_m();
-        lane.overturned |=
+        course.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + taken);
-        lane.summit.note_results(course, height);
-        if lane.summit.time == time {
+        course.note_height(height);
+        if course.summit.time == time {
             lane.stress_before_fall = lane.elastic.largest_stress;
         }
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
@@ -436,9 +398,44 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
+    /// Notes open and slipped joints of a lane. Returns how far the structure slid along its supports, in m to the right.
+    fn note_joints(&mut self, index: usize) -> f64 {
+        let Some(lane) = &mut self.lanes[index] else {
+            return 0.0;
+        };
+        let course = &mut lane.course;
+        let joints = &self.start.structure.joints;
+        if course.rocks != Some(true) || !course.moved {
+            let edges = (0..joints.len()).map(|joint| self.motion.memory(joint, index));
+            let penetrations_m = edges.map(|edges| edges.penetrations_m.map(|end| end.0[0]));
+            let slips = lane.elastic.friction_j > REST_ENERGY_RATIO * course.energy_unit;
+            let is_open = lane.opening.is_seen(penetrations_m);
+            if is_open {
+                lane.open_until_s = course.time;
+            }
+            course.rocks = Some(course.rocks == Some(true) || is_open || slips);
+        }
+        let mut slid = 0.0;
+        for (joint, with_joint) in joints.iter().enumerate() {
+            let slipped_m = self.motion.slipped_m(joint, index);
+            if let Some(sliding) = &mut course.of_row.sliding {
+                sliding.offsets_m[joint] = slipped_m;
+                let largest = &mut sliding.largest_offsets_m[joint];
+                *largest = largest.max(slipped_m.abs());
+            }
+            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
+            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
+            match self.slides.iter().find(on_support) {
+                Some(slide) => slid += slipped_m * slide.along_x,
+                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
+            }
+        }
+        slid
+    }
+
     /// Lets a lane step on, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock,
     /// as if samples were made.
-    pub(super) fn go_on(&mut self, index: usize) -> Option<Result<Summary, ElasticJointError>> {
+    pub fn go_on(&mut self, index: usize) -> Option<Result<Summary, RowMotionError>> {
         let lane = self.lanes[index].as_mut()?;
         if !lane.is_seen {
             return None;
@@ -449,7 +446,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
         let ending = lane
             .course
-            .ending(lane.overturned_s(), || lane.rests_since());
+            .ending(lane.course.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
             let mut ended = self.lanes[index].take()?;
             return Some(Ok(ended.completed().end(outcome, time_s)));
@@ -474,10 +471,6 @@ impl<'a> Lane<'a> {
         quiet.then_some(since_s)
     }
 
-    fn overturned_s(&self) -> Option<f64> {
-        self.overturned.then_some(self.summit.time)
-    }
-
     /// Halves the steps where the energy balance needs it, a few times at most.
     fn mind_balance(&mut self, barrier_j: impl FnOnce() -> Option<f64>) {
         let Some(most) = self.course.halved_above() else {
@@ -500,7 +493,7 @@ impl<'a> Lane<'a> {
         if self.feet.is_some() {
             return false;
         }
-        // What has passed its barrier goes on to that side, whatever damping takes.
+        // A row beyond its barrier falls to that side, whatever damping takes.
         if self.until == Until::End || self.course.time < self.quiet_s || !self.returns {
             return false;
         }
@@ -525,12 +518,12 @@ impl<'a> Lane<'a> {
         if let Some(sliding) = &mut of_row.sliding {
             sliding.friction_j = self.elastic.friction_j;
         }
-        let largest_stress = if self.overturned {
+        let largest_stress = if self.course.overturned {
             self.stress_before_fall
         } else {
             self.elastic.largest_stress
         };
-        of_row.elastic = Some(ElasticSummary {
+        self.course.elastic = Some(ElasticSummary {
             largest_stress,
             ..self.elastic
         });
@@ -539,12 +532,12 @@ impl<'a> Lane<'a> {
 }
 
 /// One motion alone, which may be recorded.
-pub(super) struct ElasticStepper<'a> {
+pub struct ElasticStepper<'a> {
     group: Group<'a, 1>,
 }
 
 impl<'a> ElasticStepper<'a> {
-    pub(super) fn new(
+    pub fn new(
         task: Task<'a>,
         start: Start<'a>,
         until: Until,
@@ -602,7 +595,7 @@ impl<'a> ElasticStepper<'a> {
 }
 
 impl<'a> Stepper<'a> for ElasticStepper<'a> {
-    type Error = ElasticJointError;
+    type Error = RowMotionError;
 
     fn course(&self) -> &Course<'a> {
         &self.lane().course
@@ -617,7 +610,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     /// Some steps, up to the next observation of the motion.
-    fn step(&mut self, until: f64) -> Result<(), ElasticJointError> {
+    fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         let stood = !self.course().moved;
         self.lane_mut().until_s = until;
         self.group.stride();
@@ -629,15 +622,15 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             let time_s = course.time;
             self.course_mut().opened.clear();
             let energy_j = self.course().potential;
-            self.tell_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
+            self.report_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
         }
         for (tie, kind) in std::mem::take(&mut self.lane_mut().happened) {
-            self.tell_tie(tie, kind);
+            self.report_tie(tie, kind);
         }
         Ok(())
     }
 
-    fn write(&mut self, sample: &mut Sample, _: bool) -> Result<f64, ElasticJointError> {
+    fn write(&mut self, sample: &mut Sample, _: bool) -> Result<f64, RowMotionError> {
         let half = self.group.half_kick();
         let motion = &self.group.motion;
         for (index, block) in self.group.row.blocks().iter().enumerate() {
@@ -681,7 +674,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         memory.penetrations_m.map(|end| (-end.0[0]).max(0.0))
     }
 
-    /// A joint that presses on a small part of its length.
+    /// A joint in contact on a small part of its length.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         let hinge = open_hinge(joint, self.gaps(joint));
         hinge.filter(|_| self.pressure(joint).contact_ratio < HINGE_RATIO)
@@ -709,9 +702,5 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
 
     fn rests_since(&self) -> Option<f64> {
         self.lane().rests_since()
-    }
-
-    fn overturned_s(&self) -> Option<f64> {
-        self.lane().overturned_s()
     }
 }

@@ -21,11 +21,12 @@ use nalgebra::Vector2;
 use self::observation::{kinetic, momentum};
 use super::rest::Rest;
 use super::right_support::RightSupport;
+use super::settings::Settings;
 use super::ties::Ties;
-use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
-use crate::dynamics::model::Recorder;
-use crate::dynamics::row::course::{Course, Stepper as _, Summit, Task};
+use crate::dynamics::recorder::Recorder;
+use crate::dynamics::row::course::{Course, Stepper as _, Task};
+use crate::dynamics::row::error::RowMotionError;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{Corners, Load, Program};
@@ -125,7 +126,7 @@ impl Fall {
     }
 }
 
-pub(super) struct LandingStepper<'a> {
+pub struct LandingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
@@ -164,17 +165,11 @@ pub(super) struct LandingStepper<'a> {
     /// Where the joints were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
     start_energy: f64,
-    ground_work: f64,
     friction_demand: f64,
-    least_normal: f64,
     step_iterations: u64,
     crowd: Crowd,
-    /// Of a row that stood on hinges: since when it hardly moves, when it was highest, and whether it lies far from where it stood.
-    quiet_since_s: f64,
     /// Since when it lies undeformed without motion, in seconds; `None` while it moves.
     lies_since_s: Option<f64>,
-    summit: Summit,
-    overturned: bool,
 }
 
 impl<'a> LandingStepper<'a> {
@@ -195,7 +190,7 @@ impl<'a> LandingStepper<'a> {
         let mut program = Program::new(row);
         program.place(&standing.placement);
         if rest.is_on_hinges() {
-            program.start_from(rest.touching());
+            program.start_from(&rest.touching);
         }
         let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
         let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
@@ -231,18 +226,13 @@ impl<'a> LandingStepper<'a> {
             stands: true,
             pressed: vec![[true; 2]; joints],
             start_energy: 0.0,
-            ground_work: 0.0,
             friction_demand: 0.0,
-            least_normal: f64::INFINITY,
             step_iterations: 0,
             crowd: Crowd::default(),
-            quiet_since_s: ground.start_s(),
             lies_since_s: None,
-            summit: Summit::new(0.0, ground.start_s()),
-            overturned: false,
         };
         stepper.stand_still();
-        stepper.course.of_row.ties = stepper.ties.at_rest(ground.start_s());
+        stepper.course.note_ties(stepper.ties.memories());
         stepper.course.note_return();
         stepper
     }
@@ -262,13 +252,13 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// A stepper that starts where the row stands, or released at rest with the initial rotations.
-    pub(super) fn released(
+    pub fn released(
         task: Task<'a>,
         settings: &'a Settings,
         standing: &Stance,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
-    ) -> Result<Self, FreeHingeError> {
+    ) -> Result<Self, RowMotionError> {
         let mut stepper = Self::new(task, settings, standing, recorder);
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
@@ -277,27 +267,16 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Where the blocks are.
-    pub(super) fn into_placement(self) -> Placement {
+    pub fn into_placement(self) -> Placement {
         self.placement
     }
 
     /// Takes up the initial rotations, at rest.
-    fn release(&mut self, rotations_rad: &[f64]) -> Result<(), FreeHingeError> {
-        let finite = rotations_rad
-            .iter()
-            .filter(|angle| angle.is_finite())
-            .count();
-        let blocks = self.row.blocks().len();
-        if finite != blocks || rotations_rad.len() != blocks {
-            return Err(FreeHingeError::Rotations {
-                given: finite,
-                blocks,
-            });
-        }
+    fn release(&mut self, rotations_rad: &[f64]) -> Result<(), RowMotionError> {
         self.placement.turn(rotations_rad);
         let error_m = self.placement.closure_error();
         if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
-            return Err(FreeHingeError::Open { error_m });
+            return Err(RowMotionError::Open { error_m });
         }
         self.closer.close(&mut self.placement);
         let gaps = self.placement.gaps_m.iter();
@@ -325,7 +304,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Solves the step that ends at the first landing, or the longest one if nothing lands in it. Its length changes the kick, and
     /// so the landing.
-    fn solve_to_landing(&mut self, longest: f64) -> Result<Step, FreeHingeError> {
+    fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
         let floor = if self.is_crowded() {
             self.settings.shortest_step_s.min(longest)
         } else {
@@ -391,7 +370,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Whether the step before ended at an impact.
     fn has_just_landed(&self) -> bool {
-        self.kicked_s == self.course.time && self.course.summary.impacts > 0
+        self.kicked_s == self.course.time && self.course.impacts > 0
     }
 
     /// Length of the step at whose end this corner lands, if its rate changes linearly with the length: through the rates of the
@@ -462,7 +441,7 @@ impl<'a> LandingStepper<'a> {
         (self.kicked_s, self.course.time + 0.5 * step)
     }
 
-    fn solve_step(&mut self, step: f64) -> Result<(), FreeHingeError> {
+    fn solve_step(&mut self, step: f64) -> Result<(), RowMotionError> {
         let (from_s, to_s) = self.kicked(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
         self.right.step(self.course.time, step);
@@ -470,19 +449,19 @@ impl<'a> LandingStepper<'a> {
         self.solve()
     }
 
-    fn solve(&mut self) -> Result<(), FreeHingeError> {
+    fn solve(&mut self) -> Result<(), RowMotionError> {
         let load = Load {
             free: &self.free,
             jumps: &self.jumps,
             touching: &self.touching,
         };
         let effort = self.program.solve(&load);
-        let effort = effort.map_err(|reason| FreeHingeError::Contact {
+        let effort = effort.map_err(|reason| RowMotionError::Contact {
             time_s: self.course.time,
             reason,
         })?;
         let iterations = effort.iterations as u64;
-        self.course.summary.cost.evaluations += iterations;
+        self.course.cost.evaluations += iterations;
         self.course.of_row.programs += 1;
         self.course.of_row.relaxed += effort.relaxed as u64;
         self.step_iterations += iterations;
@@ -535,7 +514,7 @@ impl<'a> LandingStepper<'a> {
         if self.right.moves()
             && let Some(last) = self.jumps.last_mut()
         {
-            *last = *last - Twist::translation(self.right.next_m_s());
+            *last = *last - Twist::translation(self.right.next_m_s);
         }
     }
 
@@ -578,7 +557,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Solves a step within which all corners that would land come to touch.
-    fn merge(&mut self, step: f64) -> Result<(), FreeHingeError> {
+    fn merge(&mut self, step: f64) -> Result<(), RowMotionError> {
         if self.kicked_s < self.course.time {
             self.complete_kick()?;
             self.take_pieces();
@@ -603,7 +582,7 @@ impl<'a> LandingStepper<'a> {
             if self.landed.is_empty() {
                 break;
             }
-            // Landings travel along the row: if they go on, the program gets all corners that can land.
+            // Landings travel along the row: if they do not end, the program gets all corners that can land.
             if round >= LANDING_ROUNDS {
                 let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
                 let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
@@ -692,9 +671,9 @@ impl<'a> LandingStepper<'a> {
         let (from_s, to_s) = self.kicked(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
-        self.ground_work -= self.impulse(from_s, to_s).1.dot(&mean);
+        self.course.of_row.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
         let work = self.work_of_right_support(to_s - from_s);
-        self.right.works(work);
+        self.course.of_row.right_foot_j += work;
         // In a shorter time the rounding of the velocities exceeds the effect of the forces.
         if step.merged || to_s - from_s < self.settings.shortest_step_s {
             return;
@@ -708,14 +687,13 @@ impl<'a> LandingStepper<'a> {
                 demand = demand.max(tangential.abs() / normal);
             }
         }
-        self.least_normal = least / (to_s - from_s);
         self.friction_demand = demand;
         let of_row = &mut self.course.of_row;
-        of_row.least_normal_n = of_row.least_normal_n.min(self.least_normal);
+        of_row.least_normal_n = of_row.least_normal_n.min(least / (to_s - from_s));
     }
 
     /// Moves the row over a step that was solved.
-    fn drift(&mut self, step: &Step) -> Result<(), FreeHingeError> {
+    fn drift(&mut self, step: &Step) -> Result<(), RowMotionError> {
         self.kicked_s = self.kicked(step.expected_s).1;
         for (change, rates) in self.change.iter_mut().zip(&self.landing) {
             *change = rates.map(|rate| rate * step.length_s);
@@ -741,7 +719,7 @@ impl<'a> LandingStepper<'a> {
             Ok(())
         } else {
             let time_s = self.course.time;
-            Err(FreeHingeError::Closure { time_s, error_m })
+            Err(RowMotionError::Closure { time_s, error_m })
         }
     }
 
@@ -754,8 +732,8 @@ impl<'a> LandingStepper<'a> {
         }
         let was_open = self.placement.open_corners() > 0;
         self.right.go(time_s);
-        let stood = self.rest.placement().support_poses;
-        let poses = self.right.poses(&stood);
+        let stood = &self.rest.placement.support_poses;
+        let poses = self.right.poses(stood);
         self.placement.move_supports(poses);
         self.ties.move_supports(poses);
         self.placement.open(|joint| change[joint]);
@@ -808,7 +786,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Completes the velocity at a landing with the old mechanism, then projects it.
-    fn impact(&mut self) -> Result<(), FreeHingeError> {
+    fn impact(&mut self) -> Result<(), RowMotionError> {
         self.shut_what_landed();
         self.pressed.copy_from_slice(&self.program.active);
         self.complete_kick()?;
@@ -822,11 +800,11 @@ impl<'a> LandingStepper<'a> {
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
         let work = self.work_of_right_support(0.0);
-        self.right.works(work);
+        self.course.of_row.right_foot_j += work;
         self.course.of_row.energy_taken_j += kinetic_before + work - kinetic_after;
         self.take_pieces();
         self.kicked_s = self.course.time;
-        self.course.summary.impacts += 1;
+        self.course.impacts += 1;
         self.crowd
             .count(self.course.time, self.settings.shortest_step_s);
         Ok(())
@@ -854,7 +832,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Solves for the velocities at the instant of the positions, with what touched at the beginning of the step.
-    fn complete_kick(&mut self) -> Result<(), FreeHingeError> {
+    fn complete_kick(&mut self) -> Result<(), RowMotionError> {
         let before = self.momentum();
         let ground = self.half_kick();
         for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
@@ -864,9 +842,9 @@ impl<'a> LandingStepper<'a> {
         }
         self.solve()?;
         self.form_pieces();
-        self.ground_work -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
+        self.course.of_row.ground_j -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
         let work = self.work_of_right_support(self.course.time - self.kicked_s);
-        self.right.works(work);
+        self.course.of_row.right_foot_j += work;
         self.right.take();
         Ok(())
     }
@@ -1005,10 +983,7 @@ mod tests {
                 }
                 stepper.step(60.0).unwrap();
             }
-            assert!(
-                fastest > 0.05 && stepper.course.summary.impacts > 3,
-                "{fastest}"
-            );
+            assert!(fastest > 0.05 && stepper.course.impacts > 3, "{fastest}");
             // The solver stops where its objective is known to 1e-14, which leaves errors of some 1e-7 in velocities of a metre a
             // second.
             assert!(worst < 2e-8 && compared > 250, "{worst} {compared}");

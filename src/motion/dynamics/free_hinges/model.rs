@@ -4,19 +4,20 @@ use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
-use super::{FreeHingeError, MANY_CASES_STEP_RATIO, Settings, motion};
+use super::motion::motion;
+use super::settings::{MANY_CASES_STEP_RATIO, Settings};
 use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Shape, Summary};
-use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError};
+use crate::dynamics::history::Summary;
+use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
+use crate::dynamics::recording::Shape;
 use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
-use crate::dynamics::row::standing::{RigidRow, SettledError};
+use crate::dynamics::row::error::{RowModelError, RowMotionError};
+use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::arch::Arch;
-use crate::mechanics::blocks::{Row, RowError};
+use crate::mechanics::blocks::Row;
 use crate::mechanics::column::Column;
-use crate::mechanics::friction::FrictionError;
 use crate::mechanics::settling::Movements;
-use crate::mechanics::stability::StabilityError;
 use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
@@ -29,8 +30,10 @@ pub struct FreeHinges {
     options: RowOptions,
     /// Whether it serves a study of many cases, whose steps are longer where none is given.
     many_cases: bool,
-    /// Changes the settings, for a repetition.
-    repeated: Option<fn(&Settings) -> Settings>,
+    /// Factor on the steps, for a repetition.
+    steps_times: f64,
+    /// Whether landings that follow an impact are merged, for a repetition.
+    merges_landings: bool,
 }
 
 /// Options of the model.
@@ -91,40 +94,23 @@ impl RowOptions {
     }
 }
 
+/// The step that is proposed where the energy does not balance, over the longest one.
+const SHORTER: f64 = 0.2;
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is mentioned.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
-
-/// Why there is no such model.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FreeHingesError {
-    /// There are no blocks, or they do not make a row.
-    #[error(transparent)]
-    Row(#[from] RowError),
-    /// The row does not stand, or this could not be determined.
-    #[error(transparent)]
-    Stability(#[from] StabilityError),
-    /// An argument is not allowed.
-    #[error(transparent)]
-    Argument(#[from] ArgumentError),
-    /// It slides apart under its own weight.
-    #[error(transparent)]
-    Friction(#[from] FrictionError),
-    /// It does not stand on supports that have moved.
-    #[error(transparent)]
-    Settled(#[from] SettledError),
-}
 
 impl FreeHinges {
     /// A model of any row that stands.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
-    pub fn new(row: Row) -> Result<Self, FreeHingesError> {
+    pub fn new(row: Row) -> Result<Self, RowModelError> {
         Ok(Self {
             rigid: RigidRow::new(row)?,
             options: RowOptions::default(),
             many_cases: false,
-            repeated: None,
+            steps_times: 1.0,
+            merges_landings: false,
         })
     }
 
@@ -132,7 +118,7 @@ impl FreeHinges {
     ///
     /// # Errors
     /// When the arch has no voussoirs, or cannot carry its own weight.
-    pub fn of_arch(arch: &Arch) -> Result<Self, FreeHingesError> {
+    pub fn of_arch(arch: &Arch) -> Result<Self, RowModelError> {
         Self::new(arch.row()?)
     }
 
@@ -140,16 +126,16 @@ impl FreeHinges {
     ///
     /// # Errors
     /// When the drums do not make a row, or the column cannot carry its own weight.
-    pub fn of_column(column: &Column) -> Result<Self, FreeHingesError> {
+    pub fn of_column(column: &Column) -> Result<Self, RowModelError> {
         Self::new(column.row()?)
     }
 
-    /// The same on supports that have moved slowly before time begins, from where they were built: it starts on the hinges on which it
-    /// followed them, and its motion is told from there.
+    /// This model on supports that moved slowly before time zero, from where they were built: it starts on the hinges on which it
+    /// followed them, and its motion counts from there.
     ///
     /// # Errors
     /// When it falls or a tie breaks on the way, or it slides there.
-    pub fn on_supports(self, movements: &Movements) -> Result<Self, FreeHingesError> {
+    pub fn on_supports(self, movements: &Movements) -> Result<Self, RowModelError> {
         if movements.is_none() {
             return Ok(self);
         }
@@ -158,12 +144,12 @@ impl FreeHinges {
         Ok(Self { rigid, ..self })
     }
 
-    /// The same with other options.
+    /// This model with other options.
     ///
     /// # Errors
     /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
     /// shortest step is given for joints that slip, or the row slides apart under its own weight.
-    pub fn with_options(self, options: RowOptions) -> Result<Self, FreeHingesError> {
+    pub fn with_options(self, options: RowOptions) -> Result<Self, RowModelError> {
         let options = options.checked()?;
         let rigid = self.rigid.with_friction(options.friction_coefficient)?;
         Ok(Self {
@@ -173,7 +159,7 @@ impl FreeHinges {
         })
     }
 
-    /// The same for a study of many cases. If no step is given and no joint slips, steps are as long as most answers allow without
+    /// This model for a study of many cases. If no step is given and no joint slips, steps are as long as most answers allow without
     /// changing. Where answers do change, repetitions disagree.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
@@ -190,7 +176,7 @@ impl FreeHinges {
     /// The blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
-        self.rigid.row()
+        &self.rigid.row
     }
 
     /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
@@ -226,24 +212,25 @@ impl FreeHinges {
         settings.may_halve = self.options.longest_step_s.is_none();
         settings.output_step_s = Some(request.output_step_s);
         settings.friction_coefficient = self.options.friction_coefficient;
-        self.repeated.map_or(settings, |other| other(&settings))
+        if self.merges_landings {
+            settings.with_landings_merged()
+        } else {
+            settings.with_steps_times(self.steps_times)
+        }
     }
 }
 
-/// Other settings of a motion, with their name.
-type Other = (&'static str, fn(&Settings) -> Settings);
-
 impl Model for FreeHinges {
     fn repetitions(&self) -> Vec<Repetition> {
-        let double: Other = ("double steps", Settings::with_double_steps);
-        let others: [Other; 2] = match self.options.friction_coefficient {
-            None => [double, ("landings merged", Settings::with_landings_merged)],
-            Some(_) => [("half steps", Settings::with_half_steps), double],
+        let others = match self.options.friction_coefficient {
+            None => [("double steps", 2.0, false), ("landings merged", 1.0, true)],
+            Some(_) => [("half steps", 0.5, false), ("double steps", 2.0, false)],
         };
-        let repetition = |(name, settings): Other| Repetition {
+        let repetition = |(name, steps_times, merges_landings)| Repetition {
             name,
             model: Box::new(Self {
-                repeated: Some(settings),
+                steps_times,
+                merges_landings,
                 ..self.clone()
             }),
         };
@@ -273,7 +260,7 @@ impl Model for FreeHinges {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        request.check_on(ground)?;
+        check(ground, request)?;
         let settings = self.settings(request);
         let initial_rad = request
             .initial
@@ -288,12 +275,14 @@ impl Model for FreeHinges {
             built_barrier_j: self.rigid.estimated_barrier_j(request.gravity_m_s2),
             energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
         };
-        let standing = self.rigid.standing();
+        let standing = &self.rigid.standing;
         let summary = motion(task, &settings, standing, initial_rad.as_deref(), recorder)?;
-        match &summary.row {
-            Some(row) if row.energy_error > LARGEST_ENERGY_ERROR => Err(FreeHingeError::Energy {
+        match summary.row() {
+            Some(row) if row.energy_error > LARGEST_ENERGY_ERROR => Err(RowMotionError::Energy {
                 error: row.energy_error,
-                longest_step_s: settings.longest_step_s * 0.5_f64.powf(row.halvings.into()),
+                table: "free_hinges",
+                longest_step_s: SHORTER
+                    * (settings.longest_step_s * 0.5_f64.powf(row.halvings.into())),
             }
             .into()),
             _ => Ok(summary),

@@ -1,5 +1,5 @@
-//! Where a row with rigid joints stands before it moves: undeformed, or on the hinges of supports that have moved. Its motion is told from
-//! there.
+//! The position of a row with rigid joints before it moves: undeformed, or on the hinges of supports that have moved. Displacements and
+//! rotations count from there.
 
 use nalgebra::Vector2;
 
@@ -12,9 +12,9 @@ use crate::mechanics::joints::Placement;
 #[derive(Clone, Debug)]
 pub(super) struct Rest<'a> {
     row: &'a Row,
-    placement: Placement,
+    pub placement: Placement,
     /// Corners that touch there.
-    touching: Vec<Corners>,
+    pub touching: Vec<Corners>,
 }
 
 impl<'a> Rest<'a> {
@@ -24,15 +24,6 @@ impl<'a> Rest<'a> {
             touching: touching(&placement.gaps_m).collect(),
             placement: placement.clone(),
         }
-    }
-
-    pub const fn placement(&self) -> &Placement {
-        &self.placement
-    }
-
-    /// The corners that touch.
-    pub fn touching(&self) -> &[Corners] {
-        &self.touching
     }
 
     /// Whether joints are open.

@@ -16,13 +16,12 @@ pub(super) struct RightSupport<'a> {
     /// `None` where both feet move alike, and of a row with only one.
     feet: Option<FeetApart<'a>>,
     /// How far it has gone away from where it was beside the left one.
-    gone_m: Vector2<f64>,
-    /// The same when the joints last followed it: movements below what opens a joint add up.
+    pub gone_m: Vector2<f64>,
+    /// How far it had gone when the joints last followed it: movements that are too small to open a joint add up.
     followed_m: Vector2<f64>,
     /// Its velocity over the last step or after the last impact, and in the present solution.
     velocity_m_s: Vector2<f64>,
-    next_m_s: Vector2<f64>,
-    work_j: f64,
+    pub next_m_s: Vector2<f64>,
 }
 
 impl<'a> RightSupport<'a> {
@@ -33,18 +32,12 @@ impl<'a> RightSupport<'a> {
             followed_m: Vector2::zeros(),
             velocity_m_s: Vector2::zeros(),
             next_m_s: Vector2::zeros(),
-            work_j: 0.0,
         }
     }
 
     /// Whether it moves beside the left one at all.
     pub const fn moves(&self) -> bool {
         self.feet.is_some()
-    }
-
-    /// How far it has gone away from where it was beside the left one.
-    pub const fn gone_m(&self) -> Vector2<f64> {
-        self.gone_m
     }
 
     /// Whether it is farther than this from where it was.
@@ -73,12 +66,7 @@ impl<'a> RightSupport<'a> {
         }
     }
 
-    /// Its velocity in the present solution.
-    pub const fn next_m_s(&self) -> Vector2<f64> {
-        self.next_m_s
-    }
-
-    /// The mean of that and its velocity before.
+    /// The mean of its velocities before and in the present solution.
     pub fn mean_m_s(&self) -> Vector2<f64> {
         (self.velocity_m_s + self.next_m_s) * 0.5
     }
@@ -88,7 +76,7 @@ impl<'a> RightSupport<'a> {
         self.velocity_m_s = self.next_m_s;
     }
 
-    /// Goes where it is at a time.
+    /// Moves to its position at a time.
     pub fn go(&mut self, time_s: f64) {
         if let Some(feet) = &mut self.feet {
             self.gone_m = feet.at(time_s);
@@ -98,15 +86,5 @@ impl<'a> RightSupport<'a> {
     /// The joints have followed it.
     pub const fn is_followed(&mut self) {
         self.followed_m = self.gone_m;
-    }
-
-    /// Does so much work.
-    pub fn works(&mut self, work_j: f64) {
-        self.work_j += work_j;
-    }
-
-    /// Its work so far.
-    pub const fn work_j(&self) -> f64 {
-        self.work_j
     }
 }

@@ -15,15 +15,16 @@ use nalgebra::{Vector2, Vector3};
 
 use super::rest::Rest;
 use super::right_support::RightSupport;
+use super::settings::Settings;
 use super::ties::Ties;
-use super::{FreeHingeError, Settings};
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{EventKind, Sample, Sliding};
-use crate::dynamics::model::Recorder;
+use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::course::{
     Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, SWAY_RATIO, Stepper, Summit, Task,
     eccentricity_ratio, equal_step, only,
 };
+use crate::dynamics::row::error::RowMotionError;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
@@ -70,7 +71,7 @@ impl Taken {
     }
 }
 
-pub(super) struct SlidingStepper<'a> {
+pub struct SlidingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
@@ -89,7 +90,7 @@ pub(super) struct SlidingStepper<'a> {
     ties: Ties<'a>,
     /// Energy that ties took so far as they yielded and broke.
     taken_by_ties: f64,
-    /// What ties add to the velocities of the blocks in a kick.
+    /// Contributions of ties to the velocities of the blocks in a kick.
     pulled: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
@@ -106,19 +107,13 @@ pub(super) struct SlidingStepper<'a> {
     modes_before: Vec<Mode>,
     /// Whether no joint is open.
     stands: bool,
-    ground_work: f64,
-    /// When the row was highest, with the energy that friction took: up to then it may be held.
-    summit: Summit,
     /// Energy that friction took outside impacts.
     held_back: f64,
     /// The impact of the last step, if there was one.
     landing: Option<Landing>,
-    overturned: bool,
     /// The least energy so far, without the work of the ground.
     least_energy: f64,
-    quiet_since_s: f64,
     friction_demand: f64,
-    least_normal: f64,
     centres: Vec<Vector2<f64>>,
     /// Rotations and rates of the blocks before a step in which no joint was open at first.
     before: Vec<(f64, f64)>,
@@ -126,7 +121,7 @@ pub(super) struct SlidingStepper<'a> {
 
 impl<'a> SlidingStepper<'a> {
     /// A stepper for a row that stands there, or is released at rest at a placement.
-    pub(super) fn new(
+    pub fn new(
         standing: &Stance,
         placement: &Placement,
         task: Task<'a>,
@@ -157,15 +152,17 @@ impl<'a> SlidingStepper<'a> {
             (positions, contacts)
         };
         let (positions, contacts) = contacts_at(placement);
-        let (_, stood) = contacts_at(rest.placement());
+        let (_, stood) = contacts_at(&rest.placement);
         let mut program = Program::new(row, coefficient);
-        program.touch(rest.touching());
+        program.touch(&rest.touching);
         let ties = Ties::new(row, standing);
         let mut course = Course::new(task, None, recorder);
         course.of_row.sliding = Some(Sliding::none(joints));
-        course.of_row.ties = ties.at_rest(ground.start_s());
+        course.note_ties(ties.memories());
         course.note_return();
         let start_energy = gravity * rest.rise_kg_m(&placement.centres_m);
+        // With the energy that friction took: up to where it was highest it may be held.
+        course.summit = Summit::new(start_energy, ground.start_s());
         let stands = rest.has(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
@@ -192,18 +189,13 @@ impl<'a> SlidingStepper<'a> {
             right: RightSupport::new(row, ground),
             supports,
             stands,
-            ground_work: 0.0,
-            summit: Summit::new(start_energy, ground.start_s()),
             ties,
             taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
             landing: None,
-            overturned: false,
             least_energy: f64::INFINITY,
-            quiet_since_s: ground.start_s(),
             friction_demand: 0.0,
-            least_normal: f64::INFINITY,
             centres: placement.centres_m.to_vec(),
             before: Vec::with_capacity(blocks),
             faces,
@@ -220,7 +212,7 @@ impl<'a> SlidingStepper<'a> {
         (-ground - fall, ground)
     }
 
-    /// Finds what ties add to the velocities of the blocks from the last kick until a time.
+    /// Finds the contributions of ties to the velocities of the blocks from the last kick until a time.
     fn pull(&mut self, to_s: f64) {
         if self.ties.are_none() {
             return;
@@ -254,7 +246,7 @@ impl<'a> SlidingStepper<'a> {
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
-                let way_m = self.right.next_m_s() * step;
+                let way_m = self.right.next_m_s * step;
                 return self.supports[1].moved(way_m);
             };
             let v = self.program.velocity(block) * step;
@@ -272,7 +264,7 @@ impl<'a> SlidingStepper<'a> {
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 lag += then.coordinates_m - now - self.program.joint_rate(joint) * step;
             } else {
-                lag += self.carried(joint, self.right.next_m_s()) * step;
+                lag += self.carried(joint, self.right.next_m_s) * step;
             }
             self.lags[joint] = lag / step;
             left = right;
@@ -289,7 +281,7 @@ impl<'a> SlidingStepper<'a> {
     }
 
     /// Counts a step whose bounds of friction did not converge.
-    fn judge(&mut self, error: f64) -> Result<(), FreeHingeError> {
+    fn judge(&mut self, error: f64) -> Result<(), RowMotionError> {
         if error <= CONVERGED {
             return Ok(());
         }
@@ -300,8 +292,45 @@ impl<'a> SlidingStepper<'a> {
             Ok(())
         } else {
             let time_s = self.course.time;
-            Err(FreeHingeError::Friction { time_s, error })
+            Err(RowMotionError::Friction { time_s, error })
         }
+    }
+
+    /// Solves for the velocities after the kick of a step, which lasts until a time.
+    fn solve(&mut self, step: f64, to_s: f64, kick: Vector2<f64>) -> Result<(), RowMotionError> {
+        self.program
+            .place(&self.faces, &self.contacts, &self.positions);
+        self.modes_before.copy_from_slice(&self.program.modes);
+        for joint in 0..self.faces.len() {
+            self.rates_before[joint] = self.program.joint_rate(joint);
+        }
+        self.right.step(self.course.time, step);
+        self.lag(step);
+        self.pull(to_s);
+        Self::load(&mut self.program, &self.velocities, kick, &self.pulled);
+        let fastest = self
+            .velocities
+            .iter()
+            .map(|v| v.x.abs() + v.y.abs())
+            .fold(0.0, f64::max);
+        let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
+        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
+        let mut passes = solution.passes;
+        let again = solution.changed;
+        if again {
+            self.lag(step);
+        }
+        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
+            solution = self.program.solve(|joint| self.lags[joint], tolerance);
+            passes += solution.passes;
+        }
+        let passes = passes as u64;
+        let (cost, of_row) = (&mut self.course.cost, &mut self.course.of_row);
+        cost.steps += 1;
+        cost.evaluations += passes;
+        of_row.programs += 1;
+        of_row.most_iterations = of_row.most_iterations.max(passes);
+        self.judge(solution.bound_error)
     }
 
     fn note_forces(&mut self, time_s: f64) {
@@ -313,9 +342,8 @@ impl<'a> SlidingStepper<'a> {
             .filter(|impulse| impulse.x + impulse.y >= loaded)
             .map(|impulse| impulse.z.abs() / (impulse.x + impulse.y))
             .fold(0.0, f64::max);
-        self.least_normal = least / time_s;
         let of_row = &mut self.course.of_row;
-        of_row.least_normal_n = of_row.least_normal_n.min(self.least_normal);
+        of_row.least_normal_n = of_row.least_normal_n.min(least / time_s);
     }
 
     /// The impact that begins in the step that was solved, if a corner lands, without its energy.
@@ -436,7 +464,7 @@ impl<'a> SlidingStepper<'a> {
         self.course.shut = landing.shut;
         let sticks = |mode: &Mode| mode.along == Along::Stick;
         let moves = !(self.touches_as_it_stood() && self.program.modes.iter().all(sticks));
-        self.tell_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
+        self.report_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
     }
 
     /// Moves the blocks for a step; what happened to ties in it.
@@ -455,7 +483,7 @@ impl<'a> SlidingStepper<'a> {
             self.right.take();
             self.right.go(self.course.time);
             self.right.is_followed();
-            let poses = self.right.poses(&self.rest.placement().support_poses);
+            let poses = self.right.poses(&self.rest.placement.support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
             self.ties.move_supports(poses);
         }
@@ -473,14 +501,14 @@ impl<'a> SlidingStepper<'a> {
             let slipped_m = (self.stuck[joint] - stood_m.z).abs();
             let [intrados, extrados, _] = (contact.coordinates_m - stood_m).into();
             self.course.moved |= slipped_m.max(intrados).max(extrados) > least;
-            self.overturned |= contact.ends_m[1] <= contact.ends_m[0];
+            self.course.overturned |= contact.ends_m[1] <= contact.ends_m[0];
             self.contacts[joint] = contact;
         }
         let kinetic = self.kinetic();
         let (blocks, positions) = (self.row.blocks(), &self.positions);
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
-        let happened = (self.ties).happened(&mut self.course.of_row.ties, self.course.time);
+        let happened = self.course.note_ties(self.ties.memories());
         let height = self.gravity * self.rest.rise_kg_m(&self.centres);
         let potential = height + self.ties.energy_j();
         let taken = self.ties.taken_j();
@@ -491,13 +519,10 @@ impl<'a> SlidingStepper<'a> {
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
-        self.overturned |= self.has_fallen();
+        self.course.overturned |= self.has_fallen();
         let height = potential + self.held_back + taken;
         let height = (!self.right.moves()).then_some(height);
-        self.summit.note_results(&mut self.course, height);
-        if kinetic >= REST_ENERGY_RATIO * self.course.energy_unit {
-            self.quiet_since_s = self.course.time;
-        }
+        self.course.note_height(height);
         happened
     }
 
@@ -510,7 +535,7 @@ impl<'a> SlidingStepper<'a> {
     /// How far the row slid along its supports, left and right.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
-            let support = self.rest.placement().support_poses[usize::from(joint > 0)];
+            let support = self.rest.placement.support_poses[usize::from(joint > 0)];
             let along = support.turned(self.row.joints()[joint].along());
             along * (sign * self.contacts[joint].coordinates_m.z)
         };
@@ -524,9 +549,9 @@ impl<'a> SlidingStepper<'a> {
     /// Whether a block has turned or moved too far, from where either foot would have it.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.slides();
-        let gone = [left, right + self.right.gone_m()];
+        let gone = [left, right + self.right.gone_m];
         let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
-        let stood = self.rest.placement();
+        let stood = &self.rest.placement;
         let stood = stood.centres_m.iter().zip(&stood.poses);
         let mut blocks = stood.zip(&self.positions);
         blocks.any(|((centre_m, pose), position)| {
@@ -540,7 +565,7 @@ impl<'a> SlidingStepper<'a> {
     /// created by the computation. In mid-step the leapfrog knows velocities and heights, and their sum stays constant in equal steps
     /// without impulses at the joints.
     fn audit(&mut self, energy: f64) {
-        let left = energy - self.ground_work - self.right.work_j();
+        let left = energy - self.course.of_row.ground_j - self.course.of_row.right_foot_j;
         self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
@@ -556,7 +581,7 @@ impl<'a> SlidingStepper<'a> {
         Self::load(&mut self.auxiliary, &self.velocities, kick, &self.pulled);
         self.right.stop_at(self.course.time);
         let last = self.faces.len() - 1;
-        let parting = self.carried(last, self.right.next_m_s());
+        let parting = self.carried(last, self.right.next_m_s);
         let (modes, contacts, step) = (&self.program.modes, &self.contacts, self.last_step);
         let apart = |joint: usize| {
             let gap = |end: usize| {
@@ -579,11 +604,11 @@ impl<'a> SlidingStepper<'a> {
     }
 
     /// Reports the joints that opened in a step that began at this time, with this energy and with no joint open.
-    fn report_uplift(&mut self, from_s: f64, energy_j: f64) {
+    fn note_uplift(&mut self, from_s: f64, energy_j: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
         for (joint, mode) in self.program.modes.iter().enumerate() {
-            let stood = self.rest.touching()[joint];
+            let stood = self.rest.touching[joint];
             if mode.pressed != stood && mode.pressed != [true; 2] {
                 let edge = only(mode.pressed);
                 opened.push(Hinge::Joint { joint, edge });
@@ -594,7 +619,7 @@ impl<'a> SlidingStepper<'a> {
             self.stands &= !is_open;
         }
         if !self.stands {
-            self.tell_uplift(from_s, energy_j, |stepper| {
+            self.report_uplift(from_s, energy_j, |stepper| {
                 stepper.before.iter().copied().unzip()
             });
         }
@@ -602,7 +627,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Whether the corners are pressed that were where the row stood.
     fn touches_as_it_stood(&self) -> bool {
-        let modes = self.program.modes.iter().zip(self.rest.touching());
+        let modes = self.program.modes.iter().zip(&self.rest.touching);
         modes
             .into_iter()
             .all(|(mode, stood)| mode.pressed == *stood)
@@ -627,7 +652,7 @@ impl<'a> SlidingStepper<'a> {
             .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
             .sum();
         let mass = self.row.mass_kg();
-        let sway = self.rest.sway_kg_m(&self.centres) - mass * (slid + 0.5 * self.right.gone_m().x);
+        let sway = self.rest.sway_kg_m(&self.centres) - mass * (slid + 0.5 * self.right.gone_m.x);
         if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
             sway
         } else {
@@ -649,7 +674,7 @@ fn contact(
 }
 
 impl<'a> Stepper<'a> for SlidingStepper<'a> {
-    type Error = FreeHingeError;
+    type Error = RowMotionError;
 
     fn course(&self) -> &Course<'a> {
         &self.course
@@ -663,13 +688,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.end_landing(Taken::default(), true);
         let offsets_m = self.stuck.clone();
         self.sliding().offsets_m = offsets_m;
-        let of_row = &mut self.course.of_row;
-        of_row.ground_j = self.ground_work;
-        of_row.right_foot_j = self.right.work_j();
         &mut self.course
     }
 
-    fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
+    fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         let step = equal_step(self.course.time, until, self.course.longest_step_s);
         let to_s = self.course.time + 0.5 * step;
         let (kick, ground) = self.kick(to_s);
@@ -683,52 +705,19 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             before.extend(self.turns());
             self.before = before;
         }
-        self.program
-            .place(&self.faces, &self.contacts, &self.positions);
-        self.modes_before.copy_from_slice(&self.program.modes);
-        for joint in 0..self.faces.len() {
-            self.rates_before[joint] = self.program.joint_rate(joint);
-        }
-        self.right.step(self.course.time, step);
-        self.lag(step);
-        self.pull(to_s);
-        Self::load(&mut self.program, &self.velocities, kick, &self.pulled);
-        let fastest = self
-            .velocities
-            .iter()
-            .map(|v| v.x.abs() + v.y.abs())
-            .fold(0.0, f64::max);
-        let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
-        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
-        let mut passes = solution.passes;
-        let again = solution.changed;
-        if again {
-            self.lag(step);
-        }
-        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
-            solution = self.program.solve(|joint| self.lags[joint], tolerance);
-            passes += solution.passes;
-        }
-        let passes = passes as u64;
-        let (cost, of_row) = (&mut self.course.summary.cost, &mut self.course.of_row);
-        cost.steps += 1;
-        cost.evaluations += passes;
-        of_row.programs += 1;
-        of_row.most_iterations = of_row.most_iterations.max(passes);
-        self.judge(solution.bound_error)?;
-
+        self.solve(step, to_s, kick)?;
         let mean_m_s = self.right.mean_m_s();
         if self.right.moves() {
             let last = self.faces.len() - 1;
             let carried_j = self.program.impulses[last].dot(&self.carried(last, mean_m_s));
-            self.right.works(-carried_j);
+            self.course.of_row.right_foot_j -= carried_j;
             let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
-            self.right.works(-pulled.dot(&mean_m_s));
+            self.course.of_row.right_foot_j -= pulled.dot(&mean_m_s);
         }
         for (block, velocity) in self.velocities.iter_mut().enumerate() {
             *velocity = self.program.velocity(block);
         }
-        self.ground_work -= ground.dot(&((momentum + self.momentum()) * 0.5));
+        self.course.of_row.ground_j -= ground.dot(&((momentum + self.momentum()) * 0.5));
         self.note_forces(to_s - self.kicked_s);
         self.kicked_s = to_s;
         self.last_step = step;
@@ -747,30 +736,30 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
                 taken,
                 ..landing
             });
-            self.course.summary.impacts += 1;
+            self.course.impacts += 1;
             self.course.await_impact();
         }
         let happened = self.drift(step);
         if let Some((from_s, energy_j)) = stood {
-            self.report_uplift(from_s, energy_j);
+            self.note_uplift(from_s, energy_j);
         } else {
             self.stands = self.touches_as_it_stood();
         }
         self.course.mind_balance();
         for (tie, kind) in happened {
-            self.tell_tie(tie, kind);
+            self.report_tie(tie, kind);
         }
         Ok(())
     }
 
-    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError> {
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError> {
         let kinetic_j = self.synchronise();
         let blocks = self.row.blocks().iter().zip(&self.positions);
         for (index, (block, position)) in blocks.enumerate() {
             sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
             sample.poses.push(position.pose(block.centre_m));
         }
-        sample.feet_apart_m = self.right.gone_m();
+        sample.feet_apart_m = self.right.gone_m;
         sample.offsets_m.extend(&self.stuck);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -818,12 +807,12 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn stands(&self, sample: &Sample) -> bool {
         let joints = 0..self.faces.len();
-        let stood = self.rest.touching();
+        let stood = &self.rest.touching;
         let lies = joints
             .into_iter()
             .all(|joint| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint]);
         let lies = if self.right_support_is_gone() {
-            self.course.is_quiet(self.quiet_since_s)
+            self.course.is_quiet(self.course.quiet_since_s)
         } else {
             lies
         };
@@ -834,14 +823,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let low = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
         let undeformed = low && !self.right_support_is_gone();
         let rests = if undeformed {
-            self.course.time > self.quiet_since_s
+            self.course.time > self.course.quiet_since_s
         } else {
-            self.course.is_quiet(self.quiet_since_s)
+            self.course.is_quiet(self.course.quiet_since_s)
         };
-        rests.then_some(self.quiet_since_s)
-    }
-
-    fn overturned_s(&self) -> Option<f64> {
-        self.overturned.then_some(self.summit.time)
+        rests.then_some(self.course.quiet_since_s)
     }
 }

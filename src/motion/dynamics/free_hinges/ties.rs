@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::dynamics::history::{EventKind, TieSample, TieSummary};
+use crate::dynamics::history::TieSample;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
@@ -79,7 +79,7 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// What the ties add to the motion of free blocks, with their centres there, in a time: to the velocity of the centre and the rate of
+    /// Contributions of the ties to the motion of free blocks with these centres, in a time: to the velocity of the centre and the rate of
     /// rotation of a block.
     pub fn pull(
         &self,
@@ -103,30 +103,18 @@ impl<'a> Ties<'a> {
         each.sum::<f64>() - self.at_rest_j
     }
 
-    /// What they took as they yielded and broke.
+    /// Energy that they took as they yielded and broke.
     pub fn taken_j(&self) -> f64 {
         self.ties.iter().map(|tie| tie.memory.taken_j.0[0]).sum()
     }
 
-    /// Updates their summaries; what happened to them since the last time.
-    pub fn happened(&self, summaries: &mut [TieSummary], time_s: f64) -> Vec<(usize, EventKind)> {
-        let mut happened = Vec::new();
-        for (index, (tie, summary)) in self.ties.iter().zip(summaries).enumerate() {
-            let kinds = summary.note(tie.tie, &tie.memory, time_s);
-            happened.extend(kinds.into_iter().flatten().map(|kind| (index, kind)));
-        }
-        happened
+    /// The ties and their memories.
+    pub fn memories(&self) -> impl Iterator<Item = (&Tie, TieMemory<Lanes<1>>)> {
+        self.ties.iter().map(|tie| (tie.tie, tie.memory))
     }
 
     pub fn samples(&self) -> impl Iterator<Item = TieSample> {
-        let ties = self.ties.iter();
-        ties.map(|tie| TieSample::of(tie.tie, &tie.memory))
-    }
-
-    /// Summaries of ties that have not moved, at this time.
-    pub fn at_rest(&self, time_s: f64) -> Vec<TieSummary> {
-        let ties = self.ties.iter();
-        ties.map(|tie| TieSummary::at_rest(tie.tie, &tie.memory, time_s))
-            .collect()
+        self.memories()
+            .map(|(tie, memory)| TieSample::of(tie, &memory))
     }
 }

@@ -6,39 +6,20 @@
 use std::f64::consts::PI;
 
 use crate::bisection::{Width, bisect};
+use crate::dynamics::peak::Peak;
 
 /// Fractions of the Arias intensity between which the significant duration is counted (Trifunac and Brady, 1975).
 pub const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
-
-/// A largest magnitude, and when it is reached.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PeakMotion {
-    /// The magnitude.
-    pub value: f64,
-    /// When it is first reached, in s.
-    pub time_s: f64,
-}
-
-impl PeakMotion {
-    fn reach(&mut self, value: f64, time_s: f64) {
-        if value.abs() > self.value {
-            *self = Self {
-                value: value.abs(),
-                time_s,
-            };
-        }
-    }
-}
 
 /// The strength of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intensity {
     /// Peak ground acceleration, in m/s2.
-    pub acceleration_m_s2: PeakMotion,
+    pub acceleration_m_s2: Peak,
     /// Peak ground velocity, in m/s.
-    pub velocity_m_s: PeakMotion,
+    pub velocity_m_s: Peak,
     /// Peak ground displacement, in m.
-    pub displacement_m: PeakMotion,
+    pub displacement_m: Peak,
     /// Arias intensity, pi / (2 g) times the integral of the squared acceleration, in m/s (Arias, 1970).
     pub arias_m_s: f64,
     /// When 5 % and 95 % of the Arias intensity are reached, in s; both are the first time if the ground stays still.
@@ -53,15 +34,15 @@ impl Intensity {
     #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
         let mut intensity = Self {
-            acceleration_m_s2: PeakMotion::default(),
-            velocity_m_s: PeakMotion::default(),
-            displacement_m: PeakMotion::default(),
+            acceleration_m_s2: Peak::default(),
+            velocity_m_s: Peak::default(),
+            displacement_m: Peak::default(),
             arias_m_s: 0.0,
             significant_s: [samples.first().map_or(0.0, |sample| sample.0); 2],
             course: vec![[0.0; 3]; samples.len()],
         };
         for &(time_s, acceleration) in samples {
-            intensity.acceleration_m_s2.reach(acceleration, time_s);
+            intensity.acceleration_m_s2.note(acceleration.abs(), time_s);
         }
         let mut state = [0.0; 3];
         for (pair, after) in samples.windows(2).zip(1..) {
@@ -104,8 +85,8 @@ impl Intensity {
         for after_s in turns.chain([line.duration_s]) {
             let [velocity, displacement, _] = line.advance(state, after_s);
             let time_s = line.start_s + after_s;
-            self.velocity_m_s.reach(velocity, time_s);
-            self.displacement_m.reach(displacement, time_s);
+            self.velocity_m_s.note(velocity.abs(), time_s);
+            self.displacement_m.note(displacement.abs(), time_s);
         }
     }
 }

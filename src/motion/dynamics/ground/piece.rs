@@ -6,7 +6,7 @@ use super::shape::Shape;
 
 /// One-sided formula of a piece in the time since its origin, horizontal and vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Formula {
+pub enum Formula {
     Linear {
         at_origin: Vector2<f64>,
         slope: Vector2<f64>,
@@ -18,7 +18,7 @@ pub(super) enum Formula {
 }
 
 impl Formula {
-    pub(super) fn constant(acceleration: Vector2<f64>) -> Self {
+    pub fn constant(acceleration: Vector2<f64>) -> Self {
         Self::Linear {
             at_origin: acceleration,
             slope: Vector2::zeros(),
@@ -26,7 +26,7 @@ impl Formula {
     }
 
     /// The formula times a factor.
-    pub(super) fn scaled(self, factor: f64) -> Self {
+    pub fn scaled(self, factor: f64) -> Self {
         match self {
             Self::Linear { at_origin, slope } => Self::Linear {
                 at_origin: at_origin * factor,
@@ -40,7 +40,7 @@ impl Formula {
     }
 
     /// Acceleration and its rate of change.
-    pub(super) fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+    pub fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Linear { at_origin, slope } => (at_origin + slope * since_s, slope),
             Self::Shaped { amplitude, shape } => {
@@ -49,9 +49,7 @@ impl Formula {
             }
         }
     }
-}
 
-impl Formula {
     /// Integral of the acceleration between two times.
     fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
         match *self {
@@ -79,7 +77,7 @@ pub struct Piece {
 impl Piece {
     /// Change of the velocity of the ground from the start of the piece to a time in it, in m/s: the integral of
     /// the acceleration.
-    pub(super) fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
+    pub fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
         let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
         self.formula.integral(from_s, to_s)
     }
@@ -97,12 +95,6 @@ impl Piece {
         self.at(time_s).0.x
     }
 
-    /// Vertical acceleration in m/s2, as [`Piece::at`].
-    #[must_use]
-    pub fn vertical_m_s2(&self, time_s: f64) -> f64 {
-        self.at(time_s).0.y
-    }
-
     /// Whether the acceleration is zero from here on.
     #[must_use]
     pub fn stays_still(&self) -> bool {
@@ -110,7 +102,7 @@ impl Piece {
     }
 
     /// Whether the acceleration is zero throughout.
-    pub(super) fn is_quiet(&self) -> bool {
+    pub fn is_quiet(&self) -> bool {
         self.ends_m_s2() == [Vector2::zeros(); 2]
     }
 
@@ -124,7 +116,7 @@ impl Piece {
     }
 
     /// The accelerations at both ends, which bound those in between.
-    pub(super) fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
+    pub fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
         if self.stays_still() {
             [Vector2::zeros(); 2]
         } else {

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::GroundMotion;
-use super::error::{self, GroundError};
+use super::error::{ACCELERATION_M_S2, DURATION_S, GroundError, TIME_S};
+use super::motion::GroundMotion;
 use super::piece::Formula;
-use super::shape::{Shape, Sine};
+use super::shape::{Shape, Sine, WaveTrain};
 use crate::argument::within;
 
 named! {
@@ -72,28 +72,10 @@ impl Pulse {
     }
 }
 
-/// Parameters of the pulses that are an oscillation under an envelope.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WaveTrain {
-    /// Length of the envelope in periods of the oscillation, 1 to 1000: `gamma`, or the number of cycles.
-    pub cycles: f64,
-    /// Phase of the oscillation, at most 1000 in magnitude.
-    pub phase_rad: f64,
-}
-
-impl Default for WaveTrain {
-    fn default() -> Self {
-        Self {
-            cycles: 2.0,
-            phase_rad: 0.0,
-        }
-    }
-}
-
 impl GroundMotion {
     /// A single horizontal pulse that starts at `start_s` (0 to 1e9), with peak acceleration `amplitude_m_s2`
     /// (at most 1e12 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has
-    /// [`WaveTrain::default`].
+    /// [`WaveTrain::default`]. For other wave trains and vertical accelerations see [`PulseShape`].
     ///
     /// # Errors
     /// When an argument is outside its range.
@@ -103,24 +85,8 @@ impl GroundMotion {
         duration_s: f64,
         start_s: f64,
     ) -> Result<Self, GroundError> {
-        let train = WaveTrain::default();
-        PulseShape::new(pulse, duration_s, start_s, train)?
-            .motion(Vector2::new(amplitude_m_s2, 0.0))
-    }
-
-    /// A single pulse, as [`GroundMotion::pulse`], with horizontal and vertical peak accelerations of one
-    /// common shape. `train` matters only to pulses that are wave trains.
-    ///
-    /// # Errors
-    /// When an argument is outside its range.
-    pub fn pulse_along(
-        pulse: Pulse,
-        amplitude_m_s2: Vector2<f64>,
-        duration_s: f64,
-        start_s: f64,
-        train: WaveTrain,
-    ) -> Result<Self, GroundError> {
-        PulseShape::new(pulse, duration_s, start_s, train)?.motion(amplitude_m_s2)
+        let shape = PulseShape::new(pulse, duration_s, start_s, WaveTrain::default())?;
+        shape.motion(Vector2::new(amplitude_m_s2, 0.0))
     }
 }
 
@@ -158,7 +124,8 @@ impl PulseShape {
         start_s: f64,
         train: WaveTrain,
     ) -> Result<Self, GroundError> {
-        let duration_s = error::duration_s("duration_s", duration_s)?;
+        within("duration_s", duration_s, DURATION_S)?;
+        within("start_s", start_s, TIME_S)?;
         if pulse.is_wave_train() {
             within("cycles", train.cycles, 1.0..=1e3)?;
             within("phase_rad", train.phase_rad, -1e3..=1e3)?;
@@ -166,7 +133,7 @@ impl PulseShape {
         Ok(Self {
             pulse,
             duration_s,
-            start_s: error::time_s("start_s", start_s)?,
+            start_s,
             train: CutTrain::new(pulse, duration_s, train),
         })
     }
@@ -177,8 +144,8 @@ impl PulseShape {
     /// # Errors
     /// When one of them is outside its range.
     pub fn motion(&self, amplitude_m_s2: Vector2<f64>) -> Result<GroundMotion, GroundError> {
-        error::acceleration_m_s2("amplitude_m_s2.x", amplitude_m_s2.x)?;
-        error::acceleration_m_s2("amplitude_m_s2.y", amplitude_m_s2.y)?;
+        within("amplitude_m_s2.x", amplitude_m_s2.x, ACCELERATION_M_S2)?;
+        within("amplitude_m_s2.y", amplitude_m_s2.y, ACCELERATION_M_S2)?;
         Ok(GroundMotion::from_pieces(
             self.start_s,
             self.pieces(amplitude_m_s2),
@@ -345,7 +312,9 @@ mod tests {
         let plain = Pulse::ALL.iter().map(|pulse| (*pulse, default));
         let amplitude = Vector2::new(-3.0, 1.5);
         for (pulse, train) in plain.chain(trains()) {
-            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.4, 0.2, train).unwrap();
+            let ground = PulseShape::new(pulse, 0.4, 0.2, train)
+                .and_then(|shape| shape.motion(amplitude))
+                .unwrap();
             for piece in ground.pieces() {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;
@@ -372,7 +341,9 @@ mod tests {
     fn wave_trains_reach_their_amplitude_and_not_more() {
         for (pulse, train) in trains() {
             let amplitude = Vector2::new(2.0, 0.0);
-            let ground = GroundMotion::pulse_along(pulse, amplitude, 0.3, 0.1, train).unwrap();
+            let ground = PulseShape::new(pulse, 0.3, 0.1, train)
+                .and_then(|shape| shape.motion(amplitude))
+                .unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
             // The pieces end at the extrema, which bound what is between.
             let moving = ground.pieces().iter().filter(|p| !p.stays_still());
@@ -416,7 +387,9 @@ mod tests {
                     _ => (w * s + phase).sin() * (w * s / (2.0 * n)).sin().powi(2),
                 }
             };
-            let ground = GroundMotion::pulse_along(pulse, Vector2::x(), t, 0.0, train).unwrap();
+            let ground = PulseShape::new(pulse, t, 0.0, train)
+                .and_then(|shape| shape.motion(Vector2::x()))
+                .unwrap();
             let ours = |part: f64| acceleration_at(&ground, part * length);
             let strongest = (1..50)
                 .map(|i| f64::from(i) / 50.0)

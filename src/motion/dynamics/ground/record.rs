@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::GroundMotion;
-use super::error::{self, GroundError};
+use super::error::{ACCELERATION_M_S2, CLOCK_S, GroundError, TIME_S};
+use super::motion::GroundMotion;
 use super::piece::Formula;
 use crate::argument::within;
 
@@ -50,7 +50,7 @@ impl GroundMotion {
         vertical: &[(f64, f64)],
         start_s: f64,
     ) -> Result<Self, GroundError> {
-        error::time_s("start_s", start_s)?;
+        within("start_s", start_s, TIME_S)?;
         // Of two empty components, the error names the first.
         if !horizontal.is_empty() || vertical.is_empty() {
             check("horizontal", horizontal)?;
@@ -62,12 +62,11 @@ impl GroundMotion {
             .into_iter()
             .filter_map(|samples| Some(samples.first()?.0))
             .fold(f64::INFINITY, f64::min);
-        error::time_s("start_s + first time", start_s + first_s)?;
+        within("start_s + first time", start_s + first_s, TIME_S)?;
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
-    /// The same for samples that are known to be in bounds; where the acceleration jumps, two samples have the same
-    /// time.
+    /// Recorded motion from samples that are known to be in bounds. Where the acceleration jumps, two samples share a time.
     pub fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
@@ -91,31 +90,22 @@ impl GroundMotion {
 /// Checks that samples can be joined by lines.
 fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundError> {
     if samples.len() < 2 {
-        return Err(GroundError::TooFewSamples {
-            argument,
-            count: samples.len(),
-        });
+        let count = samples.len();
+        return Err(GroundError(format!(
+            "`{argument}` has too few samples ({count}): it must have at least 2"
+        )));
     }
     let mut before_s = f64::NEG_INFINITY;
-    for (index, &(time_s, acceleration_m_s2)) in samples.iter().enumerate() {
-        error::clock_s("time_s", time_s)
-            .and(error::acceleration_m_s2(
-                "acceleration_m_s2",
-                acceleration_m_s2,
-            ))
-            .map_err(|fault| GroundError::Sample {
-                argument,
-                index,
-                fault,
-            })?;
+    for (index, &(time_s, acceleration)) in samples.iter().enumerate() {
+        let sample = format_args!("sample {index} of `{argument}`");
+        within("time_s", time_s, CLOCK_S)
+            .and(within("acceleration_m_s2", acceleration, ACCELERATION_M_S2))
+            .map_err(|fault| GroundError(format!("{sample}: {fault}")))?;
         // Times that are multiples of a step may round to a hair less than a step apart.
         if time_s - before_s < 0.999 * MIN_STEP_S {
-            return Err(GroundError::Order {
-                argument,
-                index,
-                time_s,
-                before_s,
-            });
+            return Err(GroundError(format!(
+                "{sample} is at {time_s:?} s and the one before at {before_s:?} s: times must rise by at least 1e-8 s"
+            )));
         }
         before_s = time_s;
     }

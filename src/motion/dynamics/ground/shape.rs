@@ -2,19 +2,36 @@
 
 use std::f64::consts::PI;
 
-use super::WaveTrain;
 use crate::bisection::{Width, bisect, middle};
+
+/// Parameters of the pulses that are an oscillation under an envelope.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WaveTrain {
+    /// Length of the envelope in periods of the oscillation, 1 to 1000: `gamma`, or the number of cycles.
+    pub cycles: f64,
+    /// Phase of the oscillation, at most 1000 in magnitude.
+    pub phase_rad: f64,
+}
+
+impl Default for WaveTrain {
+    fn default() -> Self {
+        Self {
+            cycles: 2.0,
+            phase_rad: 0.0,
+        }
+    }
+}
 
 /// `amplitude sin(frequency s + phase)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Sine {
+pub struct Sine {
     pub(super) amplitude: f64,
     pub(super) frequency_rad_s: f64,
     pub(super) phase_rad: f64,
 }
 
 impl Sine {
-    pub(super) fn at(&self, since_s: f64) -> (f64, f64) {
+    pub fn at(&self, since_s: f64) -> (f64, f64) {
         let (sin, cos) = (self.frequency_rad_s * since_s + self.phase_rad).sin_cos();
         (
             self.amplitude * sin,
@@ -46,7 +63,7 @@ const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
 
 /// A smooth function of the time since the start of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Shape {
+pub enum Shape {
     Sine(Sine),
     /// A sum of sines: an oscillation under a cosine-shaped envelope.
     Beat([Sine; 3]),
@@ -65,7 +82,7 @@ pub(super) enum Shape {
 
 impl Shape {
     /// Value and rate of change.
-    pub(super) fn at(&self, since_s: f64) -> (f64, f64) {
+    pub fn at(&self, since_s: f64) -> (f64, f64) {
         match *self {
             Self::Sine(sine) => sine.at(since_s),
             Self::Beat(sines) => sines
@@ -110,7 +127,7 @@ impl Shape {
     }
 
     /// Integral over a piece, or over a part of it.
-    pub(super) fn integral(&self, from_s: f64, to_s: f64) -> f64 {
+    pub fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         match *self {
             Self::Sine(sine) => sine.integral(from_s, to_s),
             Self::Beat(sines) => sines.iter().map(|sine| sine.integral(from_s, to_s)).sum(),
@@ -151,7 +168,7 @@ impl Shape {
     }
 
     /// The times at which a wave train of the given length and period has its extrema.
-    pub(super) fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
+    pub fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
         // The rate of change up to a positive factor, and a bound of the slope of this function.
         let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
             Self::Beat(sines) => {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::GroundMotion;
+use super::motion::GroundMotion;
 use crate::mechanics::blocks::Row;
 
 /// Velocity of the ground, which starts from rest at [`GroundMotion::start_s`].
@@ -57,6 +57,19 @@ impl<'a> GroundVelocity<'a> {
     }
 }
 
+impl GroundMotion {
+    /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m, at these times, which
+    /// ascend from the start on; zero where both move alike.
+    #[must_use]
+    pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
+        let Some(right) = self.right_foot() else {
+            return vec![Vector2::zeros(); times_s.len()];
+        };
+        let mut feet = FeetApart::between([self, right]);
+        times_s.iter().map(|time_s| feet.at(*time_s)).collect()
+    }
+}
+
 /// The way of the ground from its start on.
 #[derive(Clone, Debug)]
 struct Way<'a> {
@@ -84,7 +97,7 @@ impl<'a> Way<'a> {
         self.at_m
     }
 
-    /// The same without going there, and the piece in which that is.
+    /// Where the ground will be at a time, and the piece of that time.
     fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = self.velocity.ground.pieces();
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
@@ -108,7 +121,7 @@ impl<'a> Way<'a> {
 #[derive(Clone, Debug)]
 pub(in crate::dynamics) struct FeetApart<'a> {
     ways: [Way<'a>; 2],
-    /// From when on the feet stay as far apart as they are.
+    /// When the feet stop moving apart, in seconds.
     end_s: f64,
 }
 
@@ -120,7 +133,7 @@ impl<'a> FeetApart<'a> {
     }
 
     /// Between feet that move like this, the left and the right one.
-    pub(super) fn between(feet: [&'a GroundMotion; 2]) -> Self {
+    fn between(feet: [&'a GroundMotion; 2]) -> Self {
         Self {
             ways: feet.map(|ground| Way::new(GroundVelocity::new(ground))),
             end_s: feet
@@ -137,7 +150,7 @@ impl<'a> FeetApart<'a> {
         right.to(time_s) - left.to(time_s)
     }
 
-    /// The same without going there.
+    /// How far apart the feet will be at a time, in m.
     pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
         let [left_m, right_m] = self.ways.each_ref().map(|way| way.ahead(time_s).1);
@@ -157,7 +170,7 @@ impl<'a> FeetApart<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::ground::{Pulse, WaveTrain};
+    use crate::dynamics::ground::{Pulse, PulseShape, WaveTrain};
 
     /// Simpson's rule on fine parts that respect the corners errs by the fourth power of their length, below
     /// 1e-11.
@@ -167,7 +180,9 @@ mod tests {
         for pulse in Pulse::ALL {
             for (cycles, phase_rad) in [(2.0, 0.0), (1.7, 0.4), (3.5, -2.0)] {
                 let train = WaveTrain { cycles, phase_rad };
-                let ground = GroundMotion::pulse_along(*pulse, amplitude, 0.3, 0.1, train).unwrap();
+                let ground = PulseShape::new(*pulse, 0.3, 0.1, train)
+                    .and_then(|shape| shape.motion(amplitude))
+                    .unwrap();
                 let exact = GroundVelocity::new(&ground);
                 let (mut velocity, n) = (Vector2::zeros(), 400);
                 for piece in ground.pieces().iter().filter(|p| p.end_s.is_finite()) {
@@ -212,7 +227,7 @@ mod tests {
         // -1/2 * 1/2 and -3/2 * 1/2.
         assert!((velocity.at(1.25).x + 0.25).abs() < 1e-15);
         assert!((velocity.at(9.0).x + 0.625).abs() < 1e-15);
-        let cut = ground.cut_at(&[0.9, 1.4]).unwrap();
+        let cut = ground.cut_at(&[0.9, 1.4]);
         let miss = GroundVelocity::new(&cut).at(1.6) - velocity.at(1.6);
         assert!(miss.norm() < 1e-15);
     }

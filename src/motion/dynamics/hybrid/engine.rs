@@ -21,6 +21,31 @@ pub struct GuardValue {
     pub rate: f64,
 }
 
+/// A system at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<M, const N: usize> {
+    /// Time, in seconds.
+    pub time_s: f64,
+    /// Piece of the forcing.
+    pub piece: usize,
+    /// Discrete state.
+    pub mode: M,
+    /// Continuous state.
+    pub state: State<N>,
+}
+
+impl<M: Copy, const N: usize> Moment<M, N> {
+    /// Another instant in the same mode, on the same piece.
+    #[must_use]
+    pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
+        Self {
+            time_s,
+            state: *state,
+            ..*self
+        }
+    }
+}
+
 /// A system that moves smoothly in modes and jumps between them.
 ///
 /// The forcing is cut into consecutive pieces, starting at time zero, within which it is smooth.
@@ -40,55 +65,28 @@ pub trait HybridSystem<const N: usize> {
     fn is_still(&self, mode: Self::Mode) -> bool;
 
     /// Rate of change of the state, per second. Called with times in the piece, its ends included.
-    fn slope(&self, mode: Self::Mode, piece: usize, time_s: f64, state: &State<N>) -> State<N>;
+    fn slope(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
     /// State within a step, at least as exact as the step's ends.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Magnitudes of the state's components in the motion to come, to which tolerances refer.
-    fn scale(&self, mode: Self::Mode, state: &State<N>) -> State<N>;
+    fn scale(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
     /// A good first step from here in seconds, and the longest one that the search for guards allows.
-    fn step_sizes_s(
-        &self,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &State<N>,
-        relative_tolerance: f64,
-    ) -> (f64, f64);
+    fn step_sizes_s(&self, now: &Moment<Self::Mode, N>, relative_tolerance: f64) -> (f64, f64);
 
     /// The guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
     /// Value of a guard, which fires when it falls below zero.
-    fn guard_value(
-        &self,
-        guard: Self::Guard,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &State<N>,
-    ) -> GuardValue;
+    fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> GuardValue;
 
     /// The guard that has already fired when a piece begins or a mode is entered, if any.
-    fn fired_at_once(
-        &self,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &State<N>,
-    ) -> Option<Self::Guard>;
+    fn fired_at_once(&self, now: &Moment<Self::Mode, N>) -> Option<Self::Guard>;
 
     /// Mode and state after the event of a guard.
-    fn reset(
-        &self,
-        guard: Self::Guard,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &State<N>,
-    ) -> (Self::Mode, State<N>);
+    fn reset(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (Self::Mode, State<N>);
 }
 
 /// An event: a guard that fired and what it did.
@@ -110,44 +108,14 @@ pub struct Transition<M, G, const N: usize> {
 
 /// Listener to a simulation. Steps and transitions come in the order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
-    /// A stretch of motion without event.
-    fn step(
-        &mut self,
-        _system: &S,
-        _mode: S::Mode,
-        _piece: usize,
-        _step: &Step<N>,
-    ) -> ControlFlow<()> {
+    /// A stretch of motion without event, in the mode and on the piece of its beginning.
+    fn step(&mut self, _: &S, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
     /// An event.
-    fn transition(
-        &mut self,
-        _system: &S,
-        _piece: usize,
-        _transition: &Transition<S::Mode, S::Guard, N>,
-    ) -> ControlFlow<()> {
+    fn transition(&mut self, _: &S, _: &Transition<S::Mode, S::Guard, N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
-    }
-}
-
-impl<S: HybridSystem<N>, A: Observer<S, N>, B: Observer<S, N>, const N: usize> Observer<S, N>
-    for (&mut A, &mut B)
-{
-    fn step(&mut self, system: &S, mode: S::Mode, piece: usize, step: &Step<N>) -> ControlFlow<()> {
-        self.0.step(system, mode, piece, step)?;
-        self.1.step(system, mode, piece, step)
-    }
-
-    fn transition(
-        &mut self,
-        system: &S,
-        piece: usize,
-        transition: &Transition<S::Mode, S::Guard, N>,
-    ) -> ControlFlow<()> {
-        self.0.transition(system, piece, transition)?;
-        self.1.transition(system, piece, transition)
     }
 }
 
@@ -162,15 +130,11 @@ pub struct Settings {
     pub max_transitions: usize,
 }
 
-/// Final state and cost of a simulation.
+/// The end of a simulation, and its cost.
 #[derive(Clone, Copy, Debug)]
 pub struct Finish<M, const N: usize> {
-    /// When it ended, in seconds: at the last transition, at the end asked for, or where an observer broke.
-    pub time_s: f64,
-    /// Last mode.
-    pub mode: M,
-    /// Last state.
-    pub state: State<N>,
+    /// The last transition, the end of the simulation, or where an observer broke.
+    pub now: Moment<M, N>,
     /// Whether an observer broke.
     pub stopped: bool,
     /// Work done.
@@ -213,157 +177,118 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     settings: &Settings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
-    let mut now = Finish {
-        time_s: 0.0,
-        mode,
-        state,
+    let mut finish = Finish {
+        now: Moment {
+            time_s: 0.0,
+            piece: 0,
+            mode,
+            state,
+        },
         stopped: false,
         cost: Cost::default(),
     };
-    let mut piece = 0;
     let mut transitions = 0;
-    loop {
-        while now.time_s >= system.piece_end_s(piece) {
-            piece += 1;
+    while !finish.stopped {
+        let now = &mut finish.now;
+        while now.time_s >= system.piece_end_s(now.piece) {
+            now.piece += 1;
         }
-        if now.time_s >= settings.end_s || system.is_over(now.mode, piece) {
-            return Ok(now);
+        if now.time_s >= settings.end_s || system.is_over(now.mode, now.piece) {
+            break;
         }
-        let at_once = system.fired_at_once(now.mode, piece, now.time_s, &now.state);
-        let advanced = match at_once {
-            Some(guard) => Advanced::Fired(guard),
-            None => advance(system, piece, &mut now, settings, observer)?,
+        let fired = match system.fired_at_once(now) {
+            Some(guard) => Some(guard),
+            None => advance(system, &mut finish, settings, observer)?,
         };
-        if let Advanced::Stopped = advanced {
-            now.stopped = true;
-            return Ok(now);
-        }
-        if let Advanced::Fired(guard) = advanced {
-            transitions += 1;
-            if transitions > settings.max_transitions {
-                return Err(EngineError::TooManyTransitions {
-                    time_s: now.time_s,
-                    max_transitions: settings.max_transitions,
-                });
-            }
-            let (to, after) = system.reset(guard, now.mode, piece, now.time_s, &now.state);
-            let transition = Transition {
+        let Some(guard) = fired.filter(|_| !finish.stopped) else {
+            continue;
+        };
+        let now = &mut finish.now;
+        transitions += 1;
+        if transitions > settings.max_transitions {
+            return Err(EngineError::TooManyTransitions {
                 time_s: now.time_s,
-                guard,
-                from: now.mode,
-                to,
-                before: now.state,
-                after,
-            };
-            (now.mode, now.state) = (to, after);
-            if observer.transition(system, piece, &transition).is_break() {
-                now.stopped = true;
-                return Ok(now);
-            }
+                max_transitions: settings.max_transitions,
+            });
         }
+        let (to, after) = system.reset(guard, now);
+        let transition = Transition {
+            time_s: now.time_s,
+            guard,
+            from: now.mode,
+            to,
+            before: now.state,
+            after,
+        };
+        (now.mode, now.state) = (to, after);
+        finish.stopped = observer.transition(system, &transition).is_break();
     }
+    Ok(finish)
 }
 
-/// How far a motion went.
-enum Advanced<G> {
-    /// To the end of the piece.
-    Smoothly,
-    /// To an event.
-    Fired(G),
-    /// To where the observer broke.
-    Stopped,
-}
-
-impl<G> Advanced<G> {
-    fn after(flow: ControlFlow<()>, fired: Option<G>) -> Self {
-        match (flow, fired) {
-            (ControlFlow::Break(()), _) => Self::Stopped,
-            (_, Some(guard)) => Self::Fired(guard),
-            (_, None) => Self::Smoothly,
-        }
-    }
-}
-
-/// Moves on to the next event or to the end of the piece.
+/// Moves on to the next event, which it returns, to the end of the piece, or to where the observer breaks.
 fn advance<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    piece: usize,
-    now: &mut Finish<S::Mode, N>,
+    finish: &mut Finish<S::Mode, N>,
     settings: &Settings,
     observer: &mut impl Observer<S, N>,
-) -> Result<Advanced<S::Guard>, EngineError> {
-    let end_s = system.piece_end_s(piece).min(settings.end_s);
-    let mode = now.mode;
-    if system.is_still(mode) {
+) -> Result<Option<S::Guard>, EngineError> {
+    let from = finish.now;
+    let end_s = system.piece_end_s(from.piece).min(settings.end_s);
+    if system.is_still(from.mode) {
         let mut step = Step {
-            start_s: now.time_s,
+            start_s: from.time_s,
             end_s,
-            start: now.state,
-            end: now.state,
+            start: from.state,
+            end: from.state,
             start_slope: State::zeros(),
             end_slope: State::zeros(),
         };
-        let event = first_event(system, mode, piece, &step);
-        if let Some((_, time_s)) = event {
-            step.end_s = time_s;
-        }
-        now.time_s = step.end_s;
-        let flow = observer.step(system, mode, piece, &step);
-        return Ok(Advanced::after(flow, event.map(|(guard, _)| guard)));
+        let event = first_event(system, &from, &step);
+        step.end_s = event.map_or(end_s, |(_, time_s)| time_s);
+        finish.now.time_s = step.end_s;
+        finish.stopped = observer.step(system, &from, &step).is_break();
+        return Ok(event.map(|(guard, _)| guard));
     }
-
-    let slope = |time_s: f64, state: &State<N>| system.slope(mode, piece, time_s, state);
-    let (first_step_s, longest_step_s) = system.step_sizes_s(
-        mode,
-        piece,
-        now.time_s,
-        &now.state,
-        settings.relative_tolerance,
-    );
+    let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
+    let (first_step_s, longest_step_s) = system.step_sizes_s(&from, settings.relative_tolerance);
     let task = Task {
-        start_s: now.time_s,
+        start_s: from.time_s,
         end_s,
-        start: now.state,
-        start_slope: slope(now.time_s, &now.state),
-        scale: system.scale(mode, &now.state),
+        start: from.state,
+        start_slope: system.slope(&from),
+        scale: system.scale(&from),
         relative_tolerance: settings.relative_tolerance,
         first_step_s,
         longest_step_s,
     };
-    now.cost.evaluations += 1;
+    finish.cost.evaluations += 1;
     let mut event = None;
     let mut stopped_s = None;
-    let watch = |step: &Step<N>| match first_event(system, mode, piece, step) {
+    let watch = |step: &Step<N>| match first_event(system, &from, step) {
         Some((guard, time_s)) => {
             event = Some((guard, time_s, *step));
             ControlFlow::Break(())
         }
         None => {
-            let flow = observer.step(system, mode, piece, step);
+            let flow = observer.step(system, &from, step);
             if flow.is_break() {
                 stopped_s = Some(step.end_s);
             }
             flow
         }
     };
-    let last = integrate(&task, slope, watch, &mut now.cost)?;
+    let last = integrate(&task, slope, watch, &mut finish.cost)?;
     let Some((guard, time_s, step)) = event else {
-        (now.time_s, now.state) = (stopped_s.unwrap_or(end_s), last);
-        return Ok(stopped_s.map_or(Advanced::Smoothly, |_| Advanced::Stopped));
+        finish.now = from.at(stopped_s.unwrap_or(end_s), &last);
+        finish.stopped = stopped_s.is_some();
+        return Ok(None);
     };
-    let landed = land(
-        system,
-        mode,
-        piece,
-        &task,
-        guard,
-        time_s,
-        &step,
-        &mut now.cost,
-    )?;
-    (now.time_s, now.state) = (landed.end_s, landed.end);
-    let flow = observer.step(system, mode, piece, &landed);
-    Ok(Advanced::after(flow, Some(guard)))
+    let cost = &mut finish.cost;
+    let landed = land(system, &from, &task, guard, time_s, &step, cost)?;
+    finish.now = from.at(landed.end_s, &landed.end);
+    finish.stopped = observer.step(system, &from, &landed).is_break();
+    Ok(Some(guard))
 }
 
 /// The step again, cut off where the guard fires.
@@ -372,14 +297,9 @@ fn advance<S: HybridSystem<N>, const N: usize>(
 /// integrating up to there gives the state as accurately as any other step, and a last step along the tangent
 /// brings the guard to zero. It is so short (`d`, about 1e-10 of the step) that its curvature, of order `d^2`,
 /// is below rounding.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the pieces of one call of `advance`"
-)]
 fn land<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    mode: S::Mode,
-    piece: usize,
+    from: &Moment<S::Mode, N>,
     task: &Task<N>,
     guard: S::Guard,
     time_s: f64,
@@ -392,7 +312,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
         end: system.between(step, time_s),
         ..*step
     };
-    let slope = |time_s: f64, state: &State<N>| system.slope(mode, piece, time_s, state);
+    let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
     let near_end = step.end_s - time_s < INTERPOLATED * span_s;
     // The solver needs a step that changes the time in its last digits.
     if near_end || span_s <= 4.0 * f64::EPSILON * time_s {
@@ -414,7 +334,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
         ControlFlow::Continue(())
     };
     integrate(&again, slope, watch, cost)?;
-    let guard = system.guard_value(guard, mode, piece, time_s, &landed.end);
+    let guard = system.guard_value(guard, &from.at(time_s, &landed.end));
     let rest_s = -guard.value / guard.rate;
     if rest_s.abs() < CLOSED_BY_TANGENT * span_s {
         landed.end_s += rest_s;
@@ -440,15 +360,14 @@ struct Point {
 /// The first guard to fire within a step, and when.
 fn first_event<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    mode: S::Mode,
-    piece: usize,
+    from: &Moment<S::Mode, N>,
     step: &Step<N>,
 ) -> Option<(S::Guard, f64)> {
     let mut first: Option<(S::Guard, f64)> = None;
-    for guard in system.guards(mode) {
+    for guard in system.guards(from.mode) {
         let point = |time_s: f64, state: &State<N>| Point {
             time_s,
-            guard: system.guard_value(*guard, mode, piece, time_s, state),
+            guard: system.guard_value(*guard, &from.at(time_s, state)),
         };
         let (start, end) = (
             point(step.start_s, &step.start),

@@ -4,7 +4,7 @@
 use std::ops::ControlFlow;
 
 use super::engine::{EngineError, Observer, Settings, Transition, simulate};
-use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::rocking::{Guard, Mode, Phase, Rocking, RockingState};
 use crate::mechanics::chain::MechanismChain;
 use crate::mechanics::sway::Sway;
 
@@ -21,16 +21,16 @@ pub fn overturns<C: MechanismChain>(
     relative_tolerance: f64,
 ) -> Result<Option<Sway>, EngineError> {
     let settings = Settings {
-        end_s: rocking.ground().end_s() + AFTER_S,
+        end_s: rocking.ground.end_s() + AFTER_S,
         relative_tolerance,
         // Uplift, and the event that ends the first fall.
         max_transitions: 2,
     };
     let state = RockingState::zeros();
-    let finish = simulate(rocking, Mode::Rest, state, &settings, &mut FirstFall)?;
-    Ok(match finish.mode {
-        Mode::Overturned { sway, .. } => Some(sway),
-        Mode::Rest | Mode::Rocking { .. } => None,
+    let finish = simulate(rocking, Phase::Rest, state, &settings, &mut FirstFall)?;
+    Ok(match finish.now.mode {
+        Phase::Overturned(swing) => Some(swing.sway),
+        Phase::Rest | Phase::Rocking(_) => None,
     })
 }
 
@@ -41,7 +41,6 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for FirstFall {
     fn transition(
         &mut self,
         _: &Rocking<'a, C>,
-        _: usize,
         transition: &Transition<Mode<'a, C::Mechanism>, Guard, 3>,
     ) -> ControlFlow<()> {
         match transition.guard {

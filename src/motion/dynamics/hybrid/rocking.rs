@@ -10,57 +10,58 @@
 
 use nalgebra::Vector2;
 
-use super::engine::{GuardValue, HybridSystem};
+use super::engine::{self, GuardValue, HybridSystem};
 use super::integrator::{State, Step};
 use crate::dynamics::ground::{GroundMotion, Piece};
-use crate::dynamics::history::State as Doing;
 use crate::mechanics::chain::{Coefficients, Demand, Link, Mechanism, MechanismChain, Motion};
 use crate::mechanics::sway::Sway;
 
 /// Discrete state of a rocking structure.
-#[derive(Debug)]
-pub enum Mode<'a, M> {
+pub type Mode<'a, M> = Phase<Swing<'a, M>>;
+
+/// A rocking structure at an instant.
+pub type Moment<'a, M> = engine::Moment<Mode<'a, M>, 3>;
+
+/// A phase of the motion.
+#[derive(Clone, Copy, Debug)]
+pub enum Phase<S> {
     /// Undeformed, carried by the ground.
     Rest,
     /// One mechanism moves.
-    Rocking {
-        /// To which side.
-        sway: Sway,
-        /// Impacts since it last left rest: the index of the link.
-        impacts: usize,
-        /// The mechanism.
-        link: &'a Link<M>,
-    },
+    Rocking(S),
     /// Overturned.
-    Overturned {
-        /// To which side.
-        sway: Sway,
-        /// Impacts since it last left rest.
-        impacts: usize,
-        /// The mechanism.
-        link: &'a Link<M>,
-    },
+    Overturned(S),
 }
 
-impl<M> Mode<'_, M> {
-    /// What the structure is doing.
-    #[must_use]
-    pub const fn state(&self) -> Doing {
-        match self {
-            Self::Rest => Doing::Rest,
-            Self::Rocking { sway, .. } => Doing::Rocking(*sway),
-            Self::Overturned { sway, .. } => Doing::Overturned(*sway),
-        }
-    }
+/// A mechanism that moves.
+#[derive(Debug)]
+pub struct Swing<'a, M> {
+    /// To which side.
+    pub sway: Sway,
+    /// Impacts since it last left rest: the index of the link.
+    pub impacts: usize,
+    /// The mechanism.
+    pub link: &'a Link<M>,
 }
 
 // Not derived, because that would require the mechanism to be `Clone`.
-impl<M> Clone for Mode<'_, M> {
+impl<M> Clone for Swing<'_, M> {
     fn clone(&self) -> Self {
         *self
     }
 }
-impl<M> Copy for Mode<'_, M> {}
+impl<M> Copy for Swing<'_, M> {}
+
+impl<S: Copy> Phase<S> {
+    /// The mechanism that moves or moved; `None` at rest.
+    #[must_use]
+    pub const fn swing(self) -> Option<S> {
+        match self {
+            Self::Rest => None,
+            Self::Rocking(swing) | Self::Overturned(swing) => Some(swing),
+        }
+    }
+}
 
 /// Events of a rocking structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,11 +91,15 @@ const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 /// A structure on moving ground.
 #[derive(Debug)]
 pub struct Rocking<'a, C: MechanismChain> {
-    chain: &'a C,
-    ground: &'a GroundMotion,
+    /// The mechanisms of the structure.
+    pub chain: &'a C,
+    /// The ground motion.
+    pub ground: &'a GroundMotion,
     gravity_m_s2: f64,
     rest_energy_ratio: f64,
-    barrier: f64,
+    /// Energy that the first mechanism has to gain to overturn under gravity alone, on the weaker side. Energies are in the
+    /// structure's unit of mass times the square of its unit of length, per s2.
+    pub barrier: f64,
     /// Horizontal acceleration that lifts the structure off to the right and to the left, in units of gravity.
     uplift_g: [f64; 2],
 }
@@ -131,54 +136,30 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         rocking
     }
 
-    /// The mechanisms of the structure.
-    #[must_use]
-    pub const fn chain(&self) -> &'a C {
-        self.chain
-    }
-
-    /// The ground motion.
-    #[must_use]
-    pub const fn ground(&self) -> &'a GroundMotion {
-        self.ground
-    }
-
-    /// Energy that the first mechanism has to gain to overturn under gravity alone, on the weaker side. Energies are in the
-    /// structure's unit of mass times the square of its unit of length, per s2.
-    #[must_use]
-    pub const fn barrier(&self) -> f64 {
-        self.barrier
-    }
-
     /// Energy that a mechanism has to gain to overturn under gravity alone.
     #[must_use]
     pub fn barrier_of(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
-    /// Potential energy of a mechanism at `q`.
-    #[must_use]
-    pub fn potential(&self, link: &Link<C::Mechanism>, q_rad: f64) -> f64 {
-        self.gravity_m_s2 / self.chain.length_m() * link.mechanism.displacement(q_rad).y
-    }
-
     /// Kinetic and potential energy of a mechanism.
     #[must_use]
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
-        kinetic + self.potential(link, state[0])
+        let rise = link.mechanism.displacement(state[0]).y;
+        kinetic + self.gravity_m_s2 / self.chain.length_m() * rise
     }
 
     /// The mode of a structure released on one side.
     #[must_use]
     pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
-        self.chain
-            .link_from(sway, 0)
-            .map_or(Mode::Rest, |link| Mode::Rocking {
-                sway,
-                impacts: 0,
-                link,
-            })
+        let link = self.chain.link_from(sway, 0);
+        let swing = |link| Swing {
+            sway,
+            impacts: 0,
+            link,
+        };
+        link.map_or(Phase::Rest, |link| Phase::Rocking(swing(link)))
     }
 
     fn piece(&self, piece: usize) -> &'a Piece {
@@ -186,8 +167,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Ground acceleration in the frame of a mechanism with this sway.
-    fn ground_m_s2(&self, sway: Sway, piece: usize, time_s: f64) -> Vector2<f64> {
-        let mut ground_m_s2 = self.piece(piece).at(time_s).0;
+    fn ground_m_s2(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
+        let mut ground_m_s2 = self.piece(now.piece).at(now.time_s).0;
         ground_m_s2.x *= sway.sign();
         ground_m_s2
     }
@@ -209,76 +190,51 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Thrust excess and friction demand.
     #[must_use]
-    pub fn demand(
-        &self,
-        mode: Mode<'a, C::Mechanism>,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> Demand {
-        match self.in_motion(mode, piece, time_s, state) {
+    pub fn demand(&self, now: &Moment<'a, C::Mechanism>) -> Demand {
+        match now.mode.swing() {
             None => self
                 .chain
-                .demand_at_rest(self.body_force_g(Sway::Right, piece, time_s)),
-            Some((_, mechanism, motion)) => self.chain.demand(mechanism, &motion),
+                .demand_at_rest(self.body_force_g(Sway::Right, now)),
+            Some(swing) => self
+                .chain
+                .demand(&swing.link.mechanism, &self.motion(swing, now)),
         }
     }
 
     /// The line of thrust over the sections from left to right: see
     /// [`MechanismChain::eccentricity_ratios`].
     #[must_use]
-    pub fn eccentricity_ratios(
-        &self,
-        mode: Mode<'a, C::Mechanism>,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> Vec<Option<f64>> {
-        match self.in_motion(mode, piece, time_s, state) {
-            None => {
-                let body_force_g = self.body_force_g(Sway::Right, piece, time_s);
-                self.chain.eccentricity_ratios_at_rest(body_force_g)
-            }
-            Some((sway, mechanism, motion)) => {
-                let ratios = self.chain.eccentricity_ratios(mechanism, &motion);
-                match sway {
-                    Sway::Right => ratios,
-                    Sway::Left => self.chain.mirrored(ratios),
-                }
-            }
+    pub fn eccentricity_ratios(&self, now: &Moment<'a, C::Mechanism>) -> Vec<Option<f64>> {
+        let Some(swing) = now.mode.swing() else {
+            let body_force_g = self.body_force_g(Sway::Right, now);
+            return self.chain.eccentricity_ratios_at_rest(body_force_g);
+        };
+        let motion = self.motion(swing, now);
+        let ratios = (self.chain).eccentricity_ratios(&swing.link.mechanism, &motion);
+        match swing.sway {
+            Sway::Right => ratios,
+            Sway::Left => self.chain.mirrored(ratios),
         }
     }
 
     /// Gravity less the acceleration of the ground in the frame of a mechanism with this sway, in g.
-    fn body_force_g(&self, sway: Sway, piece: usize, time_s: f64) -> Vector2<f64> {
-        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
-        -ground_m_s2 / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
+    fn body_force_g(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
+        -self.ground_m_s2(sway, now) / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
     }
 
-    /// The mechanism that moves, its sway and its motion; `None` at rest.
-    fn in_motion(
-        &self,
-        mode: Mode<'a, C::Mechanism>,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> Option<(Sway, &'a C::Mechanism, Motion)> {
-        let (sway, link) = match mode {
-            Mode::Rest => return None,
-            Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } => (sway, link),
-        };
-        let (q_rad, rate) = (state[0], state[1]);
-        let coefficients = link.mechanism.coefficients(q_rad);
-        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
+    /// The motion of a mechanism.
+    fn motion(&self, swing: Swing<'a, C::Mechanism>, now: &Moment<'a, C::Mechanism>) -> Motion {
+        let (q_rad, rate) = (now.state[0], now.state[1]);
+        let coefficients = swing.link.mechanism.coefficients(q_rad);
+        let ground_m_s2 = self.ground_m_s2(swing.sway, now);
         let acceleration = self.acceleration(&coefficients, rate, ground_m_s2);
         let square_s2 = self.chain.length_m() / self.gravity_m_s2;
-        let motion = Motion {
+        Motion {
             q_rad,
             rate: rate * square_s2.sqrt(),
             acceleration: acceleration * square_s2,
-            body_force_g: self.body_force_g(sway, piece, time_s),
-        };
-        Some((sway, &link.mechanism, motion))
+            body_force_g: self.body_force_g(swing.sway, now),
+        }
     }
 
     /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
@@ -318,28 +274,22 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
 
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool {
         match mode {
-            Mode::Rest => self.piece(piece).stays_still(),
-            Mode::Rocking { .. } => false,
-            Mode::Overturned { .. } => true,
+            Phase::Rest => self.piece(piece).stays_still(),
+            Phase::Rocking(_) => false,
+            Phase::Overturned(_) => true,
         }
     }
 
     fn is_still(&self, mode: Self::Mode) -> bool {
-        !matches!(mode, Mode::Rocking { .. })
+        !matches!(mode, Phase::Rocking(_))
     }
 
-    fn slope(
-        &self,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> RockingState {
-        let Mode::Rocking { sway, link, .. } = mode else {
+    fn slope(&self, now: &Moment<'a, C::Mechanism>) -> RockingState {
+        let Phase::Rocking(Swing { sway, link, .. }) = now.mode else {
             return RockingState::zeros();
         };
-        let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
-        let (q, rate) = (state[0], state[1]);
+        let ground_m_s2 = self.ground_m_s2(sway, now);
+        let (q, rate) = (now.state[0], now.state[1]);
         let coefficients = link.mechanism.coefficients(q);
         let push = ground_m_s2.x * coefficients.s_x + ground_m_s2.y * coefficients.s_y;
         let work = -push * rate / self.chain.length_m();
@@ -381,33 +331,26 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         RockingState::new(coordinate, slope / span, work)
     }
 
-    fn scale(&self, mode: Self::Mode, state: &RockingState) -> RockingState {
-        let Mode::Rocking { link, .. } = mode else {
+    fn scale(&self, now: &Moment<'a, C::Mechanism>) -> RockingState {
+        let Phase::Rocking(Swing { link, .. }) = now.mode else {
             return RockingState::repeat(1.0);
         };
-        let (reach_rad, rate_rad_s) = self.reach(link, state);
+        let (reach_rad, rate_rad_s) = self.reach(link, &now.state);
         let energy = 0.5 * link.at_zero.inertia * rate_rad_s * rate_rad_s;
         RockingState::new(reach_rad, rate_rad_s, energy)
     }
 
-    fn step_sizes_s(
-        &self,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-        relative_tolerance: f64,
-    ) -> (f64, f64) {
-        let Mode::Rocking { link, .. } = mode else {
+    fn step_sizes_s(&self, now: &Moment<'a, C::Mechanism>, relative_tolerance: f64) -> (f64, f64) {
+        let Phase::Rocking(Swing { link, .. }) = now.mode else {
             return (f64::INFINITY, f64::INFINITY);
         };
         let fall_s = self.fall_s(link);
-        let (reach_rad, _) = self.reach(link, state);
+        let (reach_rad, _) = self.reach(link, &now.state);
         let height = reach_rad / link.critical_rad;
         // Time until q is back at zero if the acceleration stayed as it is. As the weight lessens with q,
         // it takes longer by up to two thirds of the height; a step should reach just beyond.
-        let (q, rate) = (state[0], state[1]);
-        let acceleration = self.slope(mode, piece, time_s, state)[1];
+        let (q, rate) = (now.state[0], now.state[1]);
+        let acceleration = self.slope(now)[1];
         let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
         let hop_s = if acceleration < 0.0 && back_s > 0.0 {
             ((1.0 + height) * back_s).min(fall_s)
@@ -420,30 +363,24 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let part = (relative_tolerance / (height * height))
             .powf(1.0 / 6.0)
             .min(1.0);
-        let longest_s = hop_s.min(self.piece(piece).longest_step_s());
+        let longest_s = hop_s.min(self.piece(now.piece).longest_step_s());
         (part * hop_s, longest_s)
     }
 
     fn guards(&self, mode: Self::Mode) -> &'static [Guard] {
         match mode {
-            Mode::Rest => &[Guard::Uplift(Sway::Right), Guard::Uplift(Sway::Left)],
-            Mode::Rocking { .. } => &[Guard::Closing, Guard::Critical, Guard::Limit],
-            Mode::Overturned { .. } => &[],
+            Phase::Rest => &[Guard::Uplift(Sway::Right), Guard::Uplift(Sway::Left)],
+            Phase::Rocking(_) => &[Guard::Closing, Guard::Critical, Guard::Limit],
+            Phase::Overturned(_) => &[],
         }
     }
 
-    fn guard_value(
-        &self,
-        guard: Guard,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> GuardValue {
-        let piece = self.piece(piece);
-        match (guard, mode) {
+    fn guard_value(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> GuardValue {
+        let piece = self.piece(now.piece);
+        let (q, rate) = (now.state[0], now.state[1]);
+        match (guard, now.mode) {
             (Guard::Uplift(sway), _) => {
-                let (acceleration, jerk) = piece.at(time_s);
+                let (acceleration, jerk) = piece.at(now.time_s);
                 let uplift_g = match sway {
                     Sway::Right => self.uplift_g[0],
                     Sway::Left => self.uplift_g[1],
@@ -454,17 +391,14 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                     rate: tilt.dot(&jerk),
                 }
             }
-            (Guard::Closing, _) => GuardValue {
-                value: state[0],
-                rate: state[1],
+            (Guard::Closing, _) => GuardValue { value: q, rate },
+            (Guard::Critical, Phase::Rocking(swing)) if piece.stays_still() => GuardValue {
+                value: swing.link.critical_rad - q,
+                rate: -rate,
             },
-            (Guard::Critical, Mode::Rocking { link, .. }) if piece.stays_still() => GuardValue {
-                value: link.critical_rad - state[0],
-                rate: -state[1],
-            },
-            (Guard::Limit, Mode::Rocking { link, .. }) => GuardValue {
-                value: link.limit_rad - state[0],
-                rate: -state[1],
+            (Guard::Limit, Phase::Rocking(swing)) => GuardValue {
+                value: swing.link.limit_rad - q,
+                rate: -rate,
             },
             (Guard::Critical | Guard::Limit, _) => GuardValue {
                 value: 1.0,
@@ -473,77 +407,52 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn fired_at_once(
-        &self,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> Option<Guard> {
-        match mode {
-            Mode::Rest => self.guards(mode).iter().copied().find(|guard| {
-                let level = self.guard_value(*guard, mode, piece, time_s, state);
-                level.value < 0.0
-            }),
-            Mode::Rocking { link, .. } => {
-                let lost = self.piece(piece).stays_still()
-                    && state[0] >= link.critical_rad
-                    && state[1] >= 0.0;
+    fn fired_at_once(&self, now: &Moment<'a, C::Mechanism>) -> Option<Guard> {
+        match now.mode {
+            Phase::Rest => {
+                let fired = |guard: &Guard| self.guard_value(*guard, now).value < 0.0;
+                self.guards(now.mode).iter().copied().find(fired)
+            }
+            Phase::Rocking(swing) => {
+                let lost = self.piece(now.piece).stays_still()
+                    && now.state[0] >= swing.link.critical_rad
+                    && now.state[1] >= 0.0;
                 lost.then_some(Guard::Critical)
             }
-            Mode::Overturned { .. } => None,
+            Phase::Overturned(_) => None,
         }
     }
 
-    fn reset(
-        &self,
-        guard: Guard,
-        mode: Self::Mode,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> (Self::Mode, RockingState) {
-        let work = state[2];
+    fn reset(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> (Self::Mode, RockingState) {
+        let work = now.state[2];
         let still = RockingState::new(0.0, 0.0, work);
-        match (guard, mode) {
+        match (guard, now.mode) {
             (Guard::Uplift(sway), _) => (self.released(sway), still),
-            (
-                Guard::Critical | Guard::Limit,
-                Mode::Rocking {
-                    sway,
-                    impacts,
-                    link,
-                },
-            ) => {
-                let lost = Mode::Overturned {
-                    sway,
-                    impacts,
-                    link,
-                };
-                (lost, *state)
+            (Guard::Critical | Guard::Limit, Phase::Rocking(swing)) => {
+                (Phase::Overturned(swing), now.state)
             }
-            (Guard::Closing, Mode::Rocking { sway, impacts, .. }) => {
+            (Guard::Closing, Phase::Rocking(Swing { sway, impacts, .. })) => {
                 // The closing rate is negative, except for rounding at the end of a vanishing hop.
-                let closing_rate = (-state[1]).max(0.0);
+                let closing_rate = (-now.state[1]).max(0.0);
                 let Some(link) = self.chain.link_from(sway.before(impacts), impacts + 1) else {
-                    return (Mode::Rest, still);
+                    return (Phase::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;
                 let sway = sway.opposite();
-                let ground_m_s2 = self.ground_m_s2(sway, piece, time_s);
+                let ground_m_s2 = self.ground_m_s2(sway, now);
                 let energy = 0.5 * link.at_zero.inertia * rate * rate;
                 let held_up = self.acceleration(&link.at_zero, rate, ground_m_s2) > 0.0;
                 if energy < self.rest_energy_ratio * self.barrier && !held_up {
-                    return (Mode::Rest, still);
+                    return (Phase::Rest, still);
                 }
-                let mode = Mode::Rocking {
+                let swing = Swing {
                     sway,
                     impacts: impacts + 1,
                     link,
                 };
-                (mode, RockingState::new(0.0, rate, work))
+                (Phase::Rocking(swing), RockingState::new(0.0, rate, work))
             }
-            (_, Mode::Rest | Mode::Overturned { .. }) => (mode, *state),
+            (_, mode @ (Phase::Rest | Phase::Overturned(_))) => (mode, now.state),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Every chain of mechanisms is a model; the hybrid engine computes its histories.
 
+use std::mem;
 use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
@@ -8,18 +9,18 @@ use super::engine::{
     GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
 };
 use super::integrator::{Step, Task, integrate};
-use super::rocking::{Guard, Mode, Rocking, RockingState};
+use super::rocking::{Guard, Mode, Moment, Phase, Rocking, RockingState, Swing};
 use crate::argument::ArgumentError;
 use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{
-    Cost, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
+    Cost, Details, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
 };
-use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError};
+use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError, check};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
-use crate::mechanics::chain::{Demand, Hinge, Link, Mechanism, MechanismChain};
+use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::four_links::FourLinks;
@@ -69,7 +70,7 @@ macro_rules! models {
                 self.hinges(impacts, sway)
             }
 
-            fn critical_rotations_towards_rad(&self, sway: Sway) -> Vec<f64> {
+            fn critical_rotations_rad(&self, sway: Sway) -> Vec<f64> {
                 self.link_from(sway, 0).map_or(Vec::new(), |first| {
                     let rotations = first.mechanism.rotations(first.critical_rad);
                     seen_from_ground::<Self>(sway, rotations, 1.0)
@@ -78,11 +79,11 @@ macro_rules! models {
                 })
             }
 
-            fn limit_towards_rad(&self, sway: Sway) -> f64 {
+            fn limit_rad(&self, sway: Sway) -> f64 {
                 self.link_from(sway, 0).map_or(0.0, |first| first.limit_rad)
             }
 
-            fn equivalent_towards(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
+            fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent> {
                 equivalent_towards(self, sway, gravity_m_s2)
             }
 
@@ -129,53 +130,46 @@ fn history_of<C: MechanismChain + MechanismModel>(
             rocking.released(initial.sway),
             RockingState::new(initial.rotation_rad, 0.0, 0.0),
         ),
-        None => (Mode::Rest, RockingState::zeros()),
+        None => (Phase::Rest, RockingState::zeros()),
     };
     let settings = Settings {
         end_s: request.end_s,
         relative_tolerance: request.relative_tolerance,
         max_transitions: MAX_TRANSITIONS,
     };
-    let mut tally = Tally::new(&rocking, mode, &state);
-    let mut sampler = recorder.map(|recorder| Sampler::new(request.output_step_s, recorder));
-    let finish = simulate(
-        &rocking,
-        mode,
-        state,
-        &settings,
-        &mut (&mut tally, &mut sampler),
-    )?;
-    if let Some(sampler) = &mut sampler
-        && !finish.stopped
-    {
-        // The history ends here whether the recorder breaks or not.
-        let _ = sampler.finish(&rocking, finish.mode, finish.time_s, &finish.state);
-    }
-    tally.note_peak(finish.mode, &finish.state);
-    tally.check_energy(&rocking, finish.mode, &finish.state);
-    if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
-        sampler.follow_fall(&rocking, finish.mode, finish.time_s, &finish.state);
-    }
-    let (outcome, outcome_time_s) = match finish.mode {
-        Mode::Overturned { sway, .. } => (
-            Outcome::Overturned(sway),
-            tally.last_outward_s.unwrap_or(finish.time_s),
-        ),
-        Mode::Rest => tally
-            .last_rest_s
-            .map_or((Outcome::NeverMoved, finish.time_s), |time_s| {
-                (Outcome::Rest, time_s)
-            }),
-        Mode::Rocking { .. } => (Outcome::StillRocking, finish.time_s),
+    let mut watched = Watched {
+        tally: Tally::new(&rocking, mode, &state),
+        sampler: recorder.map(|recorder| Sampler::new(request.output_step_s, recorder)),
     };
-    let outcome = match finish.mode {
-        Mode::Overturned { .. } => outcome,
-        _ if finish.time_s < ground.end_s() => Outcome::Incomplete,
-        Mode::Rocking { link, .. }
-            if rocking.energy(link, &finish.state) > SAFE * rocking.barrier_of(link) =>
-        {
-            Outcome::Incomplete
-        }
+    let finish = simulate(&rocking, mode, state, &settings, &mut watched)?;
+    let Watched {
+        mut tally,
+        mut sampler,
+    } = watched;
+    let now = &finish.now;
+    if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
+        // The history ends here whether the recorder breaks or not.
+        let _ = sampler.finish(&rocking, now);
+        sampler.follow_fall(&rocking, now);
+    }
+    tally.note_peak(now.mode, &now.state);
+    tally.check_energy(&rocking, now.mode, &now.state);
+    let (outcome, outcome_time_s) = match (now.mode, tally.last_rest_s) {
+        (Phase::Overturned(swing), _) => (
+            Outcome::Overturned(swing.sway),
+            tally.last_outward_s.unwrap_or(now.time_s),
+        ),
+        (Phase::Rest, Some(time_s)) => (Outcome::Rest, time_s),
+        (Phase::Rest, None) => (Outcome::NeverMoved, now.time_s),
+        (Phase::Rocking(_), _) => (Outcome::StillRocking, now.time_s),
+    };
+    let may_overturn = |swing: Swing<'_, C::Mechanism>| {
+        rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
+    };
+    let outcome = match now.mode {
+        Phase::Overturned(_) => outcome,
+        _ if now.time_s < ground.end_s() => Outcome::Incomplete,
+        Phase::Rocking(swing) if may_overturn(swing) => Outcome::Incomplete,
         _ => outcome,
     };
     let before_fall = tally.peaks_before_fall.take();
@@ -188,12 +182,10 @@ fn history_of<C: MechanismChain + MechanismModel>(
     Ok(Summary {
         outcome,
         outcome_time_s,
-        end_s: finish.time_s,
+        end_s: now.time_s,
         impacts: tally.impacts,
         peak_rotations_rad,
-        peak_over_critical: Some(peak_over_critical),
-        peak_potential_over_barrier: None,
-        energy_defect_ratio: tally.largest_defect / rocking.barrier(),
+        energy_defect_ratio: tally.largest_defect / rocking.barrier,
         thrust: sampler
             .filter(|sampler| sampler.recorder.wants_demand())
             .map(|sampler| match outcome {
@@ -201,7 +193,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
                 _ => sampler.thrust,
             }),
         cost: finish.cost,
-        row: None,
+        details: Details::Mechanisms { peak_over_critical },
     })
 }
 
@@ -211,9 +203,9 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     ground: &'a GroundMotion,
     request: &Request,
 ) -> Result<Rocking<'a, C>, SimulationError> {
-    request.check_on(ground)?;
+    check(ground, request)?;
     if let Some(initial) = request.initial {
-        let limit_rad = chain.limit_towards_rad(initial.sway);
+        let limit_rad = chain.limit_rad(initial.sway);
         if initial.rotation_rad >= limit_rad {
             return Err(SimulationError::Argument(ArgumentError {
                 argument: "rotation_rad",
@@ -237,6 +229,9 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
 type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
 
 type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
+
+/// A structure on moving ground at an instant.
+type Now<'a, C> = Moment<'a, <C as MechanismChain>::Mechanism>;
 
 /// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a
 /// sway to the left is the mirror image, which swaps the bodies and changes the sign of their rotations.
@@ -267,12 +262,10 @@ fn posture<C: MechanismChain>(
             seen_from_ground::<C>(sway, link.mechanism.rotation_rates(q_rad), rate),
         )
     };
-    match mode {
-        Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } => {
-            seen(sway, link, state[0], 1.0, state[1])
-        }
-        Mode::Rest => {
-            let link = rocking.chain().link(0);
+    match mode.swing() {
+        Some(Swing { sway, link, .. }) => seen(sway, link, state[0], 1.0, state[1]),
+        None => {
+            let link = rocking.chain.link(0);
             let link = link.expect("a structure has its first mechanism");
             seen(Sway::Right, link, 0.0, 0.0, 0.0)
         }
@@ -289,18 +282,18 @@ struct Closing<'a, C: MechanismChain> {
     after: Option<&'a Link<C::Mechanism>>,
     /// Rate of `q` just before, negative.
     rate_before_rad_s: f64,
-    /// Rate of `q` of the new mechanism just after, even where that is too small to go on.
+    /// Rate of `q` of the new mechanism just after, even where that is so small that the structure comes to rest.
     rate_after_rad_s: f64,
 }
 
 impl<'a, C: MechanismChain> Closing<'a, C> {
     /// `None` if the transition is of another kind.
     fn of(chain: &'a C, transition: &RockingTransition<'a, C>) -> Option<Self> {
-        let Mode::Rocking {
+        let Phase::Rocking(Swing {
             sway,
             impacts,
             link,
-        } = transition.from
+        }) = transition.from
         else {
             return None;
         };
@@ -375,7 +368,7 @@ struct Tally<C: MechanismChain> {
 
 impl<C: MechanismChain> Tally<C> {
     fn new(rocking: &Rocking<'_, C>, mode: Mode<'_, C::Mechanism>, state: &RockingState) -> Self {
-        let (none, _) = posture(rocking, Mode::Rest, state);
+        let (none, _) = posture(rocking, Phase::Rest, state);
         let mut tally = Self {
             impacts: 0,
             peak_rotations_rad: none,
@@ -384,8 +377,8 @@ impl<C: MechanismChain> Tally<C> {
             peaks_before_fall: None,
             last_rest_s: None,
             energy_without_work: match mode {
-                Mode::Rocking { link, .. } => rocking.energy(link, state),
-                Mode::Rest | Mode::Overturned { .. } => 0.0,
+                Phase::Rocking(swing) => rocking.energy(swing.link, state),
+                Phase::Rest | Phase::Overturned(_) => 0.0,
             },
             largest_defect: 0.0,
         };
@@ -395,7 +388,7 @@ impl<C: MechanismChain> Tally<C> {
 
     /// All rotations grow with `q`: the largest are at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
-        if let Mode::Rocking { sway, link, .. } | Mode::Overturned { sway, link, .. } = mode {
+        if let Some(Swing { sway, link, .. }) = mode.swing() {
             let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
             let peaks = self.peak_rotations_rad.as_mut().iter_mut();
             for (peak, rotation) in peaks.zip(rotations.as_ref()) {
@@ -411,23 +404,16 @@ impl<C: MechanismChain> Tally<C> {
         mode: Mode<'_, C::Mechanism>,
         state: &RockingState,
     ) {
-        if let Mode::Rocking { link, .. } = mode {
+        if let Phase::Rocking(Swing { link, .. }) = mode {
             let defect = rocking.energy(link, state) - self.energy_without_work - state[2];
             self.largest_defect = self.largest_defect.max(defect.abs());
         }
     }
-}
 
-impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
-    fn step(
-        &mut self,
-        rocking: &Rocking<'a, C>,
-        mode: Mode<'a, C::Mechanism>,
-        _: usize,
-        step: &Step<3>,
-    ) -> ControlFlow<()> {
-        let Mode::Rocking { link, .. } = mode else {
-            return ControlFlow::Continue(());
+    /// Notes turning points and passages of the unstable equilibrium in a step.
+    fn step(&mut self, rocking: &Rocking<'_, C>, mode: Mode<'_, C::Mechanism>, step: &Step<3>) {
+        let Phase::Rocking(Swing { link, .. }) = mode else {
+            return;
         };
         // It may turn back in the very step of uplift, in which it starts at zero rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
@@ -453,31 +439,21 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<C> {
             let peaks = self.peak_rotations_rad.as_ref().to_vec();
             self.peaks_before_fall = Some((peaks, self.peak_over_critical));
         }
-        ControlFlow::Continue(())
     }
 
-    fn transition(
-        &mut self,
-        rocking: &Rocking<'a, C>,
-        _: usize,
-        transition: &RockingTransition<'a, C>,
-    ) -> ControlFlow<()> {
+    /// Notes an event.
+    fn transition<'a>(&mut self, rocking: &Rocking<'a, C>, transition: &RockingTransition<'a, C>) {
         self.check_energy(rocking, transition.from, &transition.before);
-        if let Some(closing) = Closing::of(rocking.chain(), transition) {
+        let rests = matches!(transition.to, Phase::Rest);
+        if let Some(closing) = Closing::of(rocking.chain, transition) {
             let (before, after) = closing.energies();
-            let left = if matches!(transition.to, Mode::Rest) {
-                0.0
-            } else {
-                after
-            };
-            self.energy_without_work -= before - left;
+            self.energy_without_work -= before - if rests { 0.0 } else { after };
             self.impacts += 1;
         }
-        if let Mode::Rest = transition.to {
+        if rests {
             self.last_rest_s = Some(transition.time_s);
             // At rest the energy is zero: the remaining balance is the defect so far, carried on.
         }
-        ControlFlow::Continue(())
     }
 }
 
@@ -487,35 +463,31 @@ fn event<'a, C: MechanismChain>(
 ) -> Event {
     let kind = match (transition.guard, transition.to) {
         (Guard::Uplift(_), _) => EventKind::Uplift,
-        (Guard::Closing, Mode::Rest) => EventKind::Rest,
+        (Guard::Closing, Phase::Rest) => EventKind::Rest,
         (Guard::Closing, _) => EventKind::Impact,
         (Guard::Critical | Guard::Limit, _) => EventKind::Overturned,
     };
-    let (mechanism, energy) = match transition.to {
-        Mode::Rest => (None, 0.0),
-        Mode::Rocking { impacts, link, .. } | Mode::Overturned { impacts, link, .. } => {
-            (Some(impacts), rocking.energy(link, &transition.after))
-        }
-    };
+    let chain = rocking.chain;
     let (rotations_rad, rates_rad_s) = posture(rocking, transition.to, &transition.after);
-    let chain = rocking.chain();
-    let hinges = match transition.to {
-        Mode::Rest => Vec::new(),
-        Mode::Rocking { sway, impacts, .. } | Mode::Overturned { sway, impacts, .. } => {
-            chain.hinges(impacts, sway)
-        }
-    };
+    let swing = transition.to.swing();
+    let energy = swing.map_or(0.0, |swing| rocking.energy(swing.link, &transition.after));
     Event {
-        tie: None,
-        time_s: transition.time_s,
-        kind,
-        state: transition.to.state(),
-        mechanism,
+        mechanism: swing.map(|swing| swing.impacts),
         rotations_rad: rotations_rad.as_ref().to_vec(),
         rates_rad_s: rates_rad_s.as_ref().to_vec(),
         energy_j: energy * chain.joules_per_unit(),
-        hinges,
+        hinges: swing.map_or(Vec::new(), |swing| chain.hinges(swing.impacts, swing.sway)),
         impact: Closing::of(chain, transition).map(|closing| closing.impact(chain)),
+        ..Event::new(transition.time_s, kind, state(transition.to))
+    }
+}
+
+/// The state of motion in a mode.
+fn state<M>(mode: Mode<'_, M>) -> State {
+    match mode {
+        Phase::Rest => State::Rest,
+        Phase::Rocking(swing) => State::Rocking(swing.sway),
+        Phase::Overturned(swing) => State::Overturned(swing.sway),
     }
 }
 
@@ -527,11 +499,11 @@ struct Sampler<'r> {
     /// The last sample is held back, in case the end falls on it.
     held: Option<Sample>,
     /// Reused, so that samples need no allocation.
-    spare: Option<Sample>,
+    spare: Sample,
     /// Positions of the hinges, also reused.
     positions: Vec<Vector2<f64>>,
     thrust: ThrustRecord,
-    /// The same up to the last sample before the unstable equilibrium.
+    /// The record up to the last sample before the unstable equilibrium.
     thrust_before_critical: ThrustRecord,
     recorder: &'r mut dyn Recorder,
 }
@@ -543,7 +515,7 @@ impl<'r> Sampler<'r> {
             next: 0,
             phase: 0,
             held: None,
-            spare: None,
+            spare: Sample::at_rest(0.0),
             positions: Vec::new(),
             thrust: ThrustRecord::default(),
             thrust_before_critical: ThrustRecord::default(),
@@ -553,15 +525,6 @@ impl<'r> Sampler<'r> {
 
     fn next_s(&self) -> f64 {
         self.next as f64 * self.output_step_s
-    }
-
-    fn push(&mut self, sample: Sample) -> ControlFlow<()> {
-        let Some(held) = self.held.replace(sample) else {
-            return ControlFlow::Continue(());
-        };
-        let flow = self.emit(&held);
-        self.spare = Some(held);
-        flow
     }
 
     fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
@@ -576,196 +539,149 @@ impl<'r> Sampler<'r> {
         self.recorder.sample(sample)
     }
 
-    fn sample<C: MechanismChain>(
+    fn sample<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, now: &Now<'_, C>) -> Sample {
+        let mut sample = mem::replace(&mut self.spare, Sample::at_rest(0.0));
+        let (ground_m_s2, _) = rocking.ground.pieces()[now.piece].at(now.time_s);
+        sample.begin(now.time_s, ground_m_s2, self.phase);
+        let (rotations, rates) = posture(rocking, now.mode, &now.state);
+        sample.state = state(now.mode);
+        sample.rotations_rad.extend(rotations.as_ref());
+        sample.rates_rad_s.extend(rates.as_ref());
+        let (mut rotation_over_critical, mut energy, mut barrier) = (0.0, 0.0, 1.0);
+        let poses = &mut sample.poses;
+        if let Some(swing) = now.mode.swing() {
+            let (sway, link) = (swing.sway, swing.link);
+            let length_m = rocking.chain.length_m();
+            (link.mechanism).place(now.state[0], poses, &mut self.positions);
+            for pose in &mut *poses {
+                *pose = pose.scaled(length_m);
+            }
+            if sway == Sway::Left {
+                poses.reverse();
+                self.positions.reverse();
+                for pose in poses {
+                    *pose = pose.mirrored();
+                }
+            }
+            let seen = rocking.chain.hinges(swing.impacts, sway).into_iter();
+            let open = seen.zip(&self.positions).map(|(hinge, at)| OpenHinge {
+                hinge,
+                position_m: Vector2::new(sway.sign() * at.x, at.y) * length_m,
+            });
+            sample.hinges.extend(open);
+            // Adding zero makes a negative zero positive.
+            rotation_over_critical = -sway.sign() * now.state[0] / link.critical_rad + 0.0;
+            energy = rocking.energy(link, &now.state);
+            barrier = rocking.barrier_of(link);
+        } else {
+            poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
+        }
+        if self.recorder.wants_thrust_line() {
+            sample.eccentricity_ratios = rocking.eccentricity_ratios(now);
+        }
+        if self.recorder.wants_demand() {
+            sample.demand = rocking.demand(now);
+        }
+        sample.energy_j = energy * rocking.chain.joules_per_unit();
+        sample.energy_ratio = Some(energy / barrier);
+        sample.rotation_over_critical = Some(rotation_over_critical);
+        sample
+    }
+
+    /// Takes the samples of a step.
+    fn step<C: MechanismChain>(
         &mut self,
         rocking: &Rocking<'_, C>,
-        mode: Mode<'_, C::Mechanism>,
-        piece: usize,
-        time_s: f64,
-        state: &RockingState,
-    ) -> Sample {
-        let (rotations, rates) = posture(rocking, mode, state);
-        let (ground, _) = rocking.ground().pieces()[piece].at(time_s);
-        let (mut rotations_rad, mut rates_rad_s, mut poses, mut hinges) =
-            self.spare.take().map_or_else(Default::default, |spare| {
-                (
-                    spare.rotations_rad,
-                    spare.rates_rad_s,
-                    spare.poses,
-                    spare.hinges,
-                )
-            });
-        rotations_rad.clear();
-        rotations_rad.extend(rotations.as_ref());
-        rates_rad_s.clear();
-        rates_rad_s.extend(rates.as_ref());
-        hinges.clear();
-        let (rotation_over_critical, energy, barrier) = match mode {
-            Mode::Rest => {
-                poses.clear();
-                poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
-                (0.0, 0.0, 1.0)
+        from: &Now<'_, C>,
+        step: &Step<3>,
+    ) -> ControlFlow<()> {
+        while self.next_s() < step.end_s {
+            let time_s = self.next_s().max(step.start_s);
+            let state = rocking.between(step, time_s);
+            let sample = self.sample(rocking, &from.at(time_s, &state));
+            self.next += 1;
+            if let Some(held) = self.held.replace(sample) {
+                let flow = self.emit(&held);
+                self.spare = held;
+                flow?;
             }
-            Mode::Rocking {
-                sway,
-                impacts,
-                link,
-            }
-            | Mode::Overturned {
-                sway,
-                impacts,
-                link,
-            } => {
-                let length_m = rocking.chain().length_m();
-                link.mechanism
-                    .place(state[0], &mut poses, &mut self.positions);
-                for pose in &mut poses {
-                    *pose = pose.scaled(length_m);
-                }
-                if sway == Sway::Left {
-                    poses.reverse();
-                    self.positions.reverse();
-                    for pose in &mut poses {
-                        *pose = pose.mirrored();
-                    }
-                }
-                let seen = rocking.chain().hinges(impacts, sway).into_iter();
-                hinges.extend(
-                    seen.zip(&self.positions)
-                        .map(|(hinge, position)| OpenHinge {
-                            hinge,
-                            position_m: Vector2::new(sway.sign() * position.x, position.y)
-                                * length_m,
-                        }),
-                );
-                (
-                    // Adding zero makes a negative zero positive.
-                    -sway.sign() * state[0] / link.critical_rad + 0.0,
-                    rocking.energy(link, state),
-                    rocking.barrier_of(link),
-                )
-            }
-        };
-        let eccentricity_ratios = if self.recorder.wants_thrust_line() {
-            rocking.eccentricity_ratios(mode, piece, time_s, state)
-        } else {
-            Vec::new()
-        };
-        Sample {
-            time_s,
-            ground_acceleration_m_s2: ground.x + 0.0,
-            vertical_acceleration_m_s2: ground.y + 0.0,
-            feet_apart_m: Vector2::zeros(),
-            phase: self.phase,
-            state: mode.state(),
-            rotations_rad,
-            rates_rad_s,
-            poses,
-            hinges,
-            demand: if self.recorder.wants_demand() {
-                rocking.demand(mode, piece, time_s, state)
-            } else {
-                Demand::NONE
-            },
-            energy_j: energy * rocking.chain().joules_per_unit(),
-            energy_ratio: Some(energy / barrier),
-            rotation_over_critical: Some(rotation_over_critical),
-            gaps_m: Vec::new(),
-            eccentricity_ratios,
-            offsets_m: Vec::new(),
-            pressures: Vec::new(),
-            ties: Vec::new(),
         }
+        ControlFlow::Continue(())
     }
 
     /// The last sample, at the end of the simulation.
     fn finish<C: MechanismChain>(
         &mut self,
         rocking: &Rocking<'_, C>,
-        mode: Mode<'_, C::Mechanism>,
-        time_s: f64,
-        state: &RockingState,
+        now: &Now<'_, C>,
     ) -> ControlFlow<()> {
-        let pieces = rocking.ground().pieces();
-        let piece = pieces.partition_point(|piece| piece.start_s <= time_s) - 1;
-        let last = self.sample(rocking, mode, piece, time_s, state);
+        let pieces = rocking.ground.pieces();
+        let piece = pieces.partition_point(|piece| piece.start_s <= now.time_s) - 1;
+        let last = self.sample(rocking, &Moment { piece, ..*now });
         // A sample that differs from the end by rounding only is replaced.
         if let Some(held) = self.held.take()
-            && held.time_s < time_s - 1e-9 * self.output_step_s
+            && held.time_s < now.time_s - 1e-9 * self.output_step_s
         {
             self.emit(&held)?;
         }
         self.emit(&last)
     }
 
-    /// Follows a mechanism that has overturned, if its recorder follows falls: it goes on by the same hinges, also beyond the limit
+    /// Follows a mechanism that has overturned, if its recorder follows falls: it turns about the same hinges, also beyond the limit
     /// position, where the first of them begins to close.
-    fn follow_fall<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        overturned: Mode<'_, C::Mechanism>,
-        from_s: f64,
-        state: &RockingState,
-    ) {
-        let Mode::Overturned {
-            sway,
-            impacts,
-            link,
-        } = overturned
-        else {
+    fn follow_fall<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, from: &Now<'_, C>) {
+        let Phase::Overturned(swing) = from.mode else {
             return;
         };
         if !self.recorder.wants_fall() {
             return;
         }
-        let falling = Mode::Rocking {
-            sway,
-            impacts,
-            link,
-        };
         let every_s = self.output_step_s.min(fall::SAMPLED_S);
         self.output_step_s = every_s;
-        self.next = (from_s / every_s) as u64 + 1;
-        let until_s = from_s + fall::LONGEST_S;
-        let (mut time_s, mut state) = (from_s, *state);
+        self.next = (from.time_s / every_s) as u64 + 1;
+        let until_s = from.time_s + fall::LONGEST_S;
+        let mut now = Moment {
+            mode: Phase::Rocking(swing),
+            ..*from
+        };
         let mut ended = ControlFlow::Continue(());
         let mut end = FallEnd::Slow;
-        for (piece, motion) in rocking.ground().pieces().iter().enumerate() {
-            if motion.end_s <= time_s || time_s >= until_s || ended.is_break() {
+        for (piece, motion) in rocking.ground.pieces().iter().enumerate() {
+            if motion.end_s <= now.time_s || now.time_s >= until_s || ended.is_break() {
                 continue;
             }
-            let slope =
-                |time_s: f64, state: &RockingState| rocking.slope(falling, piece, time_s, state);
-            let (first_step_s, longest_step_s) =
-                rocking.step_sizes_s(falling, piece, time_s, &state, FALL_TOLERANCE);
+            now.piece = piece;
+            let (first_step_s, longest_step_s) = rocking.step_sizes_s(&now, FALL_TOLERANCE);
             let task = Task {
-                start_s: time_s,
+                start_s: now.time_s,
                 end_s: motion.end_s.min(until_s),
-                start: state,
-                start_slope: slope(time_s, &state),
-                scale: rocking.scale(falling, &state),
+                start: now.state,
+                start_slope: rocking.slope(&now),
+                scale: rocking.scale(&now),
                 relative_tolerance: FALL_TOLERANCE,
                 first_step_s,
                 longest_step_s,
             };
+            let overturned = Moment { piece, ..*from };
             let watch = |step: &Step<3>| {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
                     let state = rocking.between(step, time_s);
-                    let sample = self.sample(rocking, overturned, piece, time_s, &state);
+                    let sample = self.sample(rocking, &overturned.at(time_s, &state));
                     self.next += 1;
                     ended = self.recorder.fall(&sample);
                     if let Some(at) = fall::end_at(&sample) {
                         end = at;
                         ended = ControlFlow::Break(());
                     }
-                    self.spare = Some(sample);
+                    self.spare = sample;
                     ended?;
                 }
                 ControlFlow::Continue(())
             };
+            let slope = |time_s: f64, state: &RockingState| rocking.slope(&now.at(time_s, state));
             match integrate(&task, slope, watch, &mut Cost::default()) {
-                Ok(last) => (time_s, state) = (task.end_s, last),
+                Ok(last) => now = now.at(task.end_s, &last),
                 Err(_) => {
                     end = FallEnd::Model("its links reach no farther".to_owned());
                     break;
@@ -776,34 +692,33 @@ impl<'r> Sampler<'r> {
     }
 }
 
-impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Option<Sampler<'_>> {
+/// Collects what a summary needs, and takes samples for a recorder.
+struct Watched<'r, C: MechanismChain> {
+    tally: Tally<C>,
+    sampler: Option<Sampler<'r>>,
+}
+
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Watched<'_, C> {
     fn step(
         &mut self,
         rocking: &Rocking<'a, C>,
-        mode: Mode<'a, C::Mechanism>,
-        piece: usize,
+        from: &Now<'a, C>,
         step: &Step<3>,
     ) -> ControlFlow<()> {
-        let Some(sampler) = self else {
-            return ControlFlow::Continue(());
-        };
-        while sampler.next_s() < step.end_s {
-            let time_s = sampler.next_s().max(step.start_s);
-            let state = rocking.between(step, time_s);
-            let sample = sampler.sample(rocking, mode, piece, time_s, &state);
-            sampler.next += 1;
-            sampler.push(sample)?;
+        self.tally.step(rocking, from.mode, step);
+        match &mut self.sampler {
+            Some(sampler) => sampler.step(rocking, from, step),
+            None => ControlFlow::Continue(()),
         }
-        ControlFlow::Continue(())
     }
 
     fn transition(
         &mut self,
         rocking: &Rocking<'a, C>,
-        _: usize,
         transition: &RockingTransition<'a, C>,
     ) -> ControlFlow<()> {
-        let Some(sampler) = self else {
+        self.tally.transition(rocking, transition);
+        let Some(sampler) = &mut self.sampler else {
             return ControlFlow::Continue(());
         };
         sampler.phase += 1;

@@ -9,36 +9,38 @@ use nalgebra::Vector2;
 use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::{
-    Cost, Elapsed, Event, EventKind, HalfCycle, Impact, OpenHinge, Outcome, RowSummary, Sample,
-    State, Summary, TieSummary,
+    Cost, Details, Elapsed, ElasticSummary, Event, EventKind, HalfCycle, Impact, OpenHinge,
+    Outcome, RowSummary, Sample, State, Summary, TieSummary,
 };
-use crate::dynamics::model::Recorder;
+use crate::dynamics::recorder::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::chain::{Demand, Hinge, LEAST_LOAD};
+use crate::mechanics::chain::{Hinge, LEAST_LOAD};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
+use crate::mechanics::tie::{Tie, TieMemory};
 
 /// Sways below this fraction of the size do not count as a change of side.
-pub(in crate::dynamics) const SWAY_RATIO: f64 = 1e-9;
+pub const SWAY_RATIO: f64 = 1e-9;
 /// Where no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
 /// from one turning point to the next.
 const RECENT_RATIO: f64 = 2.0;
 /// At rest, the kinetic energy is below this fraction of weight times size ...
-pub(in crate::dynamics) const REST_ENERGY_RATIO: f64 = 1e-9;
+pub const REST_ENERGY_RATIO: f64 = 1e-9;
 /// ... for this many times the square root of size over gravity: longer than at any turning point.
 const REST_TIME_RATIO: f64 = 0.5;
 /// A block that has turned by this, in radians, has overturned ...
-pub(in crate::dynamics) const OVERTURNED_RAD: f64 = 0.8;
+pub const OVERTURNED_RAD: f64 = 0.8;
 /// ... and so has one that has moved by this fraction of the size, apart from the slide of the row along a support.
-pub(in crate::dynamics) const OVERTURNED_RATIO: f64 = 0.6;
+pub const OVERTURNED_RATIO: f64 = 0.6;
 /// On the way down, a rise of less than this fraction of weight times size is no return.
 const LEAST_RETURN: f64 = 1e-3;
 /// A start within this fraction of the output step before a multiple of it counts as that multiple.
 const ALIGNED: f64 = 1e-6;
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
-pub(in crate::dynamics) const LARGEST_ENERGY_ERROR: f64 = 1e-2;
+pub const LARGEST_ENERGY_ERROR: f64 = 1e-2;
 /// Energies below this fraction of weight times size are no motion: their balance is rounding.
 const LEAST_ENERGY_RATIO: f64 = 1e-6;
 /// A row has slipped when friction took more than this fraction of the barrier of its first mechanism. It then stands lower than
@@ -51,7 +53,7 @@ const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
 
 /// How long a motion is computed, and in which steps.
 #[derive(Clone, Copy)]
-pub(in crate::dynamics) struct Clock {
+pub struct Clock {
     /// Longest step in seconds.
     pub longest_step_s: f64,
     /// Whether steps may be halved where the energy balance needs it.
@@ -65,7 +67,7 @@ pub(in crate::dynamics) struct Clock {
 }
 
 /// The times at which samples are due and steps end: the start, and multiples of the output step after it.
-pub(in crate::dynamics) struct Marks {
+pub struct Marks {
     clock: Clock,
     start_s: f64,
     /// The next multiple; before the start, the start is next.
@@ -73,7 +75,7 @@ pub(in crate::dynamics) struct Marks {
 }
 
 impl Marks {
-    pub(in crate::dynamics) fn new(clock: Clock, start_s: f64) -> Self {
+    pub fn new(clock: Clock, start_s: f64) -> Self {
         let steps = clock.output_step_s.map_or(0.0, |step_s| start_s / step_s);
         Self {
             clock,
@@ -111,23 +113,23 @@ impl Marks {
     }
 
     /// Whether a sample is due.
-    pub(in crate::dynamics) fn is_due(&self, time_s: f64) -> bool {
+    pub fn is_due(&self, time_s: f64) -> bool {
         time_s >= self.mark_s() - 1e-9 * self.clock.shortest_step_s
     }
 
-    pub(in crate::dynamics) fn pass(&mut self) {
+    pub fn pass(&mut self) {
         self.passed += 1.0;
     }
 
     /// Where steps end next.
-    pub(in crate::dynamics) fn next_s(&self) -> f64 {
+    pub fn next_s(&self) -> f64 {
         self.mark_s().min(self.clock.end_s)
     }
 }
 
-/// What is to be computed.
+/// A motion to compute.
 #[derive(Clone, Copy)]
-pub(in crate::dynamics) struct Task<'a> {
+pub struct Task<'a> {
     pub row: &'a Row,
     pub ground: &'a GroundMotion,
     pub gravity_m_s2: f64,
@@ -141,7 +143,7 @@ pub(in crate::dynamics) struct Task<'a> {
 }
 
 /// The motion so far.
-pub(in crate::dynamics) struct Course<'a> {
+pub struct Course<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row.
     pub potential: f64,
@@ -161,11 +163,22 @@ pub(in crate::dynamics) struct Course<'a> {
     pub shut: Vec<Hinge>,
     /// Joints that open at once, with the edge about which they turn; no edge if they part.
     pub opened: Vec<Hinge>,
-    pub summary: Summary,
+    pub impacts: usize,
+    pub cost: Cost,
+    peak_rotations_rad: Vec<f64>,
+    energy_defect_ratio: f64,
     pub of_row: RowSummary,
+    /// Results of elastic joints; `None` with rigid joints.
+    pub elastic: Option<ElasticSummary>,
     /// Longest step from now on, in seconds.
     pub longest_step_s: f64,
     task: Task<'a>,
+    /// When the row was highest before it came down for good, by heights that the stepper notes.
+    pub summit: Summit,
+    /// Whether the stepper has seen that the row has overturned.
+    pub overturned: bool,
+    /// Since when it has had hardly any kinetic energy.
+    pub quiet_since_s: f64,
     /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
     fallen: f64,
     peak_potential: f64,
@@ -211,8 +224,8 @@ struct UpTo {
     ties: Vec<TieSummary>,
 }
 
-/// What moves a row, step by step.
-pub(in crate::dynamics) trait Stepper<'a>: Sized {
+/// Moves a row, step by step.
+pub trait Stepper<'a>: Sized {
     /// Why a step fails.
     type Error;
 
@@ -251,7 +264,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
     fn rests_since(&self) -> Option<f64>;
     /// When the row passed its last point of return, once it has overturned.
     fn overturned_s(&self) -> Option<f64> {
-        self.course().fallen_s(self.course().potential)
+        self.course().overturned_s()
     }
     /// The course of the motion, with all results of the stepper in its summaries.
     fn completed(&mut self) -> &mut Course<'a>;
@@ -272,7 +285,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
 
     /// Reports that all joints were shut before this time, with this energy, rotations and rates, and that some have opened
     /// since.
-    fn tell_uplift(
+    fn report_uplift(
         &mut self,
         time_s: f64,
         energy_j: f64,
@@ -283,23 +296,18 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
         }
         let (rotations_rad, rates_rad_s) = turns(self);
         let event = Event {
-            time_s,
-            kind: EventKind::Uplift,
-            state: State::Rocking(self.heading()),
-            mechanism: None,
             rotations_rad,
             rates_rad_s,
             energy_j,
             hinges: self.course().opened.clone(),
-            impact: None,
-            tie: None,
+            ..Event::new(time_s, EventKind::Uplift, State::Rocking(self.heading()))
         };
-        self.course_mut().tell(&event);
+        self.course_mut().report(&event);
     }
 
     /// Reports that corners have landed: whether the row moves on, the kinetic energy before and the part taken, and how much of
     /// that friction took.
-    fn tell_impact(
+    fn report_impact(
         &mut self,
         moves: bool,
         [energy_before_j, taken_j]: [f64; 2],
@@ -315,69 +323,60 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
                 .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
         };
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
+        let hinges = (0..course.task.row.joints().len()).filter_map(hinge);
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
         // A row that lands where it stood came from the other side.
         let stood = self.lies_where_it_stood(&rotations_rad);
         let sway = if moves { self.heading() } else { Sway::Right };
+        let restitution = energy_after_j / energy_before_j;
+        let impact = Impact {
+            sway_before: if stood { sway.opposite() } else { sway },
+            restitution: if energy_before_j > 0.0 {
+                restitution
+            } else {
+                0.0
+            },
+            energy_before_j,
+            energy_after_j,
+            friction_j,
+            rates_before_rad_s: Vec::new(),
+            rates_after_rad_s: rates_rad_s.clone(),
+            closed: course.shut.clone(),
+            opened: course.opened.clone(),
+            impulses_n_s: Vec::new(),
+        };
+        let state = if moves { self.moving() } else { State::Rest };
         let event = Event {
-            time_s: course.time,
-            kind: EventKind::Impact,
-            state: if moves { self.moving() } else { State::Rest },
-            mechanism: None,
             energy_j: energy_after_j + course.potential,
-            hinges: (0..course.task.row.joints().len())
-                .filter_map(hinge)
-                .collect(),
-            impact: Some(Impact {
-                sway_before: if stood { sway.opposite() } else { sway },
-                restitution: if energy_before_j > 0.0 {
-                    energy_after_j / energy_before_j
-                } else {
-                    0.0
-                },
-                energy_before_j,
-                energy_after_j,
-                friction_j,
-                rates_before_rad_s: Vec::new(),
-                rates_after_rad_s: rates_rad_s.clone(),
-                closed: course.shut.clone(),
-                opened: course.opened.clone(),
-                impulses_n_s: Vec::new(),
-            }),
-            tie: None,
+            hinges: hinges.collect(),
+            impact: Some(impact),
             rotations_rad,
             rates_rad_s,
+            ..Event::new(course.time, EventKind::Impact, state)
         };
-        self.course_mut().tell(&event);
+        self.course_mut().report(&event);
     }
 
-    /// Tells of what happened to a tie in the last step.
-    fn tell_tie(&mut self, tie: usize, kind: EventKind) {
-        if !self.course().is_followed() {
+    /// Reports an event of a tie in the last step.
+    fn report_tie(&mut self, tie: usize, kind: EventKind) {
+        let course = self.course();
+        if !course.is_followed() {
             return;
         }
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
-        let hinges =
-            (0..self.course().task.row.joints().len()).filter_map(|joint| self.hinge(joint));
-        let course = self.course();
+        let joints = 0..course.task.row.joints().len();
+        let moves = course.moved;
+        let state = if moves { self.moving() } else { State::Rest };
         let event = Event {
-            time_s: course.time,
-            kind,
-            state: if course.moved {
-                self.moving()
-            } else {
-                State::Rest
-            },
-            mechanism: None,
             rotations_rad,
             rates_rad_s,
             energy_j: course.kinetic + course.potential,
-            hinges: hinges.collect(),
-            impact: None,
+            hinges: joints.filter_map(|joint| self.hinge(joint)).collect(),
             tie: Some(tie),
+            ..Event::new(course.time, kind, state)
         };
-        self.course_mut().tell(&event);
+        self.course_mut().report(&event);
     }
 
     /// Makes a sample.
@@ -404,7 +403,7 @@ pub(in crate::dynamics) trait Stepper<'a>: Sized {
 }
 
 /// Steps a row until it rests, has overturned, or the time is over.
-pub(in crate::dynamics) fn run<'a, S>(mut stepper: S) -> Result<Summary, S::Error>
+pub fn run<'a, S>(mut stepper: S) -> Result<Summary, S::Error>
 where
     S: Stepper<'a, Error: Display>,
 {
@@ -479,7 +478,7 @@ fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEn
 }
 
 /// When something was highest before it came down for good.
-pub(in crate::dynamics) struct Summit {
+pub struct Summit {
     pub time: f64,
     highest: f64,
     /// The lowest since then.
@@ -487,43 +486,11 @@ pub(in crate::dynamics) struct Summit {
 }
 
 impl Summit {
-    /// Notes the height after a step, as [`Summit::note`], and the results of the course if it had not come down for good before.
-    pub(in crate::dynamics) fn note_results(
-        &mut self,
-        course: &mut Course<'_>,
-        height: Option<f64>,
-    ) {
-        self.note(course, height);
-        if self.time == course.time {
-            course.note_return();
-        }
-    }
-
-    pub(in crate::dynamics) const fn new(height: f64, time: f64) -> Self {
+    pub const fn new(height: f64, time: f64) -> Self {
         Self {
             time,
             highest: height,
             lowest: height,
-        }
-    }
-
-    /// Notes the height of a row after a step. If it rises again from where it was lowest, it had not come down for good. `None` where its
-    /// feet part: as they work, heights say of no way back, but what hardly moves has not come down.
-    pub(in crate::dynamics) fn note(&mut self, course: &Course<'_>, height: Option<f64>) {
-        let (time, least) = (course.time, LEAST_RETURN * course.energy_unit);
-        let Some(height) = height else {
-            if course.kinetic < least {
-                self.time = time;
-            }
-            return;
-        };
-        self.lowest = self.lowest.min(height);
-        if height >= self.highest || height >= self.lowest + least {
-            *self = Self {
-                time,
-                highest: height,
-                lowest: height,
-            };
         }
     }
 }
@@ -534,13 +501,13 @@ fn towards(value: f64) -> Sway {
 }
 
 /// Length of the next step of a leapfrog: equal steps up to the given time.
-pub(in crate::dynamics) fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
+pub fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     let left = until - time;
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
 /// The edge of the only corner of a joint, intrados or extrados, for which this is true; else `None`.
-pub(in crate::dynamics) fn only(corners: [bool; 2]) -> Option<Edge> {
+pub fn only(corners: [bool; 2]) -> Option<Edge> {
     match corners {
         [true, false] => Some(Edge::Intrados),
         [false, true] => Some(Edge::Extrados),
@@ -554,14 +521,14 @@ fn turning(gaps: [f64; 2]) -> Option<Edge> {
 }
 
 /// A joint with these gaps as a hinge, if it is open.
-pub(in crate::dynamics) fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
+pub fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
     let edge = turning(gaps);
     (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
 }
 
 /// How far the thrust lies towards the extrados from the middle of a joint, by the impulses at its corners, over the thickness; `None`
 /// if neither presses. A pull below the tolerance of the solver counts as zero.
-pub(in crate::dynamics) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
+pub fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
     let normal = intrados + extrados;
     (normal > 0.0).then(|| 0.5 * (extrados - intrados) / normal)
@@ -569,7 +536,7 @@ pub(in crate::dynamics) fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Opti
 
 impl<'a> Course<'a> {
     /// Below the potential energy `fallen` the row has overturned; `None` if the stepper decides by other signs.
-    pub(in crate::dynamics) fn new(
+    pub fn new(
         task: Task<'a>,
         fallen: Option<f64>,
         recorder: Option<&'a mut dyn Recorder>,
@@ -591,6 +558,9 @@ impl<'a> Course<'a> {
             opened: Vec::with_capacity(joints),
             longest_step_s: clock.longest_step_s,
             task,
+            summit: Summit::new(0.0, start_s),
+            overturned: false,
+            quiet_since_s: start_s,
             fallen: fallen.unwrap_or(f64::NEG_INFINITY),
             peak_potential: 0.0,
             before_fall: UpTo {
@@ -614,48 +584,23 @@ impl<'a> Course<'a> {
             phase: 0,
             later: None,
             thrust: ThrustRecord::default(),
-            summary: Summary {
-                outcome: Outcome::StillRocking,
-                outcome_time_s: start_s,
-                end_s: start_s,
-                impacts: 0,
-                peak_rotations_rad: vec![0.0; row.blocks().len()],
-                peak_over_critical: None,
-                peak_potential_over_barrier: None,
-                energy_defect_ratio: 0.0,
-                thrust: None,
-                cost: Cost::default(),
-                row: None,
-            },
+            impacts: 0,
+            peak_rotations_rad: vec![0.0; row.blocks().len()],
+            energy_defect_ratio: 0.0,
+            cost: Cost::default(),
             of_row: RowSummary {
-                half_cycles: Vec::new(),
-                half_cycles_with_fall: 0,
-                sliding: None,
-                elastic: None,
-                ties: Vec::new(),
-                largest_kinetic_j: 0.0,
-                largest_potential_j: 0.0,
-                energy_taken_j: 0.0,
-                ground_j: 0.0,
-                right_foot_j: 0.0,
-                energy_error: 0.0,
                 least_normal_n: f64::INFINITY,
-                closure_error_m: 0.0,
                 longest_step_s: clock.longest_step_s,
                 shortest_step_s: clock.shortest_step_s,
-                programs: 0,
-                most_iterations: 0,
-                relaxed: 0,
-                merged: 0,
-                halvings: 0,
-                longest_step: Elapsed(None),
+                ..RowSummary::default()
             },
+            elastic: None,
         }
     }
 
     /// How and when the motion ended, if it has. The arguments are when it overturned, if it did, and since when it stands still
     /// for good, if it does.
-    pub(in crate::dynamics) fn ending(
+    pub fn ending(
         &self,
         overturned_s: Option<f64>,
         rests_since: impl FnOnce() -> Option<f64>,
@@ -695,8 +640,7 @@ impl<'a> Course<'a> {
         if self.is_safe {
             return false;
         }
-        let elastic = self.of_row.elastic.as_ref();
-        let crushed_j = elastic.map_or(0.0, |elastic| elastic.crushed_j);
+        let crushed_j = self.elastic.map_or(0.0, |elastic| elastic.crushed_j);
         let lies = |barrier_j: &f64| crushed_j <= SLIPPED_RATIO * barrier_j;
         let energy_ratio = match self.known_barrier_j().filter(lies) {
             Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
@@ -714,33 +658,38 @@ impl<'a> Course<'a> {
     }
 
     /// How long it must be quiet to rest, in seconds.
-    pub(in crate::dynamics) fn rest_time_s(&self) -> f64 {
+    pub fn rest_time_s(&self) -> f64 {
         REST_TIME_RATIO * (self.task.row.size_m() / self.task.gravity_m_s2).sqrt()
     }
 
     /// Normal force below which a joint does not count in the friction that is needed, in N.
-    pub(in crate::dynamics) fn least_load_n(&self) -> f64 {
+    pub fn least_load_n(&self) -> f64 {
         LEAST_LOAD * self.energy_unit / self.task.row.size_m()
     }
 
     /// Whether a row that has hardly moved since then rests.
-    pub(in crate::dynamics) fn is_quiet(&self, since_s: f64) -> bool {
+    pub fn is_quiet(&self, since_s: f64) -> bool {
         self.time - since_s > self.rest_time_s()
     }
 
+    /// When it passed its last way back, if the stepper has seen that it has overturned.
+    pub fn overturned_s(&self) -> Option<f64> {
+        self.overturned.then_some(self.summit.time)
+    }
+
     /// When it passed its last way back, if a potential energy of gravity says that it has overturned.
-    pub(in crate::dynamics) fn fallen_s(&self, potential: f64) -> Option<f64> {
+    pub fn fallen_s(&self, potential: f64) -> Option<f64> {
         (potential < self.fallen).then_some(self.highest_s)
     }
 
     /// Whether a recorder receives samples and events.
-    pub(in crate::dynamics) const fn is_followed(&self) -> bool {
+    pub const fn is_followed(&self) -> bool {
         self.recorder.is_some()
     }
 
     /// Notes that the row is released at rest, with these rotations, this potential energy and this displacement of its centre of
     /// gravity times the mass.
-    pub(in crate::dynamics) fn released(
+    pub fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         potential: f64,
@@ -758,7 +707,7 @@ impl<'a> Course<'a> {
 
     /// Updates peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy,
     /// and the displacement of the centre of gravity times the mass.
-    pub(in crate::dynamics) fn observe(
+    pub fn observe(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         potential: f64,
@@ -774,6 +723,9 @@ impl<'a> Course<'a> {
         }
         self.potential = potential;
         self.kinetic = kinetic;
+        if kinetic >= REST_ENERGY_RATIO * self.energy_unit {
+            self.quiet_since_s = self.time;
+        }
         self.sway = sway;
         self.peak_potential = self.peak_potential.max(potential);
         self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
@@ -806,13 +758,49 @@ impl<'a> Course<'a> {
         }
     }
 
+    /// Notes the height of the row after a step, and the results if it had not come down for good before. If it rises again from where it was
+    /// lowest, it had not. `None` where its feet part: the feet do work, so heights do not decide whether it returns, but a row that hardly
+    /// moves has not come down.
+    pub fn note_height(&mut self, height: Option<f64>) {
+        let (least, summit) = (LEAST_RETURN * self.energy_unit, &mut self.summit);
+        if let Some(height) = height {
+            summit.lowest = summit.lowest.min(height);
+            if height >= summit.highest || height >= summit.lowest + least {
+                *summit = Summit::new(height, self.time);
+            }
+        } else if self.kinetic < least {
+            summit.time = self.time;
+        }
+        if summit.time == self.time {
+            self.note_return();
+        }
+    }
+
+    /// Updates the summaries of the ties, which are at rest the first time; returns what happened to them since the last time.
+    pub fn note_ties<'t>(
+        &mut self,
+        ties: impl Iterator<Item = (&'t Tie, TieMemory<Lanes<1>>)>,
+    ) -> Vec<(usize, EventKind)> {
+        let mut happened = Vec::new();
+        for (index, (tie, memory)) in ties.enumerate() {
+            if let Some(known) = self.of_row.ties.get_mut(index) {
+                let kinds = known.note(tie, &memory, self.time).into_iter().flatten();
+                happened.extend(kinds.map(|kind| (index, kind)));
+            } else {
+                let at_rest = TieSummary::at_rest(tie, &memory, self.time);
+                self.of_row.ties.push(at_rest);
+            }
+        }
+        happened
+    }
+
     /// Notes that it has not fallen without return before now.
-    pub(in crate::dynamics) fn note_return(&mut self) {
+    pub fn note_return(&mut self) {
         let before_fall = &mut self.before_fall;
         before_fall.time_s = self.time;
-        let peaks_rad = &self.summary.peak_rotations_rad;
+        let peaks_rad = &self.peak_rotations_rad;
         before_fall.peak_rotations_rad.clone_from(peaks_rad);
-        before_fall.impacts = self.summary.impacts;
+        before_fall.impacts = self.impacts;
         before_fall.half_cycles = self.of_row.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
@@ -827,8 +815,8 @@ impl<'a> Course<'a> {
     /// Takes the results back to those of the instant at which it fell without return.
     fn take_back_the_fall(&mut self) {
         let before_fall = std::mem::take(&mut self.before_fall);
-        self.summary.peak_rotations_rad = before_fall.peak_rotations_rad;
-        self.summary.impacts = before_fall.impacts;
+        self.peak_rotations_rad = before_fall.peak_rotations_rad;
+        self.impacts = before_fall.impacts;
         self.of_row.half_cycles.truncate(before_fall.half_cycles);
         self.cycle = None;
         let cycle = before_fall.cycle.map(|cycle| HalfCycle {
@@ -849,7 +837,7 @@ impl<'a> Course<'a> {
     /// Raises the peaks to the rotations of the blocks now; returns the largest of these.
     fn note_peaks(&mut self, rotations_rad: impl Iterator<Item = f64>) -> f64 {
         let mut largest = 0.0_f64;
-        let peaks = self.summary.peak_rotations_rad.iter_mut();
+        let peaks = self.peak_rotations_rad.iter_mut();
         for (peak, rotation_rad) in peaks.zip(rotations_rad) {
             let rotation = rotation_rad.abs();
             *peak = peak.max(rotation);
@@ -872,27 +860,27 @@ impl<'a> Course<'a> {
     }
 
     /// Notes a difference of the energy from what it should be.
-    pub(in crate::dynamics) fn note_defect(&mut self, energy: f64) {
-        let worst = &mut self.summary.energy_defect_ratio;
+    pub fn note_defect(&mut self, energy: f64) {
+        let worst = &mut self.energy_defect_ratio;
         *worst = worst.max(energy / self.energy_unit);
     }
 
     /// Largest error of the energy balance so far, over the largest energy of the motion, which is at least this barrier.
-    pub(in crate::dynamics) fn energy_error(&self, barrier_j: f64) -> f64 {
+    pub fn energy_error(&self, barrier_j: f64) -> f64 {
         let kinetic_j = self.of_row.largest_kinetic_j;
         let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
-        let defect_j = self.summary.energy_defect_ratio * self.energy_unit;
+        let defect_j = self.energy_defect_ratio * self.energy_unit;
         defect_j / kinetic_j.max(barrier_j).max(least_j)
     }
 
     /// The energy error above which steps are halved next, if they may be.
-    pub(in crate::dynamics) fn halved_above(&self) -> Option<f64> {
+    pub fn halved_above(&self) -> Option<f64> {
         let part = HALVED_FROM.get(self.of_row.halvings as usize)?;
         (self.task.clock.may_halve).then_some(part * LARGEST_ENERGY_ERROR)
     }
 
     /// Halves the steps from now on.
-    pub(in crate::dynamics) fn halve_steps(&mut self) {
+    pub fn halve_steps(&mut self) {
         self.longest_step_s *= 0.5;
         let of_row = &mut self.of_row;
         of_row.halvings += 1;
@@ -900,7 +888,7 @@ impl<'a> Course<'a> {
     }
 
     /// Halves the steps where the energy balance needs it, a few times at most.
-    pub(in crate::dynamics) fn mind_balance(&mut self) {
+    pub fn mind_balance(&mut self) {
         let most = self.halved_above();
         if most.is_some_and(|most| self.energy_error(self.task.energy_scale_j) > most) {
             self.halve_steps();
@@ -908,7 +896,7 @@ impl<'a> Course<'a> {
     }
 
     /// Ends the motion here: it cannot overturn any more.
-    pub(in crate::dynamics) const fn decide(&mut self) {
+    pub const fn decide(&mut self) {
         self.is_safe = true;
         self.stopped = true;
     }
@@ -922,23 +910,7 @@ impl<'a> Course<'a> {
             self.pieces = rest;
         }
         let (ground_m_s2, _) = self.pieces[0].at(self.time);
-        sample.time_s = self.time;
-        // Adding zero makes a negative zero positive.
-        sample.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
-        sample.vertical_acceleration_m_s2 = ground_m_s2.y + 0.0;
-        sample.feet_apart_m = Vector2::zeros();
-        sample.phase = self.phase;
-        sample.state = State::Rest;
-        sample.rotations_rad.clear();
-        sample.rates_rad_s.clear();
-        sample.poses.clear();
-        sample.hinges.clear();
-        sample.demand = Demand::NONE;
-        sample.gaps_m.clear();
-        sample.eccentricity_ratios.clear();
-        sample.offsets_m.clear();
-        sample.pressures.clear();
-        sample.ties.clear();
+        sample.begin(self.time, ground_m_s2, self.phase);
         let recorder = self.recorder.as_ref();
         (
             sample,
@@ -967,7 +939,7 @@ impl<'a> Course<'a> {
     }
 
     /// Passes on an event that begins a phase. Events after an awaited impact are held back until the impact is reported.
-    fn tell(&mut self, event: &Event) {
+    fn report(&mut self, event: &Event) {
         if self.falls {
             return;
         }
@@ -990,7 +962,7 @@ impl<'a> Course<'a> {
     }
 
     /// Begins the phase of an impact that is reported after the next step, when its energy is known.
-    pub(in crate::dynamics) fn await_impact(&mut self) {
+    pub fn await_impact(&mut self) {
         if self.is_followed() && !self.falls {
             self.phase += 1;
             self.later = Some(Vec::new());
@@ -998,7 +970,7 @@ impl<'a> Course<'a> {
     }
 
     /// Takes energy that an impact at this time took in the step after it, in J, from the energy of the half cycle that began with it.
-    pub(in crate::dynamics) fn took_late(&mut self, taken_j: f64) {
+    pub fn took_late(&mut self, taken_j: f64) {
         if self.cycle.is_none_or(|cycle| cycle.start_s != self.time) {
             return;
         }
@@ -1013,7 +985,7 @@ impl<'a> Course<'a> {
     }
 
     /// Makes the summary, and reports the end if the row rests or has overturned.
-    pub(in crate::dynamics) fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
+    pub fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.of_row.half_cycles_with_fall =
             self.of_row.half_cycles.len() + usize::from(self.cycle.is_some());
         if let Outcome::Overturned(_) = outcome {
@@ -1025,18 +997,27 @@ impl<'a> Course<'a> {
             _ if self.is_incomplete() => Outcome::Incomplete,
             _ => outcome,
         };
-        let energy_error = self.energy_error(self.task.energy_scale_j);
-        let (mut summary, mut of_row) = (self.summary.clone(), self.of_row.clone());
-        of_row.energy_error = energy_error;
-        of_row.largest_potential_j = self.peak_potential;
-        summary.outcome = outcome;
-        summary.outcome_time_s = outcome_time_s;
-        summary.end_s = self.time;
         let barrier_j = self.known_barrier_j();
-        summary.peak_potential_over_barrier =
-            barrier_j.map(|barrier_j| self.peak_potential / barrier_j);
-        summary.thrust = self.recorder.is_some().then_some(self.thrust);
-        summary.row = Some(Box::new(of_row));
+        let row = Box::new(RowSummary {
+            energy_error: self.energy_error(self.task.energy_scale_j),
+            largest_potential_j: self.peak_potential,
+            peak_potential_over_barrier: barrier_j.map(|barrier_j| self.peak_potential / barrier_j),
+            ..self.of_row.clone()
+        });
+        let summary = Summary {
+            outcome,
+            outcome_time_s,
+            end_s: self.time,
+            impacts: self.impacts,
+            peak_rotations_rad: self.peak_rotations_rad.clone(),
+            energy_defect_ratio: self.energy_defect_ratio,
+            thrust: self.recorder.is_some().then_some(self.thrust),
+            cost: self.cost,
+            details: match self.elastic {
+                None => Details::Rigid(row),
+                Some(elastic) => Details::Elastic(row, elastic),
+            },
+        };
         let ending = match outcome {
             Outcome::Rest => Some((EventKind::Rest, State::Rest)),
             Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
@@ -1048,16 +1029,11 @@ impl<'a> Course<'a> {
         if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
             // The history ends here anyway.
             let _ = recorder.event(&Event {
-                time_s: self.time,
-                kind,
-                state,
-                mechanism: None,
                 rotations_rad: self.sample.rotations_rad.clone(),
                 rates_rad_s: self.sample.rates_rad_s.clone(),
                 energy_j: self.sample.energy_j,
                 hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
-                impact: None,
-                tie: None,
+                ..Event::new(self.time, kind, state)
             });
         }
         summary

@@ -1,12 +1,12 @@
-//! What is known of a row of rigid blocks before it moves: the push that starts it, and its first mechanism.
+//! A row of rigid blocks before it moves: the push that starts it, and its first mechanism.
 
 use nalgebra::Vector2;
-use thiserror::Error;
 
+use super::error::RowModelError;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Shape;
-use crate::dynamics::model::Initial;
+use crate::dynamics::recording::Shape;
+use crate::dynamics::request::Initial;
 use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::four_link::impact::ImpactModel;
@@ -18,38 +18,16 @@ use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
 
-/// Why a row does not stand on supports that have moved.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SettledError {
-    /// It falls.
-    #[error(
-        "with rigid joints the structure falls when its supports have moved {:.2} % of the way",
-        1e2 * .0
-    )]
-    Falls(
-        /// At this part of the movement.
-        f64,
-    ),
-    /// A tie has broken where they are.
-    #[error("with rigid joints tie {number} breaks before its supports have moved all of the way", number = .0 + 1)]
-    Tie(
-        /// Which one.
-        usize,
-    ),
-    /// It cannot be followed.
-    #[error(transparent)]
-    Settling(#[from] SettlingError),
-}
-
 /// A row of rigid blocks that stands.
 #[derive(Clone, Debug)]
-pub(in crate::dynamics) struct RigidRow {
-    row: Row,
+pub struct RigidRow {
+    /// Its blocks.
+    pub row: Row,
     /// Where it stands: undeformed, or on supports that have moved.
-    standing: Stance,
+    pub standing: Stance,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
-    /// The same where joints slip.
+    /// The push that starts it to either side where joints slip, in units of gravity.
     with_friction_g: Option<[Option<f64>; 2]>,
     /// Its first mechanism, if that has one known degree of freedom: four links, or one block.
     first: Option<FirstMechanism>,
@@ -81,7 +59,7 @@ impl RigidRow {
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
-    pub(in crate::dynamics) fn new(row: Row) -> Result<Self, StabilityError> {
+    pub fn new(row: Row) -> Result<Self, StabilityError> {
         let incipient_g = [
             onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
             onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
@@ -96,24 +74,14 @@ impl RigidRow {
         })
     }
 
-    /// Where it stands before it moves.
-    pub(in crate::dynamics) const fn standing(&self) -> &Stance {
-        &self.standing
-    }
-
-    /// Its blocks.
-    pub(in crate::dynamics) const fn row(&self) -> &Row {
-        &self.row
-    }
-
     /// The names of its blocks.
-    pub(in crate::dynamics) fn bodies(&self) -> Vec<String> {
+    pub fn bodies(&self) -> Vec<String> {
         let blocks = 1..=self.row.blocks().len();
         blocks.map(|block| block.to_string()).collect()
     }
 
-    /// What its samples report, if joints slip or not, and if pressures are reported or not.
-    pub(in crate::dynamics) fn shape(&self, slips: bool, presses: bool) -> Shape {
+    /// The size of its samples, by whether joints slip, and whether pressures are reported.
+    pub fn shape(&self, slips: bool, presses: bool) -> Shape {
         let joints = self.row.joints().len();
         let where_it_is = |told: bool| if told { joints } else { 0 };
         Shape {
@@ -126,7 +94,7 @@ impl RigidRow {
     }
 
     /// The push that starts it to that side, in units of gravity; `None` if no push starts it.
-    pub(in crate::dynamics) fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
+    pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
         match sway {
             Sway::Right => right,
@@ -134,14 +102,11 @@ impl RigidRow {
         }
     }
 
-    /// The same row, with the push that starts it to either side if joints slip, by limit analysis.
+    /// This row with joints that slip; the push that starts it to either side follows by limit analysis.
     ///
     /// # Errors
     /// When the row slides apart under its own weight, or this could not be determined.
-    pub(in crate::dynamics) fn with_friction(
-        mut self,
-        coefficient: Option<f64>,
-    ) -> Result<Self, FrictionError> {
+    pub fn with_friction(mut self, coefficient: Option<f64>) -> Result<Self, FrictionError> {
         self.with_friction_g = None;
         let Some(coefficient) = coefficient else {
             return Ok(self);
@@ -157,22 +122,19 @@ impl RigidRow {
         Ok(self)
     }
 
-    /// The same row on supports that have moved: the push that starts it is that which makes its hinges give way, and where it stands on
+    /// This row on supports that have moved: the push that starts it is that which makes its hinges give way, and where it stands on
     /// hinges its first mechanism is none of one degree of freedom whose barrier is known.
     ///
     /// # Errors
     /// When it falls on the way, or a tie breaks.
-    pub(in crate::dynamics) fn on_supports(
-        self,
-        movements: &Movements,
-    ) -> Result<Self, SettledError> {
+    pub fn on_supports(self, movements: &Movements) -> Result<Self, RowModelError> {
         let mut follower = Follower::new(&self.row)?;
         let way = |part: f64| *movements * part;
         if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
-            return Err(SettledError::Falls(part));
+            return Err(RowModelError::Falls(part));
         }
         if let Some(tie) = follower.stance.broken_tie() {
-            return Err(SettledError::Tie(tie));
+            return Err(RowModelError::TieBreaks(tie));
         }
         let first_g = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
         let incipient_g = [first_g(Sway::Right)?, first_g(Sway::Left)?];
@@ -189,19 +151,15 @@ impl RigidRow {
     /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
     /// not known.
     #[must_use]
-    pub(in crate::dynamics) fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+    pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         if self.is_on_hinges() || !self.row.ties().is_empty() {
             return None;
         }
         self.built_barrier_j(gravity_m_s2)
     }
 
-    /// The same on this ground: where its feet part it overturns at another energy, if at any.
-    pub(in crate::dynamics) fn barrier_on(
-        &self,
-        ground: &GroundMotion,
-        gravity_m_s2: f64,
-    ) -> Option<f64> {
+    /// The barrier on this ground, in J; `None` also where its feet part, since the feet do work.
+    pub fn barrier_on(&self, ground: &GroundMotion, gravity_m_s2: f64) -> Option<f64> {
         match ground.right_foot_of(&self.row) {
             Some(_) => None,
             None => self.barrier_j(gravity_m_s2),
@@ -209,14 +167,14 @@ impl RigidRow {
     }
 
     /// The barrier of the row as it was built, in J, with rigid joints and without its ties; estimated where that is not known.
-    pub(in crate::dynamics) fn estimated_barrier_j(&self, gravity_m_s2: f64) -> f64 {
+    pub fn estimated_barrier_j(&self, gravity_m_s2: f64) -> f64 {
         self.built_barrier_j(gravity_m_s2)
             .unwrap_or_else(|| estimated_barrier_j(&self.row, gravity_m_s2))
     }
 
     /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built, without its ties.
     /// Where hinges are open a small push sets it in a motion of hardly any energy.
-    pub(in crate::dynamics) fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
+    pub fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
         let known = self.is_on_hinges() || self.row.ties().is_empty();
         let built_j = known.then(|| self.built_barrier_j(gravity_m_s2));
         built_j.flatten().unwrap_or(0.0)
@@ -245,10 +203,7 @@ impl RigidRow {
     }
 
     /// Rotations of the blocks when the first mechanism is open this far.
-    pub(in crate::dynamics) fn released(
-        &self,
-        initial: Initial,
-    ) -> Result<Vec<f64>, ArgumentError> {
+    pub fn released(&self, initial: Initial) -> Result<Vec<f64>, ArgumentError> {
         let refused = |allowed: String| ArgumentError {
             argument: "rotation_rad",
             value: initial.rotation_rad,
@@ -302,7 +257,7 @@ const BARRIER_RATIO: f64 = 1e-3;
 
 /// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
 /// its joints overturns as one block, where that is least.
-pub(in crate::dynamics) fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
+pub fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     if row.supports() == Supports::Both {
         return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m();
     }

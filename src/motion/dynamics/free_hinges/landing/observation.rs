@@ -1,14 +1,14 @@
-//! What is recorded and reported on the way: energies and their balance, impacts and samples.
+//! Records and reports on the way: energies and their balance, impacts and samples.
 
 use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
-use crate::dynamics::free_hinges::FreeHingeError;
 use crate::dynamics::history::Sample;
 use crate::dynamics::row::course::{
     Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, eccentricity_ratio,
     equal_step, only, open_hinge,
 };
+use crate::dynamics::row::error::RowMotionError;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -18,14 +18,14 @@ use crate::mechanics::joints::SHUT_RATIO;
 /// impact.
 const LEAST_OPENING: f64 = 1e-9;
 
-pub(super) fn kinetic(pieces: &[Piece]) -> f64 {
+pub fn kinetic(pieces: &[Piece]) -> f64 {
     let twice = |piece: &Piece| {
         piece.mass * piece.velocity.norm_squared() + piece.inertia * piece.rate * piece.rate
     };
     0.5 * pieces.iter().map(twice).sum::<f64>()
 }
 
-pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
+pub fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
@@ -33,7 +33,7 @@ pub(super) fn momentum(pieces: &[Piece]) -> Vector2<f64> {
 const LEAST_SWING_RATIO: f64 = 1e-18;
 
 impl LandingStepper<'_> {
-    pub(super) fn height_energy(&self) -> f64 {
+    pub fn height_energy(&self) -> f64 {
         self.gravity * self.rest.rise_kg_m(&self.placement.centres_m)
     }
 
@@ -47,14 +47,15 @@ impl LandingStepper<'_> {
     }
 
     /// Potential energy of the blocks, and what is in the ties beyond that at rest.
-    pub(super) fn energy(&self) -> f64 {
+    pub fn energy(&self) -> f64 {
         self.height_energy() + self.ties.energy_j()
     }
 
     /// Compares the energy at an instant with its balance.
-    pub(super) fn audit(&mut self, kinetic: f64) {
+    pub fn audit(&mut self, kinetic: f64) {
         let taken = self.course.of_row.energy_taken_j + self.ties.taken_j();
-        let due = self.start_energy + self.ground_work + self.right.work_j() - taken;
+        let due = self.start_energy + self.course.of_row.ground_j + self.course.of_row.right_foot_j
+            - taken;
         let defect = kinetic + self.course.potential - due;
         self.course.note_defect(defect.abs());
     }
@@ -66,7 +67,7 @@ impl LandingStepper<'_> {
         // On hinges rounding leaves a little of it, which is no side.
         let sway = if lies { 0.0 } else { self.sway_kg_m() };
         let kinetic = kinetic(&self.pieces);
-        // On hinges a row may swing while the corners that touched go on touching.
+        // On hinges a row may swing while the same corners touch.
         let swings =
             self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
         self.course.moved |= !lies || swings;
@@ -79,7 +80,7 @@ impl LandingStepper<'_> {
         let known_s = self.lies_since_s.filter(|_| lies);
         self.lies_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
         if self.may_end_on_hinges() {
-            self.observe_hinges(kinetic);
+            self.observe_hinges();
         }
     }
 
@@ -88,20 +89,16 @@ impl LandingStepper<'_> {
         self.rest.is_on_hinges() || self.right.moves()
     }
 
-    /// What says of a row that may end on hinges when it rests, and when it has overturned: it may come to rest on others, lower or
-    /// higher, so its energy says neither. Between feet that part it lies far away if it is far from where either foot would have it.
-    fn observe_hinges(&mut self, kinetic: f64) {
-        let course = &self.course;
-        if kinetic >= REST_ENERGY_RATIO * course.energy_unit {
-            self.quiet_since_s = course.time;
-        }
-        let height = (!self.right.moves()).then_some(course.potential);
-        self.summit.note_results(&mut self.course, height);
+    /// Notes heights and displacements of a row that may end on hinges: it may come to rest on others, lower or higher, so its energy
+    /// shows neither rest nor overturning. Between feet that part it lies far away if it is far from where either foot would have it.
+    fn observe_hinges(&mut self) {
+        let height = (!self.right.moves()).then_some(self.course.potential);
+        self.course.note_height(height);
         let far_m = OVERTURNED_RATIO * self.row.size_m();
-        let stood = self.rest.placement();
+        let stood = &self.rest.placement;
         let moved_m = self.placement.centres_m.iter().zip(&stood.centres_m);
-        let gone_m = [Vector2::zeros(), self.right.gone_m()];
-        self.overturned |= moved_m.into_iter().any(|(now, stood)| {
+        let gone_m = [Vector2::zeros(), self.right.gone_m];
+        self.course.overturned |= moved_m.into_iter().any(|(now, stood)| {
             gone_m
                 .iter()
                 .all(|gone_m| (now - stood - gone_m).norm() >= far_m)
@@ -116,17 +113,17 @@ impl LandingStepper<'_> {
     }
 
     /// Whether the right support is not where it stood beside the left one.
-    pub(super) fn right_support_is_gone(&self) -> bool {
+    pub fn right_support_is_gone(&self) -> bool {
         self.right.is_gone(SHUT_RATIO * self.thinnest)
     }
 
     /// Horizontal displacement of the centre of gravity times the mass; from between the feet, where these part.
-    pub(super) fn sway_kg_m(&self) -> f64 {
+    pub fn sway_kg_m(&self) -> f64 {
         let sway = self.rest.sway_kg_m(&self.placement.centres_m);
-        sway - 0.5 * self.row.mass_kg() * self.right.gone_m().x
+        sway - 0.5 * self.row.mass_kg() * self.right.gone_m.x
     }
 
-    fn report_impact(&mut self, taken_before: f64) {
+    fn note_impact(&mut self, taken_before: f64) {
         let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
         shut.clear();
         opened.clear();
@@ -152,15 +149,15 @@ impl LandingStepper<'_> {
         let taken_j = self.course.of_row.energy_taken_j - taken_before;
         self.stands = self.course.opened.is_empty() && self.lies_at_rest();
         let before_j = kinetic(&self.pieces) + taken_j;
-        self.tell_impact(!self.stands, [before_j, taken_j], None);
+        self.report_impact(!self.stands, [before_j, taken_j], None);
     }
 
     /// Reports the joints that opened in a step that began at this time where the row stood.
-    fn report_uplift(&mut self, from_s: f64) {
+    fn note_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
         let gaps = self.placement.gaps_m.iter().enumerate();
-        let stood = self.rest.touching();
+        let stood = &self.rest.touching;
         opened.extend(
             gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
                 .filter_map(|(joint, gaps)| open_hinge(joint, *gaps)),
@@ -169,13 +166,13 @@ impl LandingStepper<'_> {
         if !self.stands {
             // Until then it stood still.
             let blocks = self.row.blocks().len();
-            self.tell_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
+            self.report_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
         }
     }
 }
 
 impl<'a> Stepper<'a> for LandingStepper<'a> {
-    type Error = FreeHingeError;
+    type Error = RowMotionError;
 
     fn course(&self) -> &Course<'a> {
         &self.course
@@ -186,14 +183,11 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn completed(&mut self) -> &mut Course<'a> {
-        let of_row = &mut self.course.of_row;
-        of_row.ground_j = self.ground_work;
-        of_row.right_foot_j = self.right.work_j();
         &mut self.course
     }
 
     /// It ends at its landing, if there is one.
-    fn step(&mut self, until: f64) -> Result<(), FreeHingeError> {
+    fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.course.longest_step_s);
         self.touch_shut();
@@ -211,26 +205,25 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         if landed {
             self.impact()?;
         }
-        let time_s = self.course.time;
-        let happened = self.ties.happened(&mut self.course.of_row.ties, time_s);
+        let happened = self.course.note_ties(self.ties.memories());
         self.observe();
         if landed {
-            self.report_impact(taken_before);
+            self.note_impact(taken_before);
         } else if self.stands {
-            self.report_uplift(from_s);
+            self.note_uplift(from_s);
         }
         self.course.mind_balance();
         for (tie, kind) in happened {
-            self.tell_tie(tie, kind);
+            self.report_tie(tie, kind);
         }
-        self.course.summary.cost.steps += 1;
+        self.course.cost.steps += 1;
         let of_row = &mut self.course.of_row;
         of_row.merged += u64::from(step.merged);
         of_row.most_iterations = of_row.most_iterations.max(self.step_iterations);
         Ok(())
     }
 
-    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, FreeHingeError> {
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError> {
         let before = self.momentum();
         let ground = self.half_kick();
         std::mem::swap(&mut self.program, &mut self.auxiliary);
@@ -250,12 +243,12 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         solved?;
         let work = ground.dot(&(before + momentum(&self.next_pieces))) * 0.5;
-        self.ground_work -= work;
-        self.right.works(right_j);
+        self.course.of_row.ground_j -= work;
+        self.course.of_row.right_foot_j += right_j;
         self.audit(kinetic_j);
-        self.ground_work += work;
-        self.right.works(-right_j);
-        sample.feet_apart_m = self.right.gone_m();
+        self.course.of_row.ground_j += work;
+        self.course.of_row.right_foot_j -= right_j;
+        sample.feet_apart_m = self.right.gone_m;
         sample.poses.extend(&self.placement.poses);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -283,7 +276,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn stands(&self, sample: &Sample) -> bool {
-        let quiet = || self.course.is_quiet(self.quiet_since_s);
+        let quiet = || self.course.is_quiet(self.course.quiet_since_s);
         let lies = self.lies_at_rest() || (self.may_end_on_hinges() && quiet());
         lies || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
@@ -295,8 +288,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     fn rests_since(&self) -> Option<f64> {
         let on_hinges = self.rest.is_on_hinges() || self.right_support_is_gone();
         if on_hinges && !self.lies_at_rest() {
-            let quiet = self.course.is_quiet(self.quiet_since_s);
-            return quiet.then_some(self.quiet_since_s);
+            let quiet = self.course.is_quiet(self.course.quiet_since_s);
+            return quiet.then_some(self.course.quiet_since_s);
         }
         self.lies_since_s
     }
@@ -304,7 +297,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     /// By its height: what is in ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
         if self.may_end_on_hinges() {
-            return self.overturned.then_some(self.summit.time);
+            return self.course.overturned_s();
         }
         self.course.fallen_s(self.height())
     }

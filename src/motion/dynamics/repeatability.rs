@@ -1,4 +1,4 @@
-//! How certain a motion is: what it shares with its repetitions, [equally good ways to compute it](Model::repetitions).
+//! The repeatability of a motion: its agreement with its repetitions, [equally good ways to compute it](Model::repetitions).
 //!
 //! If these disagree on whether it overturns, that is **uncertain**: neither overturned nor survived. The side to which it overturns,
 //! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
@@ -6,14 +6,14 @@
 //! repetition differs before the largest rotation: then still other steps may end otherwise ([`EarlyDifference`]).
 
 use std::collections::VecDeque;
-use std::thread::{self, JoinHandle};
 
 use thiserror::Error;
 
 use super::ground::GroundMotion;
-use super::history::{HalfCycle, Outcome, Summary};
+use super::history::{Details, HalfCycle, Outcome, Summary};
 use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError};
 use super::until::Until;
+use super::variation::Running;
 
 /// Peaks are called certain to within this fraction of them.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
@@ -27,28 +27,27 @@ const LEAST_PEAK_RATIO: f64 = 1e-2;
 /// Slips below this, in metres, are none.
 const LEAST_SLIP_M: f64 = 1e-6;
 
-/// A motion beside its repetitions: only what they agree on can be relied on.
+/// A motion beside its repetitions: only results on which they agree are reliable.
 ///
-/// After the first change of side, the order of impacts that almost coincide decides how the motion goes
-/// on.
+/// After the first change of side, the order of impacts that almost coincide decides the rest of the motion.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Spread {
+pub struct Repeatability {
     /// How the repetitions were computed.
     pub repeated: Vec<&'static str>,
     /// Outcomes of the motion itself, then of the repetitions.
     pub outcomes: Vec<Outcome>,
     /// The half cycles of the motion itself that peak at a hundredth of its largest peak or more.
-    pub half_cycles: Vec<HalfCycleSpread>,
+    pub half_cycles: Vec<RepeatedHalfCycle>,
     /// Number of these, from the first on, that are certain.
     pub same_until_half_cycle: usize,
     /// When the first of these that differs begins, in seconds; `None` where none differs.
     pub parts_at_s: Option<f64>,
     /// The largest rotation of a block; `None` if one of the motions overturns.
-    pub largest: Option<PeakSpread>,
+    pub largest_rad: Option<RepeatedValue>,
     /// The first difference that makes the outcome of a row with joints that slip uncertain.
     pub early: Option<EarlyDifference>,
     /// Slips of the joints at the end; empty if one of the motions overturns, and without slip.
-    pub slips: Vec<SlipSpread>,
+    pub slips_m: Vec<RepeatedValue>,
 }
 
 /// A half cycle before the largest rotation that differs by more than [`SAME_PEAK_RATIO`] in a repetition.
@@ -62,70 +61,52 @@ pub struct EarlyDifference {
     pub repetition: &'static str,
 }
 
-/// Slip of a joint at the end of the motion, in metres.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SlipSpread {
-    /// In the motion itself.
-    pub own_m: f64,
-    /// The least of all.
-    pub min_m: f64,
-    /// The largest of all.
-    pub max_m: f64,
-}
-
-impl SlipSpread {
-    /// Largest magnitude.
-    fn most_m(&self) -> f64 {
-        self.min_m.abs().max(self.max_m.abs())
-    }
-}
-
 /// A half cycle of a motion beside its counterparts in the repetitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfCycleSpread {
+pub struct RepeatedHalfCycle {
     /// The half cycle of the motion itself.
     pub own: HalfCycle,
     /// Its peak in all motions; `None` if a repetition has no [counterpart](HalfCycle::counterpart) of it.
-    pub peak: Option<PeakSpread>,
+    pub peak_rad: Option<RepeatedValue>,
 }
 
-impl HalfCycleSpread {
+impl RepeatedHalfCycle {
     /// Whether its peak is certain.
     #[must_use]
-    pub fn is_same(&self) -> bool {
-        self.peak.is_some_and(|peak| peak.is_same())
+    pub fn is_certain(&self) -> bool {
+        self.peak_rad.is_some_and(|peak| peak.is_certain())
     }
 }
 
-/// A largest rotation of a block, in radians.
+/// A quantity of a motion beside that of its repetitions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PeakSpread {
-    /// Largest rotation in the motion itself.
-    pub own_rad: f64,
+pub struct RepeatedValue {
+    /// In the motion itself.
+    pub own: f64,
     /// The least of all.
-    pub min_rad: f64,
+    pub min: f64,
     /// The largest of all.
-    pub max_rad: f64,
+    pub max: f64,
 }
 
-impl PeakSpread {
-    /// Peaks of the motion itself, then of its repetitions.
-    fn of(peaks_rad: &[f64]) -> Self {
+impl RepeatedValue {
+    /// Of the motion itself, then of its repetitions.
+    fn of(values: &[f64]) -> Self {
         Self {
-            own_rad: peaks_rad[0],
-            min_rad: peaks_rad.iter().copied().fold(f64::INFINITY, f64::min),
-            max_rad: peaks_rad.iter().copied().fold(0.0, f64::max),
+            own: values[0],
+            min: values.iter().copied().fold(f64::INFINITY, f64::min),
+            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         }
     }
 
-    /// Whether all agree so well that they are certain to [`SAME_PEAK_RATIO`].
+    /// Whether all peaks agree so well that they are certain to [`SAME_PEAK_RATIO`].
     #[must_use]
-    pub fn is_same(&self) -> bool {
-        self.max_rad - self.min_rad <= AGREEMENT * SAME_PEAK_RATIO * self.max_rad
+    pub fn is_certain(&self) -> bool {
+        self.max - self.min <= AGREEMENT * SAME_PEAK_RATIO * self.max
     }
 }
 
-impl Spread {
+impl Repeatability {
     /// Compares a motion of a row with its repetitions, given with their names.
     #[must_use]
     pub fn new(own: &Summary, repetitions: &[(&'static str, Summary)]) -> Self {
@@ -137,19 +118,18 @@ impl Spread {
         let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
         cycles.retain(|cycle| cycle.peak_rad >= least_rad);
         let beside = |own: HalfCycle| {
-            let others = repetitions.iter().map(|(_, other)| {
-                let others = other.row.as_ref().map(|row| &row.half_cycles[..]);
-                Some(own.counterpart(others?)?.peak_rad)
-            });
+            let others = repetitions
+                .iter()
+                .map(|(_, other)| Some(own.counterpart(&other.row()?.half_cycles)?.peak_rad));
             let peaks_rad: Option<Vec<f64>> =
                 std::iter::once(Some(own.peak_rad)).chain(others).collect();
-            HalfCycleSpread {
+            RepeatedHalfCycle {
                 own,
-                peak: peaks_rad.map(|peaks_rad| PeakSpread::of(&peaks_rad)),
+                peak_rad: peaks_rad.map(|peaks_rad| RepeatedValue::of(&peaks_rad)),
             }
         };
         let half_cycles: Vec<_> = cycles.into_iter().map(beside).collect();
-        let differs = |cycle: &HalfCycleSpread| !cycle.is_same();
+        let differs = |cycle: &RepeatedHalfCycle| !cycle.is_certain();
         let parts = half_cycles.iter().position(differs);
         let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
         let largest_rad: Vec<f64> = runs
@@ -157,23 +137,20 @@ impl Spread {
             .map(|summary| summary.largest_rotation_rad())
             .collect();
         let all_stand = runs.iter().all(stands);
-        let mut early = repetitions.iter().filter_map(|(name, other)| {
-            let (peak_time_s, ratio) = early_difference(own, other)?;
-            Some(EarlyDifference {
-                peak_time_s,
-                ratio,
-                repetition: name,
-            })
-        });
+        let early = |(name, other): &(&'static str, Summary)| early_difference(own, name, other);
         Self {
             repeated: repetitions.iter().map(|(name, _)| *name).collect(),
             outcomes: runs.iter().map(|summary| summary.outcome).collect(),
             same_until_half_cycle: parts.unwrap_or(half_cycles.len()),
             parts_at_s: parts.map(|parts| half_cycles[parts].own.start_s),
             half_cycles,
-            largest: all_stand.then(|| PeakSpread::of(&largest_rad)),
-            early: early.next(),
-            slips: if all_stand { slips(&runs) } else { Vec::new() },
+            largest_rad: all_stand.then(|| RepeatedValue::of(&largest_rad)),
+            early: repetitions.iter().find_map(early),
+            slips_m: if all_stand {
+                slips_m(&runs)
+            } else {
+                Vec::new()
+            },
         }
     }
 
@@ -192,18 +169,16 @@ impl Spread {
     }
 
     fn most_slip_m(&self) -> f64 {
-        self.slips
-            .iter()
-            .map(SlipSpread::most_m)
-            .fold(0.0, f64::max)
+        let ends_m = self.slips_m.iter().flat_map(|slip| [slip.min, slip.max]);
+        ends_m.fold(0.0, |most_m, end_m| most_m.max(end_m.abs()))
     }
 
     /// The joint whose slips at the end differ most, if they differ so much that they are not certain to [`SAME_PEAK_RATIO`] of the
     /// largest slip of any joint.
     #[must_use]
     pub fn uncertain_slip(&self) -> Option<usize> {
-        let range_m = |joint: &usize| self.slips[*joint].max_m - self.slips[*joint].min_m;
-        let joints = 0..self.slips.len();
+        let range_m = |joint: &usize| self.slips_m[*joint].max - self.slips_m[*joint].min;
+        let joints = 0..self.slips_m.len();
         let worst = joints.max_by(|one, other| range_m(one).total_cmp(&range_m(other)));
         let same_m = AGREEMENT * SAME_PEAK_RATIO * self.most_slip_m();
         worst.filter(|joint| self.has_slipped() && range_m(joint) > same_m)
@@ -217,37 +192,32 @@ impl Spread {
 }
 
 /// Slips of the joints at the end of all these motions; empty where joints do not slip.
-fn slips(runs: &[&Summary]) -> Vec<SlipSpread> {
-    let slipped = |summary: &Summary| summary.row.as_ref().and_then(|row| row.sliding.clone());
-    let Some(all) = runs
-        .iter()
-        .map(|run| slipped(run))
-        .collect::<Option<Vec<_>>>()
-    else {
+fn slips_m(runs: &[&Summary]) -> Vec<RepeatedValue> {
+    let slipped = runs.iter().map(|run| run.row()?.sliding.as_ref());
+    let Some(all) = slipped.collect::<Option<Vec<_>>>() else {
         return Vec::new();
     };
     let joint = |joint: usize| {
-        let slips_m = all.iter().map(|sliding| sliding.offsets_m[joint]);
-        SlipSpread {
-            own_m: all[0].offsets_m[joint],
-            min_m: slips_m.clone().fold(f64::INFINITY, f64::min),
-            max_m: slips_m.fold(f64::NEG_INFINITY, f64::max),
-        }
+        let slips_m: Vec<f64> = all.iter().map(|sliding| sliding.offsets_m[joint]).collect();
+        RepeatedValue::of(&slips_m)
     };
     (0..all[0].offsets_m.len()).map(joint).collect()
 }
 
-/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]: when it peaks, in
-/// seconds, and by how much it differs. `None` for joints that do not slip, elastic joints, and motions that are known to stay far from
+/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for joints that do not slip, elastic joints, and motions that are known to stay far from
 /// overturning. Where rigid joints slip, already the first half cycle may depend on the step.
-fn early_difference(own: &Summary, other: &Summary) -> Option<(f64, f64)> {
-    let row = own.row.as_ref()?;
-    let slips = row.sliding.is_some() && row.elastic.is_none();
+fn early_difference(
+    own: &Summary,
+    repetition: &'static str,
+    other: &Summary,
+) -> Option<EarlyDifference> {
+    let row = own.row()?;
+    let slips = row.sliding.is_some() && own.elastic().is_none();
     let overturns = Verdict::from(own.outcome) == Verdict::Overturns;
-    if !slips || !overturns && is_far(own.peak_potential_over_barrier) {
+    if !slips || !overturns && is_far(row.peak_potential_over_barrier) {
         return None;
     }
-    let others = &other.row.as_ref()?.half_cycles;
+    let others = &other.row()?.half_cycles;
     let cycles = own.half_cycles();
     let largest_rad = cycles
         .iter()
@@ -261,41 +231,35 @@ fn early_difference(own: &Summary, other: &Summary) -> Option<(f64, f64)> {
             let [one_rad, other_rad] = [cycle.peak_rad, other.peak_rad];
             (one_rad - other_rad).abs() / one_rad.max(other_rad)
         });
-        (cycle.peak_time_s, ratio)
+        EarlyDifference {
+            peak_time_s: cycle.peak_time_s,
+            ratio,
+            repetition,
+        }
     });
-    differences.find(|(_, ratio)| *ratio > SAME_PEAK_RATIO)
+    differences.find(|difference| difference.ratio > SAME_PEAK_RATIO)
 }
 
 /// The repetitions of a motion, computed on threads of their own beside it. If the motion itself fails nobody waits for them: they
 /// end with the program.
 #[derive(Debug)]
-pub struct Repetitions(Vec<(&'static str, JoinHandle<Result<Summary, SimulationError>>)>);
+pub struct Repetitions(Vec<(&'static str, Running)>);
 
-/// Why it is not known how far a motion depends on its computation.
+/// A repetition failed, so the repeatability is unknown.
 #[derive(Clone, Debug, Error)]
-pub enum SpreadError {
-    /// A repetition failed.
-    #[error("the repetition with {name} failed: {error}")]
-    Failed {
-        /// Which one.
-        name: &'static str,
-        /// Why.
-        error: SimulationError,
-    },
-    /// A repetition crashed, which is a defect of the program.
-    #[error("the repetition with {0} crashed")]
-    Crashed(&'static str),
+#[error("the repetition with {name} failed: {error}")]
+pub struct RepeatabilityError {
+    /// The repetition.
+    name: &'static str,
+    /// The reason.
+    error: SimulationError,
 }
 
 impl Repetitions {
     /// Starts them.
     #[must_use]
     pub fn start(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Self {
-        let start = |Repetition { name, model }| {
-            let (ground, request) = (ground.clone(), *request);
-            let repeated = move || model.simulate(&ground, &request, None);
-            (name, thread::spawn(repeated))
-        };
+        let start = |Repetition { name, model }| (name, Running::start(model, ground, request));
         Self(model.repetitions().into_iter().map(start).collect())
     }
 
@@ -303,28 +267,29 @@ impl Repetitions {
     ///
     /// # Errors
     /// When one of them failed.
-    pub fn spread(self, own: &Summary) -> Result<Spread, SpreadError> {
-        let ended = |(name, repetition): (_, JoinHandle<Result<_, _>>)| {
-            let ended = repetition.join().map_err(|_| SpreadError::Crashed(name))?;
-            let summary = ended.map_err(|error| SpreadError::Failed { name, error })?;
-            Ok((name, summary))
+    pub fn compare(self, own: &Summary) -> Result<Repeatability, RepeatabilityError> {
+        let ended = |(name, running): (_, Running)| match running.ended() {
+            Ok(summary) => Ok((name, summary)),
+            Err(error) => Err(RepeatabilityError { name, error }),
         };
         let repeated: Result<Vec<_>, _> = self.0.into_iter().map(ended).collect();
-        Ok(Spread::new(own, &repeated?))
+        Ok(Repeatability::new(own, &repeated?))
     }
 }
 
-/// Whether a structure overturns, as far as that is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// It does not.
-    Survives,
-    /// The history ended too early: [`Outcome::Incomplete`].
-    Incomplete,
-    /// That depends on how it is computed.
-    Uncertain,
-    /// It does.
-    Overturns,
+named! {
+    /// Whether a structure overturns, as far as that is known.
+    #[derive(PartialOrd, Ord)]
+    pub enum Verdict {
+        /// It does not.
+        Survives = "survives",
+        /// The history ended too early: [`Outcome::Incomplete`].
+        Incomplete = "incomplete",
+        /// That depends on how it is computed.
+        Uncertain = "uncertain",
+        /// It does.
+        Overturns = "overturns",
+    }
 }
 
 impl From<Outcome> for Verdict {
@@ -340,23 +305,10 @@ impl From<Outcome> for Verdict {
 }
 
 impl Verdict {
-    /// Its name in results.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    fn words(self) -> String {
         match self {
-            Self::Survives => "survives",
-            Self::Incomplete => "incomplete",
-            Self::Uncertain => "uncertain",
-            Self::Overturns => "overturns",
-        }
-    }
-
-    const fn words(self) -> &'static str {
-        match self {
-            Self::Survives => "survives",
-            Self::Incomplete => "is incomplete",
-            Self::Uncertain => "is uncertain",
-            Self::Overturns => "overturns",
+            Self::Survives | Self::Overturns => self.name().to_owned(),
+            Self::Incomplete | Self::Uncertain => format!("is {}", self.name()),
         }
     }
 }
@@ -364,7 +316,7 @@ impl Verdict {
 /// Why a repetition makes the outcome of a history uncertain; `None` if it confirms it.
 pub fn objection(
     own: &Summary,
-    name: &str,
+    name: &'static str,
     repeated: &Result<Summary, SimulationError>,
 ) -> Option<String> {
     let verdict = Verdict::from(own.outcome);
@@ -377,12 +329,11 @@ pub fn objection(
     if other != verdict {
         return Some(format!("{words}; {} with {name}", other.words()));
     }
-    early_difference(own, repeated).map(|(peak_time_s, ratio)| {
-        let percent = 100.0 * ratio;
-        format!(
-            "{words}; the half cycle at {peak_time_s:.4} s differs by {percent:.1} % with {name}"
-        )
-    })
+    let early = early_difference(own, name, repeated)?;
+    let (time_s, percent) = (early.peak_time_s, 100.0 * early.ratio);
+    Some(format!(
+        "{words}; the half cycle at {time_s:.4} s differs by {percent:.1} % with {name}"
+    ))
 }
 
 /// A history with what studies of many cases ask of it.
@@ -416,7 +367,7 @@ pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> 
     checks.answers()
 }
 
-/// The same where the histories themselves are known.
+/// Histories of cases that are known already, in their order, repeated where that may matter.
 pub fn repeated(
     model: &dyn Model,
     cases: &[Case],
@@ -457,7 +408,7 @@ impl<'a> Checks<'a> {
         }
     }
 
-    /// Keeps the history of a case, and asks for its repetitions if they may matter.
+    /// Keeps the history of a case, and queues its first repetition if that may matter.
     fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
         let (_, request) = &self.cases[case];
         if own
@@ -469,7 +420,7 @@ impl<'a> Checks<'a> {
         self.own[case] = Some(own);
     }
 
-    /// Asks for a repetition, if there is another one. It goes to the front of the queue: the repetitions of a case come one after the
+    /// Queues a repetition, if there is another one. It goes to the front of the queue: the repetitions of a case come one after the
     /// other, and left to the end the last of them would run with nothing beside it.
     fn repeat(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
@@ -539,17 +490,13 @@ const FAR_FROM_OVERTURNING: f64 = 0.5;
 fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
         Outcome::NeverMoved | Outcome::Incomplete => true,
-        Outcome::Overturned(_) => own
-            .row
-            .as_ref()
-            .is_some_and(|row| row.half_cycles_with_fall <= 1),
+        Outcome::Overturned(_) => own.row().is_some_and(|row| row.half_cycles_with_fall <= 1),
         Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
-            let row = own.row.as_ref();
-            let elastic = row.and_then(|row| Some((row, row.elastic.as_ref()?)));
-            let ratio = match elastic {
-                None => own.peak_potential_over_barrier,
+            let ratio = match &own.details {
+                Details::Mechanisms { .. } => None,
+                Details::Rigid(row) => row.peak_potential_over_barrier,
                 // Elastic joints overturn below the barrier of rigid joints.
-                Some((row, elastic)) => {
+                Details::Elastic(row, elastic) => {
                     let barrier_j = model.elastic_barrier_j(request.gravity_m_s2);
                     let gone_j = elastic.friction_j + elastic.crushed_j;
                     let barrier_j = barrier_j.filter(|barrier_j| gone_j < GONE * barrier_j);

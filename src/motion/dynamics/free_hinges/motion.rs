@@ -1,0 +1,84 @@
+//! One motion of a row with rigid joints.
+
+use super::landing::LandingStepper;
+use super::settings::Settings;
+use super::sliding::SlidingStepper;
+use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::history::Summary;
+use crate::dynamics::recorder::Recorder;
+use crate::dynamics::row::course::{self, Task};
+use crate::dynamics::row::error::RowMotionError;
+use crate::dynamics::row::standing::estimated_barrier_j;
+use crate::mechanics::blocks::Row;
+use crate::mechanics::stance::Stance;
+
+/// The most steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
+const MOST_STEPS: f64 = 1e12;
+
+/// Computes the motion of a row on moving ground, from rest or released from given rotations of its blocks
+/// (radians; hinges only).
+///
+/// # Errors
+/// When the initial rotations do not fit, or a step fails.
+pub fn simulate(
+    row: &Row,
+    ground: &GroundMotion,
+    gravity_m_s2: f64,
+    settings: &Settings,
+    initial_rad: Option<&[f64]>,
+    recorder: Option<&mut dyn Recorder>,
+) -> Result<Summary, RowMotionError> {
+    let task = Task {
+        row,
+        ground,
+        gravity_m_s2,
+        clock: settings.clock(),
+        barrier_j: None,
+        built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
+        energy_scale_j: 0.0,
+    };
+    motion(
+        task,
+        settings,
+        &Stance::undeformed(row),
+        initial_rad,
+        recorder,
+    )
+}
+
+/// Computes a motion of a row that stands anywhere.
+pub fn motion(
+    task: Task<'_>,
+    settings: &Settings,
+    standing: &Stance,
+    initial_rad: Option<&[f64]>,
+    recorder: Option<&mut dyn Recorder>,
+) -> Result<Summary, RowMotionError> {
+    let (step_s, end_s) = (settings.longest_step_s, settings.end_s);
+    if end_s / step_s > MOST_STEPS {
+        return Err(RowMotionError::TooLong {
+            step_s,
+            end_s,
+            remedy: "give a longer `longest_step_s` in [free_hinges]",
+        });
+    }
+    // A recorder of any lifetime serves for as long as the task.
+    let recorder = recorder.map(|recorder| recorder as _);
+    let released =
+        |recorder| LandingStepper::released(task, settings, standing, initial_rad, recorder);
+    let Some(coefficient) = settings.friction_coefficient else {
+        return course::run(released(recorder)?);
+    };
+    let placement = match initial_rad {
+        Some(_) => released(None)?.into_placement(),
+        None => standing.placement.clone(),
+    };
+    course::run(SlidingStepper::new(
+        standing,
+        &placement,
+        task,
+        settings,
+        coefficient,
+        recorder,
+    ))
+}

@@ -1,0 +1,289 @@
+//! Histories in memory: all samples and events of a motion.
+
+use std::ops::ControlFlow;
+
+use nalgebra::Vector2;
+use thiserror::Error;
+
+use super::history::{Event, Impact, JointPressure, OpenHinge, Sample, State, Summary, TieSample};
+use super::recorder::Recorder;
+use crate::mechanics::chain::Demand;
+use crate::mechanics::geometry::pose::Pose;
+
+/// A history with all its samples and events.
+#[derive(Clone, Debug, PartialEq)]
+pub struct History {
+    /// Names of the bodies, as of [`Model::bodies`](super::model::Model::bodies).
+    pub bodies: Vec<String>,
+    /// Its summary.
+    pub summary: Summary,
+    /// The state at every output step and at the end.
+    pub samples: Samples,
+    /// All events: the phase that follows the `i`-th is `i + 1`.
+    pub events: Vec<Event>,
+}
+
+impl History {
+    /// The events that are impacts, with their instants in seconds.
+    pub fn impacts(&self) -> impl Iterator<Item = (f64, &Impact)> {
+        let events = self.events.iter();
+        events.filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
+    }
+}
+
+/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have one entry for each body and
+/// sample, sample by sample.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// Times.
+    pub time_s: Vec<f64>,
+    /// Ground accelerations, positive to +x.
+    pub ground_acceleration_m_s2: Vec<f64>,
+    /// Vertical ground accelerations, positive upwards.
+    pub vertical_acceleration_m_s2: Vec<f64>,
+    /// How far the right foot has gone from the left one, to the right and upwards, in m.
+    pub feet_apart_m: Vec<[f64; 2]>,
+    /// Events so far.
+    pub phase: Vec<usize>,
+    /// Rest, rocking or overturned.
+    pub state: Vec<State>,
+    /// Rotations, by body.
+    pub rotations_rad: Vec<f64>,
+    /// Rotation rates, by body.
+    pub rates_rad_s: Vec<f64>,
+    /// Poses by body: rotation in radians and displacement in metres, to the right and upwards; see [`Pose`].
+    pub poses: Vec<[f64; 3]>,
+    /// Open hinges: those of sample `i` are from `first_hinge[i]` up to `first_hinge[i + 1]`, or the end.
+    pub hinges: Vec<OpenHinge>,
+    /// Where the hinges of each sample begin.
+    pub first_hinge: Vec<usize>,
+    /// Thrust excess and friction demand of the sections.
+    pub demand: Vec<Demand>,
+    /// Kinetic and potential energies, in J.
+    pub energy_j: Vec<f64>,
+    /// Energies over the barrier of the mechanism that moves, where it is known.
+    pub energy_ratio: Vec<Option<f64>>,
+    /// Rotations over the critical ones, where these are known.
+    pub rotation_over_critical: Vec<Option<f64>>,
+    /// Gaps of the joints at intrados and extrados, in m, joint by joint; only for a row of blocks.
+    pub gaps_m: Vec<[f64; 2]>,
+    /// Offsets of the joints, in m, joint by joint; only for a row whose joints slip.
+    pub offsets_m: Vec<f64>,
+    /// Forces and stresses of the joints, joint by joint; only for a row with elastic joints.
+    pub pressures: Vec<JointPressure>,
+    /// Forces and elongations of the ties, tie by tie.
+    pub ties: Vec<TieSample>,
+}
+
+impl Samples {
+    /// Number of samples.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.time_s.is_empty()
+    }
+
+    /// Adds a sample.
+    pub fn push(&mut self, sample: &Sample) {
+        self.time_s.push(sample.time_s);
+        self.ground_acceleration_m_s2
+            .push(sample.ground_acceleration_m_s2);
+        self.vertical_acceleration_m_s2
+            .push(sample.vertical_acceleration_m_s2);
+        self.feet_apart_m.push(sample.feet_apart_m.into());
+        self.phase.push(sample.phase);
+        self.state.push(sample.state);
+        self.rotations_rad.extend(&sample.rotations_rad);
+        self.rates_rad_s.extend(&sample.rates_rad_s);
+        let poses = sample.poses.iter();
+        self.poses.extend(
+            poses.map(|pose| [pose.rotation_rad(), pose.translation.x, pose.translation.y]),
+        );
+        self.first_hinge.push(self.hinges.len());
+        self.hinges.extend(&sample.hinges);
+        self.demand.push(sample.demand);
+        self.energy_j.push(sample.energy_j);
+        self.energy_ratio.push(sample.energy_ratio);
+        self.gaps_m.extend(&sample.gaps_m);
+        self.offsets_m.extend(&sample.offsets_m);
+        self.pressures.extend(&sample.pressures);
+        self.ties.extend(&sample.ties);
+        self.rotation_over_critical
+            .push(sample.rotation_over_critical);
+    }
+
+    /// A sample; `None` beyond the last.
+    #[must_use]
+    pub fn get(&self, index: usize) -> Option<Sample> {
+        let time_s = *self.time_s.get(index)?;
+        let samples = self.len();
+        let hinges_end = self.first_hinge.get(index + 1).copied();
+        let hinges = *self.first_hinge.get(index)?..hinges_end.unwrap_or(self.hinges.len());
+        Some(Sample {
+            time_s,
+            ground_acceleration_m_s2: *self.ground_acceleration_m_s2.get(index)?,
+            vertical_acceleration_m_s2: *self.vertical_acceleration_m_s2.get(index)?,
+            feet_apart_m: (*self.feet_apart_m.get(index)?).into(),
+            phase: *self.phase.get(index)?,
+            state: *self.state.get(index)?,
+            rotations_rad: part(&self.rotations_rad, index, samples),
+            rates_rad_s: part(&self.rates_rad_s, index, samples),
+            poses: part(&self.poses, index, samples).iter().map(pose).collect(),
+            hinges: self.hinges.get(hinges)?.to_vec(),
+            demand: *self.demand.get(index)?,
+            energy_j: *self.energy_j.get(index)?,
+            energy_ratio: *self.energy_ratio.get(index)?,
+            rotation_over_critical: *self.rotation_over_critical.get(index)?,
+            gaps_m: part(&self.gaps_m, index, samples),
+            eccentricity_ratios: Vec::new(),
+            offsets_m: part(&self.offsets_m, index, samples),
+            pressures: part(&self.pressures, index, samples),
+            ties: part(&self.ties, index, samples),
+        })
+    }
+
+    /// The samples, one after another.
+    pub fn iter(&self) -> impl Iterator<Item = Sample> {
+        (0..self.len()).map_while(|index| self.get(index))
+    }
+}
+
+/// The part of a column that belongs to a sample, of so many.
+fn part<T: Clone>(column: &[T], index: usize, samples: usize) -> Vec<T> {
+    let each = column.len() / samples;
+    column[index * each..(index + 1) * each].to_vec()
+}
+
+/// The pose of an entry of [`Samples::poses`].
+fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
+    Pose::new(rotation_rad, Vector2::new(x_m, y_m))
+}
+
+/// The size of the samples of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Number of bodies.
+    pub bodies: usize,
+    /// Number of joints that have gaps.
+    pub joints: usize,
+    /// Number of joints that have offsets.
+    pub slipping: usize,
+    /// Number of joints whose forces and stresses are sampled.
+    pub pressing: usize,
+    /// Number of ties.
+    pub ties: usize,
+}
+
+impl Shape {
+    /// Bytes of this many samples, at most: as if all hinges were open all the time.
+    #[must_use]
+    pub fn bytes(self, samples: u64) -> u64 {
+        // Times, two accelerations, two displacements of feet, energies; events so far and where the hinges begin; two ratios that may be unknown.
+        let alone = 6 * size_of::<f64>()
+            + 2 * size_of::<usize>()
+            + 2 * size_of::<Option<f64>>()
+            + size_of::<State>()
+            + size_of::<Demand>();
+        let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
+        // There is at most one hinge more than bodies, as a row between supports has one joint more than blocks.
+        let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
+        let by_joint = self.joints * size_of::<[f64; 2]>()
+            + self.slipping * size_of::<f64>()
+            + self.pressing * size_of::<JointPressure>()
+            + self.ties * size_of::<TieSample>();
+        let each = alone + self.bodies * by_body + hinges + by_joint;
+        samples.saturating_mul(each as u64)
+    }
+}
+
+/// Memory that a history may take by default, in bytes.
+pub const MEMORY_BYTES: u64 = 4_000_000_000;
+
+/// A history takes more memory than it may.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error(
+    "a history of so many samples and events takes {} of memory, and {} are allowed: take a longer output_step_s or a \
+     shorter duration_s, or allow more",
+    in_words(*.needed_bytes), in_words(*.allowed_bytes)
+)]
+pub struct MemoryError {
+    /// Memory that it needs in all, or needs already.
+    pub needed_bytes: u64,
+    /// Memory that it may take.
+    pub allowed_bytes: u64,
+}
+
+/// A size in readable units.
+fn in_words(bytes: u64) -> String {
+    let megabytes = bytes as f64 / 1e6;
+    if megabytes < 1e3 {
+        format!("{megabytes:.1} MB")
+    } else {
+        format!("{:.1} GB", megabytes / 1e3)
+    }
+}
+
+/// Collects all samples and events, as long as they do not take more memory than they may.
+#[derive(Clone, Debug)]
+pub struct Recording {
+    samples: Samples,
+    events: Vec<Event>,
+    /// Memory of all samples and of the events so far.
+    memory: MemoryError,
+}
+
+impl Recording {
+    /// A recording of at most this many samples, which together with the events may take this much memory.
+    ///
+    /// # Errors
+    /// When the samples alone may take more.
+    pub fn new(shape: Shape, samples: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
+        let recording = Self {
+            samples: Samples::default(),
+            events: Vec::new(),
+            memory: MemoryError {
+                needed_bytes: shape.bytes(samples),
+                allowed_bytes,
+            },
+        };
+        recording.check()?;
+        Ok(recording)
+    }
+
+    const fn check(&self) -> Result<(), MemoryError> {
+        if self.memory.needed_bytes > self.memory.allowed_bytes {
+            return Err(self.memory);
+        }
+        Ok(())
+    }
+
+    /// All that was collected.
+    ///
+    /// # Errors
+    /// When it took too much memory, which ended the history.
+    pub fn finish(self) -> Result<(Samples, Vec<Event>), MemoryError> {
+        self.check()?;
+        Ok((self.samples, self.events))
+    }
+}
+
+impl Recorder for Recording {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.samples.push(sample);
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.memory.needed_bytes += event.bytes();
+        if self.check().is_err() {
+            return ControlFlow::Break(());
+        }
+        self.events.push(event.clone());
+        ControlFlow::Continue(())
+    }
+}
