@@ -305,16 +305,8 @@ impl ElasticJoints {
         request: &Request,
     ) -> Result<Task<'a>, SimulationError> {
         self.check(ground, request)?;
-        let gravity_m_s2 = request.gravity_m_s2;
-        Ok(Task {
-            row: self.row(),
-            ground,
-            gravity_m_s2,
-            clock: self.clock(request)?,
-            barrier_j: self.rigid.barrier_on(ground, gravity_m_s2),
-            built_barrier_j: self.rigid.estimated_barrier_j(gravity_m_s2),
-            energy_scale_j: self.rigid.energy_scale_j(gravity_m_s2),
-        })
+        let clock = self.clock(request)?;
+        Ok(self.rigid.task(ground, request.gravity_m_s2, clock))
     }
 
     fn start<'a>(&'a self, rest: &'a Rest, barrier_j: &'a dyn Fn() -> Option<f64>) -> Start<'a> {

@@ -11,7 +11,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
 use crate::dynamics::recording::Shape;
-use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
+use crate::dynamics::row::course::LARGEST_ENERGY_ERROR;
 use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::arch::Arch;
@@ -266,15 +266,8 @@ impl Model for FreeHinges {
             .initial
             .map(|initial| self.rigid.released(initial))
             .transpose()?;
-        let task = Task {
-            row: self.row(),
-            ground,
-            gravity_m_s2: request.gravity_m_s2,
-            clock: settings.clock(),
-            barrier_j: self.rigid.barrier_on(ground, request.gravity_m_s2),
-            built_barrier_j: self.rigid.estimated_barrier_j(request.gravity_m_s2),
-            energy_scale_j: self.rigid.energy_scale_j(request.gravity_m_s2),
-        };
+        let gravity_m_s2 = request.gravity_m_s2;
+        let task = self.rigid.task(ground, gravity_m_s2, settings.clock());
         let standing = &self.rigid.standing;
         let summary = motion(task, &settings, standing, initial_rad.as_deref(), recorder)?;
         match summary.row() {

@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::course::{Clock, Task};
 use super::error::RowModelError;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
@@ -158,26 +159,28 @@ impl RigidRow {
         self.built_barrier_j(gravity_m_s2)
     }
 
-    /// The barrier on this ground, in J; `None` also where its feet part, since the feet do work.
-    pub fn barrier_on(&self, ground: &GroundMotion, gravity_m_s2: f64) -> Option<f64> {
-        match ground.right_foot_of(&self.row) {
-            Some(_) => None,
-            None => self.barrier_j(gravity_m_s2),
-        }
-    }
-
-    /// The barrier of the row as it was built, in J, with rigid joints and without its ties; estimated where that is not known.
-    pub fn estimated_barrier_j(&self, gravity_m_s2: f64) -> f64 {
-        self.built_barrier_j(gravity_m_s2)
-            .unwrap_or_else(|| estimated_barrier_j(&self.row, gravity_m_s2))
-    }
-
-    /// Energy beside which errors of a motion's balance are judged, in J: the barrier, or that of the row as it was built, without its ties.
-    /// Where hinges are open a small push sets it in a motion of hardly any energy.
-    pub fn energy_scale_j(&self, gravity_m_s2: f64) -> f64 {
+    /// Its motion on this ground. Energies are judged beside the barrier of the row as it was built, without its ties, in J: where hinges are
+    /// open a small push sets it in a motion of hardly any energy.
+    pub fn task<'a>(
+        &'a self,
+        ground: &'a GroundMotion,
+        gravity_m_s2: f64,
+        clock: Clock,
+    ) -> Task<'a> {
+        let built_j = self.built_barrier_j(gravity_m_s2);
+        // Where its feet part the feet do work, so it overturns at another energy, if at all.
+        let parts = ground.right_foot_of(&self.row).is_some();
         let known = self.is_on_hinges() || self.row.ties().is_empty();
-        let built_j = known.then(|| self.built_barrier_j(gravity_m_s2));
-        built_j.flatten().unwrap_or(0.0)
+        Task {
+            row: &self.row,
+            ground,
+            gravity_m_s2,
+            clock,
+            barrier_j: self.barrier_j(gravity_m_s2).filter(|_| !parts),
+            built_barrier_j: built_j
+                .unwrap_or_else(|| estimated_barrier_j(&self.row, gravity_m_s2)),
+            energy_scale_j: built_j.filter(|_| known).unwrap_or(0.0),
+        }
     }
 
     /// Whether it stands on hinges, of supports that have moved.
