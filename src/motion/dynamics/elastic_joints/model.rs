@@ -11,9 +11,11 @@ use crate::dynamics::model::{
     Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, check, one_by_one,
 };
 use crate::dynamics::recording::Shape;
-use crate::dynamics::row::course::{self, Clock, LARGEST_ENERGY_ERROR, Task};
+use crate::dynamics::row::clock::Clock;
+use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
 use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
+use crate::dynamics::row::stepper;
 use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
@@ -331,7 +333,7 @@ impl ElasticJoints {
         // A recorder of any lifetime serves for as long as the task.
         let recorder = recorder.map(|recorder| recorder as _);
         let stepper = ElasticStepper::new(task, self.start(&rest, &barrier_j), until, recorder);
-        self.judged(course::run(stepper)?, &rest, gravity_m_s2)
+        self.judged(stepper::run(stepper)?, &rest, gravity_m_s2)
     }
 
     /// Jobs on cases under one gravity, side by side.

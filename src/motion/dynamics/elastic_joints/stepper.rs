@@ -11,11 +11,12 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::repeatability::GONE;
+use crate::dynamics::row::clock::Marks;
 use crate::dynamics::row::course::{
-    Course, Marks, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, Task, equal_step,
-    open_hinge,
+    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Task,
 };
 use crate::dynamics::row::error::RowMotionError;
+use crate::dynamics::row::stepper::{Stepper, equal_step, open_hinge};
 use crate::dynamics::until::Until;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;

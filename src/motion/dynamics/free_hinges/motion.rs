@@ -6,9 +6,10 @@ use super::sliding::SlidingStepper;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::{self, Task};
+use crate::dynamics::row::course::Task;
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::standing::estimated_barrier_j;
+use crate::dynamics::row::stepper;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::stance::Stance;
 
@@ -67,13 +68,13 @@ pub fn motion(
     let released =
         |recorder| LandingStepper::released(task, settings, standing, initial_rad, recorder);
     let Some(coefficient) = settings.friction_coefficient else {
-        return course::run(released(recorder)?);
+        return stepper::run(released(recorder)?);
     };
     let placement = match initial_rad {
         Some(_) => released(None)?.into_placement(),
         None => standing.placement.clone(),
     };
-    course::run(SlidingStepper::new(
+    stepper::run(SlidingStepper::new(
         standing,
         &placement,
         task,

@@ -1,6 +1,6 @@
 //! How a motion of a row with rigid joints is computed.
 
-use crate::dynamics::row::course::Clock;
+use crate::dynamics::row::clock::Clock;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::tie::square_frequency;
 

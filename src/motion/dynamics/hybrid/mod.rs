@@ -2,5 +2,7 @@
 pub mod engine;
 mod first_fall;
 pub mod integrator;
+mod posture;
 pub mod rocking;
+mod sampler;
 mod simulation;

@@ -1,38 +1,29 @@
 //! Every chain of mechanisms is a model; the hybrid engine computes its histories.
 
-use std::mem;
 use std::ops::ControlFlow;
-
-use nalgebra::Vector2;
 
 use super::engine::{
     GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
 };
-use super::integrator::{Step, Task, integrate};
-use super::rocking::{Guard, Mode, Moment, Phase, Rocking, RockingState, Swing};
+use super::integrator::Step;
+use super::posture::{Now, Rotations, posture, seen_from_ground, state};
+use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
+use super::sampler::Sampler;
 use crate::argument::ArgumentError;
-use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{
-    Cost, Details, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
-};
+use crate::dynamics::history::{Details, Event, EventKind, Impact, Outcome, Summary};
 use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError, check};
-use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
 use crate::mechanics::four_links::FourLinks;
-use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
 
 /// Most transitions of a history: more would mean chatter, which the model should not produce.
 const MAX_TRANSITIONS: usize = 1_000_000;
-/// Error of a step of a fall, which is only drawn, relative to the state.
-const FALL_TOLERANCE: f64 = 1e-6;
-
 /// A chain of mechanisms is a model by itself. It is said of each of them, so that the engine is compiled for them here and not in every
 /// crate that moves one.
 macro_rules! models {
@@ -225,52 +216,7 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     ))
 }
 
-/// Rotations of the bodies of a mechanism, or their rates.
-type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
-
 type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
-
-/// A structure on moving ground at an instant.
-type Now<'a, C> = Moment<'a, <C as MechanismChain>::Mechanism>;
-
-/// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a
-/// sway to the left is the mirror image, which swaps the bodies and changes the sign of their rotations.
-fn seen_from_ground<C: MechanismChain>(
-    sway: Sway,
-    mut rotations: Rotations<C>,
-    factor: f64,
-) -> Rotations<C> {
-    if sway == Sway::Left {
-        rotations.as_mut().reverse();
-    }
-    for rotation in rotations.as_mut() {
-        // Adding zero makes a negative zero positive.
-        *rotation = *rotation * (sway.sign() * factor) + 0.0;
-    }
-    rotations
-}
-
-/// Rotations of the bodies and their rates, in the frame of the ground.
-fn posture<C: MechanismChain>(
-    rocking: &Rocking<'_, C>,
-    mode: Mode<'_, C::Mechanism>,
-    state: &RockingState,
-) -> (Rotations<C>, Rotations<C>) {
-    let seen = |sway, link: &Link<C::Mechanism>, q_rad, moved, rate| {
-        (
-            seen_from_ground::<C>(sway, link.mechanism.rotations(q_rad), moved),
-            seen_from_ground::<C>(sway, link.mechanism.rotation_rates(q_rad), rate),
-        )
-    };
-    match mode.swing() {
-        Some(Swing { sway, link, .. }) => seen(sway, link, state[0], 1.0, state[1]),
-        None => {
-            let link = rocking.chain.link(0);
-            let link = link.expect("a structure has its first mechanism");
-            seen(Sway::Right, link, 0.0, 0.0, 0.0)
-        }
-    }
-}
 
 /// A mechanism that closes, and what follows.
 struct Closing<'a, C: MechanismChain> {
@@ -479,216 +425,6 @@ fn event<'a, C: MechanismChain>(
         hinges: swing.map_or(Vec::new(), |swing| chain.hinges(swing.impacts, swing.sway)),
         impact: Closing::of(chain, transition).map(|closing| closing.impact(chain)),
         ..Event::new(transition.time_s, kind, state(transition.to))
-    }
-}
-
-/// The state of motion in a mode.
-fn state<M>(mode: Mode<'_, M>) -> State {
-    match mode {
-        Phase::Rest => State::Rest,
-        Phase::Rocking(swing) => State::Rocking(swing.sway),
-        Phase::Overturned(swing) => State::Overturned(swing.sway),
-    }
-}
-
-/// Takes samples at multiples of the output step.
-struct Sampler<'r> {
-    output_step_s: f64,
-    next: u64,
-    phase: usize,
-    /// The last sample is held back, in case the end falls on it.
-    held: Option<Sample>,
-    /// Reused, so that samples need no allocation.
-    spare: Sample,
-    /// Positions of the hinges, also reused.
-    positions: Vec<Vector2<f64>>,
-    thrust: ThrustRecord,
-    /// The record up to the last sample before the unstable equilibrium.
-    thrust_before_critical: ThrustRecord,
-    recorder: &'r mut dyn Recorder,
-}
-
-impl<'r> Sampler<'r> {
-    fn new(output_step_s: f64, recorder: &'r mut dyn Recorder) -> Self {
-        Self {
-            output_step_s,
-            next: 0,
-            phase: 0,
-            held: None,
-            spare: Sample::at_rest(0.0),
-            positions: Vec::new(),
-            thrust: ThrustRecord::default(),
-            thrust_before_critical: ThrustRecord::default(),
-            recorder,
-        }
-    }
-
-    fn next_s(&self) -> f64 {
-        self.next as f64 * self.output_step_s
-    }
-
-    fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
-        let moving = sample.state != State::Rest;
-        self.thrust.note(sample.time_s, moving, &sample.demand);
-        if sample
-            .rotation_over_critical
-            .is_some_and(|rotation| rotation.abs() < 1.0)
-        {
-            self.thrust_before_critical = self.thrust;
-        }
-        self.recorder.sample(sample)
-    }
-
-    fn sample<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, now: &Now<'_, C>) -> Sample {
-        let mut sample = mem::replace(&mut self.spare, Sample::at_rest(0.0));
-        let (ground_m_s2, _) = rocking.ground.pieces()[now.piece].at(now.time_s);
-        sample.begin(now.time_s, ground_m_s2, self.phase);
-        let (rotations, rates) = posture(rocking, now.mode, &now.state);
-        sample.state = state(now.mode);
-        sample.rotations_rad.extend(rotations.as_ref());
-        sample.rates_rad_s.extend(rates.as_ref());
-        let (mut rotation_over_critical, mut energy, mut barrier) = (0.0, 0.0, 1.0);
-        let poses = &mut sample.poses;
-        if let Some(swing) = now.mode.swing() {
-            let (sway, link) = (swing.sway, swing.link);
-            let length_m = rocking.chain.length_m();
-            (link.mechanism).place(now.state[0], poses, &mut self.positions);
-            for pose in &mut *poses {
-                *pose = pose.scaled(length_m);
-            }
-            if sway == Sway::Left {
-                poses.reverse();
-                self.positions.reverse();
-                for pose in poses {
-                    *pose = pose.mirrored();
-                }
-            }
-            let seen = rocking.chain.hinges(swing.impacts, sway).into_iter();
-            let open = seen.zip(&self.positions).map(|(hinge, at)| OpenHinge {
-                hinge,
-                position_m: Vector2::new(sway.sign() * at.x, at.y) * length_m,
-            });
-            sample.hinges.extend(open);
-            // Adding zero makes a negative zero positive.
-            rotation_over_critical = -sway.sign() * now.state[0] / link.critical_rad + 0.0;
-            energy = rocking.energy(link, &now.state);
-            barrier = rocking.barrier_of(link);
-        } else {
-            poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
-        }
-        if self.recorder.wants_thrust_line() {
-            sample.eccentricity_ratios = rocking.eccentricity_ratios(now);
-        }
-        if self.recorder.wants_demand() {
-            sample.demand = rocking.demand(now);
-        }
-        sample.energy_j = energy * rocking.chain.joules_per_unit();
-        sample.energy_ratio = Some(energy / barrier);
-        sample.rotation_over_critical = Some(rotation_over_critical);
-        sample
-    }
-
-    /// Takes the samples of a step.
-    fn step<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        from: &Now<'_, C>,
-        step: &Step<3>,
-    ) -> ControlFlow<()> {
-        while self.next_s() < step.end_s {
-            let time_s = self.next_s().max(step.start_s);
-            let state = rocking.between(step, time_s);
-            let sample = self.sample(rocking, &from.at(time_s, &state));
-            self.next += 1;
-            if let Some(held) = self.held.replace(sample) {
-                let flow = self.emit(&held);
-                self.spare = held;
-                flow?;
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// The last sample, at the end of the simulation.
-    fn finish<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        now: &Now<'_, C>,
-    ) -> ControlFlow<()> {
-        let pieces = rocking.ground.pieces();
-        let piece = pieces.partition_point(|piece| piece.start_s <= now.time_s) - 1;
-        let last = self.sample(rocking, &Moment { piece, ..*now });
-        // A sample that differs from the end by rounding only is replaced.
-        if let Some(held) = self.held.take()
-            && held.time_s < now.time_s - 1e-9 * self.output_step_s
-        {
-            self.emit(&held)?;
-        }
-        self.emit(&last)
-    }
-
-    /// Follows a mechanism that has overturned, if its recorder follows falls: it turns about the same hinges, also beyond the limit
-    /// position, where the first of them begins to close.
-    fn follow_fall<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, from: &Now<'_, C>) {
-        let Phase::Overturned(swing) = from.mode else {
-            return;
-        };
-        if !self.recorder.wants_fall() {
-            return;
-        }
-        let every_s = self.output_step_s.min(fall::SAMPLED_S);
-        self.output_step_s = every_s;
-        self.next = (from.time_s / every_s) as u64 + 1;
-        let until_s = from.time_s + fall::LONGEST_S;
-        let mut now = Moment {
-            mode: Phase::Rocking(swing),
-            ..*from
-        };
-        let mut ended = ControlFlow::Continue(());
-        let mut end = FallEnd::Slow;
-        for (piece, motion) in rocking.ground.pieces().iter().enumerate() {
-            if motion.end_s <= now.time_s || now.time_s >= until_s || ended.is_break() {
-                continue;
-            }
-            now.piece = piece;
-            let (first_step_s, longest_step_s) = rocking.step_sizes_s(&now, FALL_TOLERANCE);
-            let task = Task {
-                start_s: now.time_s,
-                end_s: motion.end_s.min(until_s),
-                start: now.state,
-                start_slope: rocking.slope(&now),
-                scale: rocking.scale(&now),
-                relative_tolerance: FALL_TOLERANCE,
-                first_step_s,
-                longest_step_s,
-            };
-            let overturned = Moment { piece, ..*from };
-            let watch = |step: &Step<3>| {
-                while self.next_s() <= step.end_s {
-                    let time_s = self.next_s();
-                    let state = rocking.between(step, time_s);
-                    let sample = self.sample(rocking, &overturned.at(time_s, &state));
-                    self.next += 1;
-                    ended = self.recorder.fall(&sample);
-                    if let Some(at) = fall::end_at(&sample) {
-                        end = at;
-                        ended = ControlFlow::Break(());
-                    }
-                    self.spare = sample;
-                    ended?;
-                }
-                ControlFlow::Continue(())
-            };
-            let slope = |time_s: f64, state: &RockingState| rocking.slope(&now.at(time_s, state));
-            match integrate(&task, slope, watch, &mut Cost::default()) {
-                Ok(last) => now = now.at(task.end_s, &last),
-                Err(_) => {
-                    end = FallEnd::Model("its links reach no farther".to_owned());
-                    break;
-                }
-            }
-        }
-        self.recorder.fell(end);
     }
 }
 

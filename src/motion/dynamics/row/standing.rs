@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::course::{Clock, Task};
+use super::clock::Clock;
+use super::course::Task;
 use super::error::RowModelError;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;

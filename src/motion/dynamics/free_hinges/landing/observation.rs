@@ -4,11 +4,9 @@ use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
 use crate::dynamics::history::Sample;
-use crate::dynamics::row::course::{
-    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Stepper, eccentricity_ratio,
-    equal_step, only, open_hinge,
-};
+use crate::dynamics::row::course::{Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
 use crate::dynamics::row::error::RowMotionError;
+use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, only, open_hinge};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;

@@ -1,0 +1,187 @@
+//! The length of a step: to the first landing, or where landings crowd, with all of them merged.
+
+use super::{LandingStepper, Step};
+use crate::dynamics::row::error::RowMotionError;
+use crate::mechanics::joints::SHUT_RATIO;
+
+/// Passes in which the step that ends at a landing is found.
+const LANDING_PASSES: usize = 30;
+/// The search also ends once the landing is known to within this fraction of the step.
+const BRACKET_RATIO: f64 = 1e-12;
+/// Rounds of landings in a merged step after which all corners that can land are looked for at once.
+const LANDING_ROUNDS: usize = 8;
+/// A landing by this fraction of a step earlier or later than expected needs no other pass.
+const LANDING_TOLERANCE: f64 = 1e-6;
+
+/// A corner that falls towards its joint.
+#[derive(Clone, Copy, Debug)]
+struct Fall {
+    joint: usize,
+    edge: usize,
+    gap_m: f64,
+    /// Rate of the gap, below zero.
+    rate_m_s: f64,
+}
+
+impl Fall {
+    fn duration_s(&self) -> f64 {
+        self.gap_m / -self.rate_m_s
+    }
+}
+
+impl LandingStepper<'_> {
+    /// Solves the step that ends at the first landing, or the longest one if nothing lands in it. Its length changes the kick, and
+    /// so the landing.
+    pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
+        let floor = if self.is_crowded() {
+            self.settings.shortest_step_s.min(longest)
+        } else {
+            0.0
+        };
+        let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
+        let mut step = duration_s(self.first_fall()).clamp(floor, longest);
+        // No corner lands within `safe`, some do within `late`.
+        let (mut safe, mut late) = (0.0, f64::INFINITY);
+        // The rates before the step are those of a step of negative length whose kick ends where the last one did.
+        let mut earlier = 2.0 * (self.kicked_s - self.course.time);
+        for pass in 1.. {
+            self.note_rates();
+            self.solve_step(step)?;
+            let fall = self.first_fall();
+            let lands = duration_s(fall);
+            let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
+            // Rounding may say otherwise of a step that was found safe before.
+            if met || (lands > step && step == longest) || step == safe {
+                return Ok(Step {
+                    expected_s: step,
+                    length_s: if met { lands } else { step },
+                    merged: false,
+                });
+            }
+            if lands > step {
+                safe = step;
+            } else if step > floor {
+                late = step;
+            } else {
+                break;
+            }
+            // Where the mechanism changes with the length there may be no landing to find.
+            if pass >= LANDING_PASSES || late - safe <= BRACKET_RATIO * late {
+                if safe == 0.0 {
+                    break;
+                }
+                step = safe;
+                continue;
+            }
+            let expected = fall.map_or(f64::INFINITY, |fall| self.landing(&fall, step, earlier));
+            earlier = step;
+            step = if safe < expected && expected < late {
+                expected
+            } else {
+                0.5 * (safe + late)
+            }
+            .clamp(floor, longest);
+        }
+        let length_s = self.settings.shortest_step_s.min(longest);
+        self.merge(length_s)?;
+        Ok(Step {
+            expected_s: length_s,
+            length_s,
+            merged: true,
+        })
+    }
+
+    /// Length of the step at whose end this corner lands, if its rate changes linearly with the length: through the rates of the
+    /// step last solved and of the one before.
+    fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
+        let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
+        let acceleration = change / (step - earlier);
+        let rate = fall.rate_m_s - acceleration * step;
+        let root = (rate * rate - 4.0 * acceleration * fall.gap_m).sqrt();
+        2.0 * fall.gap_m / (root - rate)
+    }
+
+    /// Keeps the rates of the last solution for comparison with those of the next.
+    fn note_rates(&mut self) {
+        for (joint, rates) in self.program.open_joints() {
+            self.earlier_rates[joint] = rates;
+        }
+    }
+
+    /// The open corner that lands first at the rates of the last solution.
+    fn first_fall(&self) -> Option<Fall> {
+        let mut first: Option<Fall> = None;
+        for (joint, rates) in self.program.open_joints() {
+            let gaps = self.placement.gaps_m[joint];
+            for edge in 0..2 {
+                let fall = Fall {
+                    joint,
+                    edge,
+                    gap_m: gaps[edge],
+                    rate_m_s: rates[edge],
+                };
+                let falls = !self.touching[joint][edge] && fall.rate_m_s < 0.0;
+                if falls && first.is_none_or(|first| fall.duration_s() < first.duration_s()) {
+                    first = Some(fall);
+                }
+            }
+        }
+        first
+    }
+
+    /// Solves a step within which all corners that would land come to touch.
+    fn merge(&mut self, step: f64) -> Result<(), RowMotionError> {
+        if self.kicked_s < self.course.time {
+            self.complete_kick()?;
+            self.take_pieces();
+            self.kicked_s = self.course.time;
+        }
+        self.crowd.impacts = 0;
+        self.solve_step(step)?;
+        let without = self.kinetic_of_solution() - self.work_of_right_support(0.0);
+        for round in 0.. {
+            self.landed.clear();
+            for (joint, rates) in self.program.open_joints() {
+                let gaps = self.placement.gaps_m[joint];
+                for edge in 0..2 {
+                    let rate = rates[edge] + self.landing[joint][edge];
+                    let thickness = self.placement.frames[joint].thickness_m;
+                    let lands = gaps[edge] + step * rate < -SHUT_RATIO * thickness;
+                    if !self.touching[joint][edge] && lands {
+                        self.landed.push((joint, edge));
+                    }
+                }
+            }
+            if self.landed.is_empty() {
+                break;
+            }
+            // Landings travel along the row: if they do not end, the program gets all corners that can land.
+            if round >= LANDING_ROUNDS {
+                let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
+                let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
+                for (touching, gaps) in self.touching.iter_mut().zip(&self.placement.gaps_m) {
+                    for edge in 0..2 {
+                        touching[edge] |= gaps[edge] < step * fastest;
+                    }
+                }
+            }
+            for (joint, edge) in &self.landed {
+                self.touching[*joint][*edge] = true;
+                self.program.press(*joint, *edge);
+            }
+            for (joint, touching) in self.touching.iter().enumerate() {
+                let rates = self.placement.gaps_m[joint].map(|gap| -gap / step);
+                self.landing[joint] = match touching {
+                    [true, true] => rates,
+                    [true, false] => [rates[0]; 2],
+                    [false, true] => [rates[1]; 2],
+                    [false, false] => [0.0; 2],
+                };
+            }
+            self.solve_step(step)?;
+        }
+        let with = self.kinetic_of_solution() - self.work_of_right_support(0.0);
+        self.course.of_row.energy_taken_j += without - with;
+        Ok(())
+    }
+}

@@ -1,0 +1,158 @@
+//! Impacts of joints that slip: each is complete one step after its corners land.
+
+use nalgebra::Vector2;
+
+use super::{APART_RATIO, SlidingStepper};
+use crate::dynamics::row::stepper::{Stepper as _, only};
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::coulomb::{Along, Mode};
+
+/// An impact that began in the last step: its energy is complete after the next one.
+pub(super) struct Landing {
+    /// Corners that landed, joint by joint.
+    pub(super) corners: Vec<[bool; 2]>,
+    /// Modes of the joints before.
+    pub(super) modes_before: Vec<Mode>,
+    pub(super) shut: Vec<Hinge>,
+    /// Kinetic energy before, in J.
+    pub(super) energy_before_j: f64,
+    pub(super) taken: Taken,
+}
+
+/// Energy taken by the impulses at joints, in J.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Taken {
+    pub(super) total_j: f64,
+    /// The part of it that friction took.
+    pub(super) friction_j: f64,
+}
+
+impl Taken {
+    pub(super) fn add(&mut self, other: Self) {
+        self.total_j += other.total_j;
+        self.friction_j += other.friction_j;
+    }
+}
+
+impl SlidingStepper<'_> {
+    /// The impact that begins in the step that was solved, if a corner lands, without its energy.
+    pub(super) fn find_landing(&self, step: f64) -> Option<Landing> {
+        let (before, after) = (&self.modes_before, &self.program.modes);
+        let lands = |joint: usize| {
+            let (gaps, rates) = (
+                &self.contacts[joint].coordinates_m,
+                &self.rates_before[joint],
+            );
+            let least = APART_RATIO * self.faces[joint].thickness_m;
+            [0, 1].map(|end| {
+                // A corner that reached its face just as the last step ended lands in this one.
+                let was_apart = gaps[end] > least || -rates[end] * step > least;
+                after[joint].pressed[end] && !before[joint].pressed[end] && was_apart
+            })
+        };
+        let joints = 0..self.faces.len();
+        if joints.clone().all(|joint| lands(joint) == [false; 2]) {
+            return None;
+        }
+        let corners: Vec<_> = joints.map(lands).collect();
+        let mut shut = Vec::new();
+        for (joint, landed) in corners.iter().enumerate() {
+            let (before, after) = (before[joint].pressed, after[joint].pressed);
+            // A joint that was parted and lands on one corner has not shut.
+            if *landed != [false; 2] && (after == [true; 2] || before != [false; 2]) {
+                let edge = only(before.map(|pressed| !pressed));
+                shut.push(Hinge::Joint { joint, edge });
+            }
+        }
+        Some(Landing {
+            corners,
+            modes_before: before.clone(),
+            shut,
+            energy_before_j: 0.0,
+            taken: Taken::default(),
+        })
+    }
+
+    /// Joints that open at an impact that shuts these and changes the modes: they shut in it, or were shut before, and are open after.
+    fn opened(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
+        let mut opened = Vec::new();
+        for (joint, (before, after)) in before.iter().zip(after).enumerate() {
+            let shuts = shut
+                .iter()
+                .any(|hinge| matches!(hinge, Hinge::Joint { joint: shuts, .. } if *shuts == joint));
+            if (shuts || before.pressed == [true; 2]) && after.pressed != [true; 2] {
+                let edge = only(after.pressed);
+                opened.push(Hinge::Joint { joint, edge });
+            }
+        }
+        opened
+    }
+
+    /// Energy taken in the step that was solved, in which the right support moves at this velocity on average: at the corners that
+    /// landed in the step before, and by everything else.
+    ///
+    /// The work of an impulse is its product with the mean of the rates before and after. Its sum over the steps of an impact does not
+    /// depend on how these share the impulse.
+    pub(super) fn taken(&self, mean_m_s: Vector2<f64>) -> [Taken; 2] {
+        let landed_before = self.landing.as_ref().map(|landing| &landing.corners);
+        let mut parts = [Taken::default(); 2];
+        for (joint, impulse) in self.program.impulses.iter().enumerate() {
+            let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5
+                + self.carried(joint, mean_m_s);
+            let by_row = impulse.component_mul(&mean);
+            let late = landed_before.map_or([false; 2], |corners| corners[joint]);
+            for end in 0..2 {
+                parts[usize::from(!late[end])].total_j -= by_row[end];
+            }
+            let part = &mut parts[usize::from(late == [false; 2])];
+            part.total_j -= by_row.z;
+            let slips = |modes: &[Mode]| modes[joint].along != Along::Stick;
+            if slips(&self.modes_before) || slips(&self.program.modes) {
+                // Below the tolerance of the rates its sign is rounding.
+                part.friction_j += (-by_row.z).max(0.0);
+            }
+        }
+        parts
+    }
+
+    /// Energy that friction took in the step that was solved, at the rates at its end.
+    pub(super) fn held_back_j(&self) -> f64 {
+        let mut held_back_j = 0.0;
+        for (joint, impulse) in self.program.impulses.iter().enumerate() {
+            if let Along::Slip(_) = self.program.modes[joint].along {
+                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
+                // Below the tolerance of the rates its sign is rounding.
+                held_back_j += (-impulse.z * rate).max(0.0);
+            }
+        }
+        held_back_j
+    }
+
+    /// Files and reports the impact of the last step, if there was one, with the energy that it took since then. The blocks are still
+    /// in the places of that step, and have the rates after this one; `alone` if no corner lands in this one.
+    pub(super) fn end_landing(&mut self, late: Taken, alone: bool) {
+        let Some(mut landing) = self.landing.take() else {
+            return;
+        };
+        self.course.took_late(late.total_j);
+        landing.taken.add(late);
+        let Taken {
+            total_j,
+            friction_j,
+        } = landing.taken;
+        self.course.of_row.energy_taken_j += total_j - friction_j;
+        if !self.course.is_followed() {
+            return;
+        }
+        let after = if alone {
+            &self.program.modes
+        } else {
+            &self.modes_before
+        };
+        self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
+        self.course.shut = landing.shut;
+        let sticks = |mode: &Mode| mode.along == Along::Stick;
+        let moves = !(self.touches_as_it_stood() && self.program.modes.iter().all(sticks));
+        self.report_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
+    }
+}
