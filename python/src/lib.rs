@@ -23,9 +23,7 @@ mod _native {
     #[pymodule_export]
     use crate::scenario::{Ground, Scenario};
     #[pymodule_export]
-    use crate::studies::{
-        capacity, compute_part, merge, save, study, threshold, threshold_along, verify,
-    };
+    use crate::studies::{compute_part, merge, save, study};
 
     /// Memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]

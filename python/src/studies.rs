@@ -1,36 +1,31 @@
 //! Studies: computed in memory or in parts, their results as the files that the program writes.
 
+use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use archrock::output::{Batch, Figure};
-use archrock::studies::capacity::{capacity as capacities, report as report_capacity};
-use archrock::studies::catalogue::{self as studies, Done, StudyError, StudyKind};
+use archrock::studies::catalogue::{self as studies, Done, Options, Rows, StudyKind};
 use archrock::studies::kept::Writer;
 use archrock::studies::part::Shard;
-use archrock::studies::results::Look;
+use archrock::studies::results::{Look, Results, StudyError};
 use archrock::studies::runner::{Runner, Task};
+use archrock::studies::threshold::Factors;
 use archrock::studies::threshold::along::AlongOptions;
-use archrock::studies::threshold::{Factors, ThresholdError, check, tell, thresholds};
-use archrock::studies::verify::{Check, tell as tell_check};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::io::Write as _;
 
 use crate::error::{not_run, not_written, refused, unusable};
 use crate::scenario::Scenario;
 use crate::watched::watched;
 
 /// The files of results with their names; the seal comes last.
-type Files = Vec<(&'static str, Vec<u8>)>;
+type Files<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
 
-/// The same for Python.
-type PyFiles<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
-
-fn to_python(py: Python<'_>, files: Files) -> PyFiles<'_> {
-    let files = files.into_iter();
+fn to_python(py: Python<'_>, results: Results) -> Files<'_> {
+    let files = results.files.into_iter();
     files
         .map(|(name, contents)| (name, PyBytes::new(py, &contents)))
         .collect()
@@ -38,9 +33,8 @@ fn to_python(py: Python<'_>, files: Files) -> PyFiles<'_> {
 
 fn kind_of(name: &str) -> PyResult<StudyKind> {
     StudyKind::of_name(name).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "{name:?} is no study: give \"map\", \"suite\", \"uncertain\", \"uncertain_threshold\", \"uncertain_suite\" or \"uncertain_map\""
-        ))
+        let names = StudyKind::ALL.map(|kind| kind.name).join(", ");
+        PyValueError::new_err(format!("{name:?} is no study: give one of {names}"))
     })
 }
 
@@ -48,6 +42,7 @@ fn failed(error: StudyError) -> PyErr {
     match error {
         StudyError::Scenario(message) => refused(message),
         StudyError::Read(error) => refused(error),
+        StudyError::Failed(message) => PyRuntimeError::new_err(message),
         StudyError::Runner(error) => not_run(error),
         StudyError::Part(error) => unusable(error),
         StudyError::Output(error) => not_written(error),
@@ -64,24 +59,47 @@ fn runner(threads: Option<u16>) -> Runner {
     }
 }
 
-/// Computes the study that a scenario describes, all in memory.
+/// Computes a study of a scenario, all in memory. `factors` are those of a threshold, and `along` its range and whether impacts are left
+/// out.
 #[pyfunction]
 pub fn study<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     kind: &str,
+    factors: Option<(f64, f64, f64)>,
+    along: Option<(String, bool)>,
     threads: Option<u16>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<PyFiles<'py>> {
+) -> PyResult<Files<'py>> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
-    let scenario = Arc::clone(scenario.moving()?);
+    let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
+    let factors = factors.transpose().map_err(refused)?.unwrap_or_default();
+    let along = along.map(|(along, no_impact)| {
+        Ok::<_, &str>(AlongOptions {
+            along: along.parse()?,
+            factors,
+            no_impact,
+        })
+    });
+    let options = Options {
+        factors,
+        along: along.transpose().map_err(refused)?,
+        ..Options::default()
+    };
+    // Statics need no motion.
+    let scenario = match kind {
+        studies::CAPACITY => &scenario.inner,
+        _ => scenario.moving()?,
+    };
+    let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
-        kind.compute(&scenario, LOOK, runner, None, watch)
+        let rows = Rows::Compute(runner, None, watch);
+        kind.compute(&scenario, &options, LOOK, rows)
             .map_err(failed)
     })?;
     match done {
-        Done::Whole(results, _) => Ok(to_python(py, results.files)),
-        Done::Part { .. } => unreachable!("what is computed in memory is no part"),
+        Done::Whole(results, _) => Ok(to_python(py, results)),
+        Done::Part { .. } => unreachable!("a computation in memory is no part"),
     }
 }
 
@@ -105,12 +123,14 @@ pub fn compute_part(
             shard,
             resume: true,
         };
-        kind.compute(&scenario, LOOK, runner, Some(task), watch)
+        let rows = Rows::Compute(runner, Some(task), watch);
+        let options = Options::default();
+        kind.compute(&scenario, &options, LOOK, rows)
             .map_err(failed)
     })?;
     match done {
         Done::Part { part, .. } | Done::Whole(_, Some(part)) => Ok(part.path().to_owned()),
-        Done::Whole(_, None) => unreachable!("what is computed in a folder is in a file"),
+        Done::Whole(_, None) => Err(refused(format!("{:?} has no parts", kind.name))),
     }
 }
 
@@ -121,100 +141,16 @@ pub fn merge<'py>(
     py: Python<'py>,
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
-) -> PyResult<(String, PyFiles<'py>)> {
+) -> PyResult<(String, Files<'py>)> {
     let scenario = scenario.map(|scenario| scenario.moving().map(Arc::clone));
     let scenario = scenario.transpose()?;
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }
     let (kind, results) = watched(py, None, move |_| {
-        studies::merge(&parts, scenario.as_deref(), |_, _| Ok(LOOK))
-        .map_err(failed)
+        studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(LOOK)).map_err(failed)
     })?;
-    Ok((kind.name().to_owned(), to_python(py, results.files)))
-}
-
-/// Finds the factors on the ground motion at which a scenario overturns.
-#[pyfunction]
-pub fn threshold<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    factors: (f64, f64, f64),
-    threads: Option<u16>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<PyFiles<'py>> {
-    let (from, to, stride) = factors;
-    let factors = Factors::new(from, to, stride).map_err(refused)?;
-    let runner = runner(threads);
-    check(scenario.moving()?).map_err(refused)?;
-    let model = Arc::clone(scenario.model(py)?);
-    let scenario = Arc::clone(scenario.moving()?);
-    let files = watched(py, progress, move |watch| {
-        let ground = scenario.ground_motion();
-        let models = [(scenario.model_name(), &*model)];
-        let request = scenario.request();
-        let found = thresholds(&models, ground, &request, &factors, &runner, watch);
-        let found = found.map_err(|error| match error {
-            ThresholdError::Argument(error) => refused(error),
-            ThresholdError::Runner(error) => not_run(error),
-        })?;
-        let results = tell(&[&scenario], &factors, &found, Figure::SCREEN).map_err(not_written)?;
-        Ok(results.files)
-    })?;
-    Ok(to_python(py, files))
-}
-
-/// Finds the threshold for each value of a key.
-#[pyfunction]
-pub fn threshold_along<'py>(
-    py: Python<'py>,
-    scenario: &Scenario,
-    along: &str,
-    no_impact: bool,
-    factors: (f64, f64, f64),
-    threads: Option<u16>,
-    progress: Option<Py<PyAny>>,
-) -> PyResult<PyFiles<'py>> {
-    let (from, to, stride) = factors;
-    let options = AlongOptions {
-        along: along.parse().map_err(refused)?,
-        factors: Factors::new(from, to, stride).map_err(refused)?,
-        no_impact,
-    };
-    let runner = runner(threads);
-    let scenario = Arc::clone(scenario.moving()?);
-    let done = watched(py, progress, move |watch| {
-        studies::thresholds_along(&scenario, options, LOOK, runner, None, watch).map_err(failed)
-    })?;
-    match done {
-        Done::Whole(results, _) => Ok(to_python(py, results.files)),
-        Done::Part { .. } => unreachable!("what is computed in memory is no part"),
-    }
-}
-
-/// The capacity curves of a scenario to both sides, as `archrock capacity`.
-#[pyfunction]
-pub fn capacity<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
-    let scenario = Arc::clone(&scenario.inner);
-    scenario.check_as_built().map_err(refused)?;
-    let files = watched(py, None, move |_| {
-        let sides = capacities(&scenario, None).map_err(refused)?;
-        let results = report_capacity(&scenario, &sides, Figure::SCREEN).map_err(not_written)?;
-        Ok(results.files)
-    })?;
-    Ok(to_python(py, files))
-}
-
-/// Checks the first mechanism of a scenario by the Circolare 7/2019, as `archrock verify`.
-#[pyfunction]
-pub fn verify<'py>(py: Python<'py>, scenario: &Scenario) -> PyResult<PyFiles<'py>> {
-    let scenario = Arc::clone(scenario.moving()?);
-    scenario.check_as_built().map_err(refused)?;
-    let files = watched(py, None, move |_| {
-        let check = Check::new(&scenario).map_err(refused)?;
-        Ok(tell_check(&scenario, &check).map_err(not_written)?.files)
-    })?;
-    Ok(to_python(py, files))
+    Ok((kind.name.to_owned(), to_python(py, results)))
 }
 
 /// Writes files into a folder: all of them, or none. They replace everything that the last run of the same command left there. Returns

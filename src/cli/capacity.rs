@@ -1,30 +1,22 @@
 //! The command `capacity`.
 
-use std::path::PathBuf;
-
-use archrock::studies::capacity::{capacity as capacities, report};
+use archrock::studies::catalogue::{self, Options};
+use archrock::studies::kept::CAPACITY;
 use nalgebra::Vector2;
 
+use super::Failure;
+use super::at_once::{CommonArguments, Statics, at_once};
 use super::figure::FigureOption;
-use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, show, warn};
-use archrock::studies::kept::CAPACITY;
 
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scenario: ScenarioFile,
+    common: CommonArguments,
     /// Control point in metres, such as `--point 0,5.4` [default: the crown, or the top of a column].
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point)]
     point: Option<Vector2<f64>>,
-    /// Folder for the results [default: results/<name of the scenario file>].
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
     #[command(flatten)]
     figure: FigureOption,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
 }
 
 fn point(text: &str) -> Result<Vector2<f64>, String> {
@@ -40,18 +32,17 @@ fn point(text: &str) -> Result<Vector2<f64>, String> {
 }
 
 pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
-    let input = arguments.scenario.open()?;
-    let scenario = input.as_built(input.read_statics()?)?;
-    if !quiet {
-        warn(&scenario.unlikely());
-    }
-    let sides = capacities(&scenario, arguments.point)
-        .map_err(|error| Failure::Input(error.to_string()))?;
-    let place = arguments
-        .figure
-        .printed(input.results(arguments.out.as_deref())?)
-        .locked(CAPACITY, &scenario, quiet)?;
-    let results = report(&scenario, &sides, arguments.figure.get()?)?;
-    place.write(&results, quiet)?;
-    show(&results, arguments.format)
+    let options = Options {
+        point_m: arguments.point,
+        ..Options::default()
+    };
+    let (kind, figure) = (catalogue::CAPACITY, Some(arguments.figure));
+    at_once(
+        kind,
+        CAPACITY,
+        (&arguments.common, figure),
+        Statics::Suffice,
+        &options,
+        quiet,
+    )
 }

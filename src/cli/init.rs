@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use archrock::Scenario;
 use clap::ValueEnum;
 
+use super::progress::say;
 use super::scenario_file::is_stdin;
-use super::study::say;
 use super::{Failure, print};
 
 #[derive(clap::Args)]

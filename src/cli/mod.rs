@@ -3,6 +3,7 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
+mod at_once;
 mod capacity;
 mod check;
 mod commands;
@@ -11,14 +12,14 @@ mod figure;
 mod first;
 mod impact;
 mod init;
+mod models;
+mod progress;
 mod run;
 mod scenario_file;
 mod spread;
 mod studies;
 mod study;
 mod threshold;
-mod uncertain;
-mod verify;
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -27,12 +28,15 @@ use std::process::ExitCode;
 use archrock::dynamics::model::SimulationError;
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
+use archrock::studies::catalogue::{self, Options};
+use archrock::studies::kept;
 use archrock::studies::results::Results;
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use serde_json::Value;
 
+use at_once::Statics;
 use figure::FigureOption;
 use first::FirstOption;
 use scenario_file::ScenarioFile;
@@ -83,7 +87,7 @@ enum Command {
     Spread(spread::Arguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
-    Verify(verify::Arguments),
+    Verify(at_once::CommonArguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
@@ -179,7 +183,18 @@ pub fn main() -> ExitCode {
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
         Command::Spread(spread) => spread::spread(&spread, arguments.quiet),
-        Command::Verify(verify) => verify::verify(&verify, arguments.quiet),
+        Command::Verify(verify) => {
+            let options = Options::default();
+            let (kind, statics) = (catalogue::VERIFY, Statics::DoNotSuffice);
+            at_once::at_once(
+                kind,
+                kept::VERIFY,
+                (&verify, None),
+                statics,
+                &options,
+                arguments.quiet,
+            )
+        }
         Command::Map(map) => studies::map(&map, arguments.quiet),
         Command::Suite(suite) => studies::suite(&suite, arguments.quiet),
         Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
@@ -245,7 +260,7 @@ const FAR: usize = 2;
 /// Warns of unlikely values in a scenario or a record.
 fn warn(unlikely: &[String]) {
     for unlikely in unlikely {
-        study::say(&format!("warning: {unlikely}"));
+        progress::say(&format!("warning: {unlikely}"));
     }
 }
 

@@ -8,20 +8,21 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use archrock::output::Folder;
-use archrock::scenario::{Hinges, Scenario, shown_lines};
+use archrock::scenario::{Scenario, shown_lines};
+use archrock::studies::catalogue::{self, Options};
+use archrock::studies::results::{Look, Results};
 use archrock::studies::run::{
     FILES, OVERLAY, Run, RunError, RunResults, Wanted, compared, heading, overlay,
 };
-use clap::ValueEnum;
 use nalgebra::Vector2;
-use serde_json::{Map, Value};
+use serde_json::Map;
 
 use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
+use super::models::ModelsOption;
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::studies::compare;
-use super::study::{Pending, Work};
-use super::uncertain::{Asked, ITSELF, Telling};
+use super::study::{ITSELF, Pending, Session, Work};
 use super::{Failure, Format, print, print_all};
 use archrock::studies::kept::{Origin, RUN};
 
@@ -50,10 +51,8 @@ pub struct Arguments {
     /// rotation_over_critical. For four links and columns only.
     #[arg(long)]
     dimensionless: bool,
-    /// Models of motion; several write to a folder each, named after the model, with one picture of all [default: elastic or free
-    /// if the scenario has [elastic_joints] or [free_hinges], else four].
-    #[arg(long, value_enum, value_delimiter = ',')]
-    hinges: Vec<Models>,
+    #[command(flatten)]
+    models: ModelsOption,
     /// Do not repeat a run with free hinges or elastic joints in other steps, nor elastic joints with other stiffness and contact.
     #[arg(long)]
     no_repeat: bool,
@@ -84,19 +83,6 @@ pub struct Arguments {
     figure: FigureOption,
     #[command(flatten)]
     panels: PanelsOption,
-}
-
-/// Models of motion.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Models {
-    /// Four links, or Housner's column.
-    Four,
-    /// Blocks whose joints open and shut anywhere.
-    Free,
-    /// Blocks with elastic joints.
-    Elastic,
-    /// Four and free.
-    Both,
 }
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
@@ -150,12 +136,6 @@ struct Job {
     place: Place,
 }
 
-/// The answers of the runs of a scenario.
-struct Told {
-    words: String,
-    summary: Value,
-}
-
 impl Job {
     /// All jobs that were asked for, or everything that is wrong with them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
@@ -188,7 +168,7 @@ impl Job {
     /// The scenario of a file, or one for each record of its suite.
     fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
-        let models = Models::read(&arguments.hinges, &input)?;
+        let models = arguments.models.read(&input)?;
         let about = |failure| input.about(failure);
         let origin = Rc::new(Origin::of(&models[0]));
         let chosen = arguments.suite.choose(models).map_err(about)?;
@@ -231,75 +211,62 @@ impl Job {
     }
 
     /// Runs the job and reports what happened.
-    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
-        let samples = Telling {
+    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Results, Failure> {
+        let session = Session {
+            input: None,
             work: arguments.work,
-            figure: arguments.figure.get()?,
+            look: Look::of(arguments.figure.get()?),
             quiet,
         };
         let mut pending = Pending::default();
-        if samples.is_part(&self.scenarios)? {
-            let (words, summary) = (String::new(), Value::Null);
-            let mut told = Told { words, summary };
-            self.run_samples(samples, &mut told, &mut pending)?;
-            return Ok(told);
-        }
-        let mut told = self.run_itself(arguments, quiet)?;
-        self.run_samples(samples, &mut told, &mut pending)?;
-        if let Some(place) = &self.place.results {
-            pending.publish(place)?;
-        }
-        let mut heading = heading(&self.scenarios[0]);
-        if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
-            let _ = writeln!(heading, "  {ignored}");
-        }
-        told.words.insert_str(0, &heading);
-        Ok(told)
-    }
-
-    /// Runs the samples of `[uncertain]`, and adds their results, of which the words come first.
-    fn run_samples(
-        &self,
-        samples: Telling,
-        told: &mut Told,
-        pending: &mut Pending,
-    ) -> Result<(), Failure> {
-        let Some(place) = &self.place.results else {
-            return Ok(());
+        let is_part = session.is_part(&self.scenarios)?;
+        let mut results = if is_part {
+            Results::default()
+        } else {
+            self.run_itself(arguments, quiet)?
         };
-        let mut likely = String::new();
-        let several = self.scenarios.len() > 1;
-        let mut models = Vec::new();
-        for scenario in &self.scenarios {
-            let name = scenario.motion().hinges().name();
-            let place = if several { &place.within(name) } else { place };
-            if let Some(results) = samples.tell(scenario, Asked::Histories, place, pending)? {
-                if several {
-                    let _ = writeln!(likely, "{}", scenario.motion().words());
-                }
-                likely += &results.words;
-                let summary = if several {
-                    &mut told.summary[name]
-                } else {
-                    &mut told.summary
-                };
-                summary["uncertain"] = results.summary;
-                models.push((scenario.motion().words(), results.peaks));
+        if let Some(place) = &self.place.results {
+            self.run_samples(session, place, &mut pending, &mut results)?;
+            if !is_part {
+                pending.publish(place)?;
             }
         }
-        let title = self.scenarios[0].title();
-        if let Some(compared) = compare(title, &models, place, samples.figure)? {
-            let _ = writeln!(likely, "{}", compared.words);
-            told.summary["peaks"] = compared.summary;
+        if !is_part {
+            let mut heading = heading(&self.scenarios[0]);
+            if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
+                let _ = writeln!(heading, "  {ignored}");
+            }
+            results.words.insert_str(0, &heading);
         }
-        if !likely.is_empty() {
-            told.words.insert_str(0, &(likely + ITSELF));
+        Ok(results)
+    }
+
+    /// Runs the samples of `[uncertain]`, and adds their results and the comparison of several models, of which the words come first.
+    fn run_samples(
+        &self,
+        session: Session<'_>,
+        place: &Destination,
+        pending: &mut Pending,
+        results: &mut Results,
+    ) -> Result<(), Failure> {
+        let (kind, options) = (catalogue::UNCERTAIN, Options::default());
+        let own = results.words.len();
+        let models =
+            session.add_samples(kind, &self.scenarios, &options, place, pending, results)?;
+        let title = self.scenarios[0].title();
+        if let Some(compared) = compare(title, &models, place, session.look.figure)? {
+            // After the words on samples, before those on the scenario itself.
+            let at = results.words.len() - own - ITSELF.len();
+            results
+                .words
+                .insert_str(at, &format!("{}\n", compared.words));
+            results.summary["peaks"] = compared.summary;
         }
         Ok(())
     }
 
     /// Runs the scenario itself.
-    fn run_itself(&self, arguments: &Arguments, quiet: bool) -> Result<Told, Failure> {
+    fn run_itself(&self, arguments: &Arguments, quiet: bool) -> Result<Results, Failure> {
         let (scenarios, place) = (&self.scenarios, &self.place);
         let several = scenarios.len() > 1;
         if several && place.to_stdout {
@@ -324,11 +291,15 @@ impl Job {
             return self.run_all(&runs, quiet);
         }
         let RunResults { words, summary, .. } = place.run(&runs[0], &scenarios[0], quiet)?;
-        Ok(Told { words, summary })
+        Ok(Results {
+            words,
+            summary,
+            ..Results::default()
+        })
     }
 
     /// Runs several models, each in a folder of its own, and draws them in one picture.
-    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<Told, Failure> {
+    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<Results, Failure> {
         let folder = self.place.open(&[OVERLAY])?;
         let (mut text, mut summaries) = (String::new(), Map::new());
         let (mut curves, mut histories) = (Vec::new(), Vec::new());
@@ -351,36 +322,11 @@ impl Job {
             let all = if runs.len() > 2 { "all" } else { "both" };
             let _ = writeln!(text, "{all} in {}", path.display());
         }
-        Ok(Told {
+        Ok(Results {
             words: compared(runs, &histories) + &text,
             summary: summaries.into(),
+            ..Results::default()
         })
-    }
-}
-
-impl Models {
-    const fn hinges(self) -> &'static [Hinges] {
-        match self {
-            Self::Four => &[Hinges::Four],
-            Self::Free => &[Hinges::Free],
-            Self::Elastic => &[Hinges::Elastic],
-            Self::Both => &[Hinges::Four, Hinges::Free],
-        }
-    }
-
-    /// Reads the scenario once for each model that was asked for, or else with the model that it chooses itself.
-    pub fn read(asked: &[Self], input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
-        let mut models = Vec::new();
-        for hinges in asked.iter().flat_map(|model| model.hinges()) {
-            if !models.contains(hinges) {
-                models.push(*hinges);
-            }
-        }
-        if models.is_empty() {
-            return Ok(vec![input.read(None)?]);
-        }
-        let scenarios = models.into_iter().map(|hinges| input.read(Some(hinges)));
-        scenarios.collect()
     }
 }
 

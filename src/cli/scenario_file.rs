@@ -12,7 +12,7 @@ use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
 use super::Failure;
-use super::study::say;
+use super::progress::say;
 use archrock::studies::kept::{ORIGIN, Origin, Writer};
 
 /// The scenario of a command.

@@ -4,30 +4,30 @@ use std::path::{Path, PathBuf};
 
 use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{StudyError, StudyKind, merge as merged};
+use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
+use archrock::studies::kept::{MAP, Origin, SUITE, Writer};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::peaks;
-use archrock::studies::results::{Look, Results};
+use archrock::studies::results::{Look, Results, StudyError};
 use clap::ValueEnum;
 use serde_json::Map;
 
 use super::figure::FigureOption;
-use super::run::Models;
-use super::scenario_file::{Destination, Input};
-use super::study::{HingesOption, Options, Pending, say};
-use super::uncertain::{Asked, ITSELF, Telling};
+use super::models::{ModelsOption, warn_of};
+use super::progress::say;
+use super::scenario_file::Destination;
+use super::study::{Arguments, Pending, Session};
 use super::{Failure, Format, print};
-use archrock::studies::kept::{MAP, Origin, SUITE, Writer};
 
 #[derive(clap::Args)]
 pub struct MapArguments {
     #[command(flatten)]
-    options: Options,
+    study: Arguments,
     #[command(flatten)]
     map: MapOption,
     #[command(flatten)]
-    hinges: HingesOption,
+    models: ModelsOption,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -35,11 +35,9 @@ pub struct MapArguments {
 #[derive(clap::Args)]
 pub struct SuiteArguments {
     #[command(flatten)]
-    options: Options,
-    /// Models of motion; several write to a folder each, named after the model, and the distributions of their peaks are compared
-    /// [default: the scenario's own choice].
-    #[arg(long, value_enum, value_delimiter = ',')]
-    hinges: Vec<Models>,
+    study: Arguments,
+    #[command(flatten)]
+    models: ModelsOption,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -123,137 +121,107 @@ impl MapOption {
     }
 }
 
-impl From<StudyError> for Failure {
-    fn from(error: StudyError) -> Self {
-        match error {
-            StudyError::Scenario(message) => Self::Input(message),
-            StudyError::Runner(error) => error.into(),
-            StudyError::Part(error) => error.into(),
-            StudyError::Read(error) => error.into(),
-            StudyError::Output(error) => error.into(),
-        }
-    }
-}
-
 pub fn map(arguments: &MapArguments, quiet: bool) -> Result<(), Failure> {
-    let options = &arguments.options;
-    let input = options.open()?;
-    let scenario = arguments.hinges.read(&input, quiet)?;
-    OverturningMap::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
+    let study = &arguments.study;
+    let input = study.scenario.open()?;
+    let scenario = arguments.models.read_one(&input, "map")?;
+    let about = |message| input.about(Failure::Input(message));
+    warn_of(std::slice::from_ref(&scenario), quiet);
+    OverturningMap::of(&scenario).map_err(about)?;
     let look = arguments.map.look(&scenario, arguments.figure.get()?);
     let look = look.map_err(Failure::Input)?;
     if scenario.uncertain().is_some() {
-        CellsOfSamples::of(&scenario).map_err(|message| input.about(Failure::Input(message)))?;
+        CellsOfSamples::of(&scenario).map_err(about)?;
     }
-    let place = options.place(MAP, (&input, &scenario), arguments.figure, quiet)?;
+    let place = study.place(MAP, (&input, &scenario), arguments.figure, quiet)?;
     let mut pending = Pending::default();
-    let results = with_samples(
-        StudyKind::Map,
-        Asked::Map(look),
-        options,
-        (&input, &scenario),
-        (look, &place),
-        &mut pending,
+    let session = Session {
+        input: Some(&input),
+        work: study.work,
+        look,
         quiet,
-    )?;
-    publish_if_whole(results, &place, pending, options.format(), quiet)
+    };
+    let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
+    let results = with_samples(session, kinds, &scenario, &place, &mut pending)?;
+    pending.publish(&place)?;
+    results.map_or(Ok(()), |results| {
+        show(&results, &place, study.format, quiet)
+    })
 }
 
 /// Computes a study of a scenario, and then that of its samples, whose words come first. A part of a scenario with samples is one of
 /// these. Returns the results, which are prepared; `None` for a part.
 fn with_samples(
-    kind: StudyKind,
-    asked: Asked,
-    options: &Options,
-    (input, scenario): (&Input<'_>, &Scenario),
-    (look, place): (Look, &Destination),
-    pending: &mut Pending,
-    quiet: bool,
-) -> Result<Option<Results>, Failure> {
-    let samples = Telling {
-        work: options.work(),
-        figure: look.figure,
-        quiet,
-    };
-    let mut own = None;
-    if scenario.uncertain().is_none() || !samples.work.is_part() {
-        own = options.compute(kind, input, scenario, (look, place), (pending, quiet))?;
-    }
-    let likely = samples.tell(scenario, asked, place, pending)?;
-    if let (Some(own), Some(likely)) = (&mut own, likely) {
-        own.words.insert_str(0, &(likely.words + ITSELF + "  "));
-        own.summary["uncertain"] = likely.summary;
-    }
-    Ok(own)
-}
-
-/// Publishes and reports results; a part has none.
-fn publish_if_whole(
-    results: Option<Results>,
+    session: Session<'_>,
+    [own, samples]: [StudyKind; 2],
+    scenario: &Scenario,
     place: &Destination,
-    pending: Pending,
-    format: Format,
-    quiet: bool,
-) -> Result<(), Failure> {
-    pending.publish(place)?;
-    results.map_or(Ok(()), |results| show(&results, place, format, quiet))
+    pending: &mut Pending,
+) -> Result<Option<Results>, Failure> {
+    let options = Options::default();
+    let mut found = None;
+    if scenario.uncertain().is_none() || !session.work.is_part() {
+        found = session.compute(own, scenario, &options, place, pending)?;
+    }
+    let mut all = found.clone().unwrap_or_default();
+    if scenario.uncertain().is_some() {
+        all.words.insert_str(0, "  ");
+    }
+    let session = Session {
+        look: session.look.of_samples(),
+        ..session
+    };
+    let scenarios = std::slice::from_ref(scenario);
+    session.add_samples(samples, scenarios, &options, place, pending, &mut all)?;
+    Ok(found.map(|_| all))
 }
 
 pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
-    let options = &arguments.options;
-    let input = options.open()?;
-    let scenarios = Models::read(&arguments.hinges, &input)?;
-    if !quiet {
-        super::warn(&scenarios[0].unlikely());
-        if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
-            say(ignored);
-        }
-    }
+    let study = &arguments.study;
+    let input = study.scenario.open()?;
+    let scenarios = arguments.models.read(&input)?;
+    warn_of(&scenarios, quiet);
     let look = Look::of(arguments.figure.get()?);
-    let place = options.place(SUITE, (&input, &scenarios[0]), arguments.figure, quiet)?;
+    let place = study.place(SUITE, (&input, &scenarios[0]), arguments.figure, quiet)?;
     let mut pending = Pending::default();
-    let mut compute = |scenario: &Scenario, place: &Destination| {
-        let asked = Asked::Suite;
-        with_samples(
-            StudyKind::Suite,
-            asked,
-            options,
-            (&input, scenario),
-            (look, place),
-            &mut pending,
-            quiet,
-        )
+    let session = Session {
+        input: Some(&input),
+        work: study.work,
+        look,
+        quiet,
     };
-    if let [scenario] = &scenarios[..] {
-        let results = compute(scenario, &place)?;
-        return publish_if_whole(results, &place, pending, options.format(), quiet);
-    }
+    let several = scenarios.len() > 1;
     let mut all = Vec::new();
     for scenario in &scenarios {
         let name = scenario.motion().hinges().name();
-        let place = place.within(name);
-        if let Some(results) = compute(scenario, &place)? {
-            all.push((scenario, place, results));
+        let place = if several {
+            place.within(name)
+        } else {
+            place.clone()
+        };
+        let kinds = [catalogue::SUITE, catalogue::UNCERTAIN_SUITE];
+        if let Some(results) = with_samples(session, kinds, scenario, &place, &mut pending)? {
+            all.push((scenario.motion().words(), results));
         }
     }
-    let (mut models, mut summaries) = (Vec::new(), Map::new());
-    for (scenario, _, results) in &all {
-        let motion = scenario.motion();
-        models.push((motion.words(), results.peaks.clone()));
-        summaries.insert(motion.hinges().name().to_owned(), results.summary.clone());
-    }
-    let compared = compare(scenarios[0].title(), &models, &place, look.figure)?;
+    let compared = compare(scenarios[0].title(), &all, &place, look.figure)?;
     pending.publish(&place)?;
-    for (scenario, place, results) in &all {
+    if let (false, [(_, results)]) = (several, &all[..]) {
+        return show(results, &place, study.format, quiet);
+    }
+    let mut summaries = Map::new();
+    for (scenario, (model, results)) in scenarios.iter().zip(&all) {
+        let name = scenario.motion().hinges().name();
         if !quiet {
-            say(scenario.motion().words());
+            say(model);
         }
-        show(results, place, Format::Text, quiet)?;
+        show(results, &place.within(name), Format::Text, quiet)?;
+        summaries.insert(name.to_owned(), results.summary.clone());
     }
     if let (Some(compared), false) = (&compared, quiet) {
         say(&compared.words);
     }
-    if let Format::Json = options.format() {
+    if let Format::Json = study.format {
         let peaks = compared.map(|compared| ("peaks".to_owned(), compared.summary));
         summaries.extend(peaks);
         print(&pretty(&summaries.into()))?;
@@ -264,7 +232,7 @@ pub fn suite(arguments: &SuiteArguments, quiet: bool) -> Result<(), Failure> {
 /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
 pub fn compare(
     title: Option<&str>,
-    models: &[(&str, Vec<f64>)],
+    models: &[(&str, Results)],
     place: &Destination,
     figure: Figure,
 ) -> Result<Option<Results>, Failure> {
@@ -273,7 +241,7 @@ pub fn compare(
     }
     let models: Vec<(&str, &[f64])> = models
         .iter()
-        .map(|(name, peaks)| (*name, &peaks[..]))
+        .map(|(name, results)| (*name, &results.peaks[..]))
         .collect();
     let results = peaks::results(
         title.unwrap_or("Largest rotations of several models"),
@@ -292,17 +260,20 @@ pub fn merge(arguments: &MergeArguments, quiet: bool) -> Result<(), Failure> {
     let beside = beside.unwrap_or(Path::new("."));
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     let place = arguments.figure.printed(place);
-    let (kind, results) = merged(parts, None, |kind, scenario| match (kind, scenario) {
-        (StudyKind::Map, Some(scenario)) => arguments.map.look(scenario, figure),
-        (StudyKind::UncertainMap, Some(scenario)) => arguments.map.of_samples(scenario, figure),
+    let mut look = |kind, scenario: Option<&Scenario>| match scenario {
+        Some(scenario) if kind == catalogue::MAP => arguments.map.look(scenario, figure),
+        Some(scenario) if kind == catalogue::UNCERTAIN_MAP => {
+            arguments.map.of_samples(scenario, figure)
+        }
         _ => arguments.map.of_no_map(figure),
-    })?;
+    };
+    let (kind, results) = merged(parts, None, &mut look)?;
     let origin = Origin::of_summary(&results.summary).unwrap_or_default();
     let writer = Writer::merge(kind);
     let place = place.locked_for(writer, &origin, quiet)?;
     // Samples are merged into a folder inside that of their command.
     let around = place.path().parent();
-    let around = around.filter(|_| place.path().ends_with(kind.name()) && !quiet);
+    let around = around.filter(|_| place.path().ends_with(kind.name) && !quiet);
     if let Some(around) = around {
         super::warn(&writer.warnings(around, &origin));
     }

@@ -1,106 +1,50 @@
-//! Long computations at the command line: their options, their progress on the terminal, and Ctrl-C.
+//! How every command computes a study of a scenario, and the study of its samples.
 
-use std::io::{self, IsTerminal as _, Write as _};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::sync::atomic::Ordering;
 
-use archrock::scenario::{Hinges, Scenario, shown_lines};
-use archrock::studies::catalogue::{Done, StudyError, StudyKind};
+use archrock::scenario::Scenario;
+use archrock::studies::catalogue::{Done, Options, Rows, StudyKind};
+use archrock::studies::kept::Writer;
 use archrock::studies::part::{PartError, PartFile, Shard};
-use archrock::studies::results::{Look, Results};
+use archrock::studies::results::{Look, Results, StudyError};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
-use clap::ValueEnum;
-use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::figure::FigureOption;
+use super::progress::{Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, say};
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
-use archrock::studies::kept::Writer;
 
 /// Options of every study.
 #[derive(clap::Args)]
-pub struct Options {
+pub struct Arguments {
     #[command(flatten)]
-    scenario: ScenarioFile,
+    pub scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     #[command(flatten)]
-    work: Work,
+    pub work: Work,
     /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    pub format: Format,
 }
 
 /// How a long computation is done.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Work {
-    #[command(flatten)]
-    threads: Threads,
+    /// Number of threads [default: number of processors].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// Continue an interrupted run, if there is one.
     #[arg(long)]
     resume: bool,
     /// Compute only part I of N, into a file for `archrock merge`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
-}
-
-/// The number of threads.
-#[derive(clap::Args, Clone, Copy)]
-pub struct Threads {
-    /// Number of threads [default: number of processors].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
-}
-
-impl Threads {
-    /// The runner that computes on these threads.
-    pub fn runner(self) -> Runner {
-        Runner {
-            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
-        }
-    }
-}
-
-/// The model of motion that is asked for.
-#[derive(clap::Args, Clone, Copy)]
-pub struct HingesOption {
-    /// The model of motion; overrides the scenario's own choice.
-    #[arg(long, value_enum, value_name = "MODEL")]
-    hinges: Option<Model>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Model {
-    /// Four links, or the column of Housner.
-    Four,
-    /// A row of blocks whose joints open and shut anywhere.
-    Free,
-    /// A row of blocks with elastic joints.
-    Elastic,
-}
-
-impl HingesOption {
-    /// Reads a scenario with that model.
-    pub fn read(self, input: &Input<'_>, quiet: bool) -> Result<Scenario, Failure> {
-        let hinges = self.hinges.map(|model| match model {
-            Model::Four => Hinges::Four,
-            Model::Free => Hinges::Free,
-            Model::Elastic => Hinges::Elastic,
-        });
-        let scenario = input.read(hinges)?;
-        if !quiet {
-            super::warn(&scenario.unlikely());
-            if let Some(ignored) = scenario.ignored() {
-                say(ignored);
-            }
-        }
-        Ok(scenario)
-    }
 }
 
 impl From<PartError> for Failure {
@@ -134,17 +78,49 @@ impl From<RunnerError> for Failure {
     }
 }
 
-impl Options {
-    /// Reads the text of the scenario.
-    pub fn open(&self) -> Result<Input<'_>, Failure> {
-        self.scenario.open()
+impl From<StudyError> for Failure {
+    fn from(error: StudyError) -> Self {
+        match error {
+            StudyError::Scenario(message) => Self::Input(message),
+            StudyError::Failed(message) => Self::Work(message),
+            StudyError::Runner(error) => error.into(),
+            StudyError::Part(error) => error.into(),
+            StudyError::Read(error) => error.into(),
+            StudyError::Output(error) => error.into(),
+        }
+    }
+}
+
+impl Work {
+    /// The runner that computes on these threads.
+    pub fn runner(self) -> Runner {
+        Runner {
+            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
+        }
     }
 
-    /// How the study is computed.
-    pub const fn work(&self) -> Work {
-        self.work
+    /// Whether only a part is requested.
+    pub const fn is_part(self) -> bool {
+        self.shard.is_some()
     }
 
+    /// Locks the folder for the results of a command, or for a part of them.
+    pub fn lock(
+        self,
+        place: Destination,
+        writer: Writer,
+        scenario: &Scenario,
+        quiet: bool,
+    ) -> Result<Destination, Failure> {
+        if self.is_part() {
+            place.locked_for_a_part(writer)
+        } else {
+            place.locked(writer, scenario, quiet)
+        }
+    }
+}
+
+impl Arguments {
     /// The folder for results, locked for a command.
     pub fn place(
         &self,
@@ -154,41 +130,7 @@ impl Options {
         quiet: bool,
     ) -> Result<Destination, Failure> {
         let place = figure.printed(input.results(self.out.as_deref())?);
-        if self.work.is_part() {
-            place.locked_for_a_part(writer)
-        } else {
-            place.locked(writer, scenario, quiet)
-        }
-    }
-
-    /// The format of the printed summary.
-    pub const fn format(&self) -> Format {
-        self.format
-    }
-
-    /// Computes the study of a scenario in a folder, and prepares its results there, which are returned; `None` for a part.
-    pub fn compute(
-        &self,
-        kind: StudyKind,
-        input: &Input<'_>,
-        scenario: &Scenario,
-        (look, place): (Look, &Destination),
-        (pending, quiet): (&mut Pending, bool),
-    ) -> Result<Option<Results>, Failure> {
-        let done = self
-            .work
-            .compute(kind.name(), place, quiet, |runner, task, watch| {
-                let done = kind.compute(scenario, look, runner, Some(task), watch);
-                done.map_err(|error| match error {
-                    StudyError::Scenario(_) => input.about(error.into()),
-                    error => error.into(),
-                })
-            })?;
-        let Some((results, part)) = done else {
-            return Ok(None);
-        };
-        pending.prepare(place, &results, part)?;
-        Ok(Some(results))
+        self.work.lock(place, writer, scenario, quiet)
     }
 }
 
@@ -197,18 +139,6 @@ impl Options {
 pub struct Pending(Vec<PartFile>);
 
 impl Pending {
-    /// Prepares results in a folder. `part` keeps their rows.
-    pub fn prepare(
-        &mut self,
-        place: &Destination,
-        results: &Results,
-        part: Option<PartFile>,
-    ) -> Result<(), Failure> {
-        place.prepare(results)?;
-        self.0.extend(part);
-        Ok(())
-    }
-
     /// Publishes the results of a command.
     pub fn publish(self, place: &Destination) -> Result<(), Failure> {
         place.publish()?;
@@ -219,61 +149,84 @@ impl Pending {
     }
 }
 
-/// Receives the progress; the work stops when it returns a break.
-type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
+/// How a command computes its studies.
+#[derive(Clone, Copy)]
+pub struct Session<'s> {
+    /// The scenario file, which errors about the scenario name.
+    pub input: Option<&'s Input<'s>>,
+    pub work: Work,
+    pub look: Look,
+    pub quiet: bool,
+}
 
-impl Work {
-    /// The runner that computes on these threads.
-    pub fn runner(self) -> Runner {
-        self.threads.runner()
-    }
+/// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
+pub const ITSELF: &str = "the scenario itself:\n";
 
-    /// Whether only a part is asked for.
-    pub const fn is_part(self) -> bool {
-        self.shard.is_some()
-    }
-
-    /// Computes the study of this name for a folder. Returns its results and the file that keeps its rows until the results are
-    /// written; or, for a part, prints a message and returns `None`.
-    pub fn compute(
+impl Session<'_> {
+    /// Calls `compute` with a function that shows the progress, and that ends the program at Ctrl-C with what `interrupted` says of
+    /// the progress.
+    pub fn watch<T>(
         self,
-        name: &str,
-        place: &Destination,
-        quiet: bool,
-        compute: impl FnOnce(Runner, Task<'_>, Watch<'_>) -> Result<Done, Failure>,
-    ) -> Result<Option<(Results, Option<PartFile>)>, Failure> {
-        let task = Task {
-            folder: place.path(),
-            shard: self.shard.unwrap_or(Shard::WHOLE),
-            resume: self.resume,
-        };
+        interrupted: impl Fn(Progress) -> String,
+        compute: impl FnOnce(&mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, StudyError>,
+    ) -> Result<T, Failure> {
         listen_to_interrupts();
         let mut display = None;
-        let mut watch = |progress| {
-            let display = display.get_or_insert_with(|| Display::new(progress, quiet));
+        let done = compute(&mut |progress| {
+            let display = display.get_or_insert_with(|| Display::new(progress, self.quiet));
             // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
-                display.bar.abandon();
-                let Progress { done, all } = progress;
-                let file = task.folder.join(task.shard.file_name(name));
-                say(&if file.exists() {
-                    format!("interrupted: {done} of {all} cases are done; continue with --resume")
-                } else {
-                    format!("interrupted; {} was removed meanwhile", file.display())
-                });
+                display.abandon();
+                say(&interrupted(progress));
                 process::exit(INTERRUPTED_CODE);
             }
             display.show(progress);
             ControlFlow::Continue(())
-        };
-        let done = compute(self.runner(), task, &mut watch)?;
+        });
         if let Some(display) = display {
             display.finish();
         }
-        match done {
-            Done::Whole(results, part) => Ok(Some((results, part))),
+        done.map_err(|error| match (error, self.input) {
+            (StudyError::Scenario(message), Some(input)) => input.about(Failure::Input(message)),
+            (error, _) => error.into(),
+        })
+    }
+
+    /// Computes a study in a folder, and prepares its results there, which are returned. Of a part, reports the file and returns
+    /// `None`.
+    pub fn compute(
+        self,
+        kind: StudyKind,
+        scenario: &Scenario,
+        options: &Options,
+        place: &Destination,
+        pending: &mut Pending,
+    ) -> Result<Option<Results>, Failure> {
+        let task = Task {
+            folder: place.path(),
+            shard: self.work.shard.unwrap_or(Shard::WHOLE),
+            resume: self.work.resume,
+        };
+        let interrupted = |Progress { done, all }| {
+            let file = task.folder.join(task.shard.file_name(kind.name));
+            if file.exists() {
+                format!("interrupted: {done} of {all} cases are done; continue with --resume")
+            } else {
+                format!("interrupted; {} was removed meanwhile", file.display())
+            }
+        };
+        let runner = self.work.runner();
+        match self.watch(interrupted, |watch| {
+            let rows = Rows::Compute(runner, Some(task), watch);
+            kind.compute(scenario, options, self.look, rows)
+        })? {
+            Done::Whole(results, part) => {
+                place.prepare(&results)?;
+                pending.0.extend(part);
+                Ok(Some(results))
+            }
             Done::Part { part, cases, all } => {
-                if !quiet {
+                if !self.quiet {
                     let (shard, path) = (task.shard, part.path().display());
                     say(&format!(
                         "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
@@ -283,101 +236,55 @@ impl Work {
             }
         }
     }
-}
 
-/// Whether Ctrl-C was pressed.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// On Ctrl-C: ends the work between two lines of its file; on a second Ctrl-C, at once.
-fn listen_to_interrupts() {
-    // Without the handler Ctrl-C still ends the program, without a message.
-    let _ = ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            process::exit(INTERRUPTED_CODE);
+    /// Whether only a part of the samples is requested; an error if a scenario has no samples.
+    pub fn is_part(self, scenarios: &[Scenario]) -> Result<bool, Failure> {
+        if self.work.is_part() && scenarios.iter().any(|one| one.uncertain().is_none()) {
+            let message =
+                "--shard computes a part of the samples of [uncertain], which the scenario lacks";
+            return Err(Failure::Input(message.to_owned()));
         }
-    });
-}
+        Ok(self.work.is_part())
+    }
 
-/// The exit code of shells for a program ended by Ctrl-C.
-const INTERRUPTED_CODE: i32 = 130;
-
-/// Prints a line on standard error.
-pub fn say(text: &str) {
-    // When standard error fails there is nowhere to report it.
-    let _ = writeln!(io::stderr(), "{}", shown_lines(text));
-}
-
-/// Progress: a bar on a terminal, a line a minute elsewhere.
-pub struct Display {
-    bar: ProgressBar,
-    /// The number of cases done before this start: they do not count in the pace.
-    before: usize,
-    begun: Instant,
-    /// When the last line was printed; `None` when no lines are.
-    said: Option<Instant>,
-}
-
-/// Time between lines.
-const MINUTE: Duration = Duration::from_secs(60);
-
-impl Display {
-    pub fn new(begin: Progress, quiet: bool) -> Self {
-        let on_terminal = io::stderr().is_terminal();
-        let target = if quiet || !on_terminal {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(Some(begin.all as u64), target);
-        let style = ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {msg}")
-            .expect("the template is valid");
-        bar.set_style(style);
-        bar.set_position(begin.done as u64);
-        bar.set_message(pace(0, begin.all, Duration::ZERO));
-        Self {
-            bar,
-            before: begin.done,
-            begun: Instant::now(),
-            said: (!quiet && !on_terminal).then(Instant::now),
+    /// Computes the samples of scenarios that differ in their models of motion and have `[uncertain]`. Prepares their results in folders
+    /// of their own inside `place`, and adds them to `results`, of which their words come first. Returns the results of each model.
+    pub fn add_samples(
+        self,
+        kind: StudyKind,
+        scenarios: &[Scenario],
+        options: &Options,
+        place: &Destination,
+        pending: &mut Pending,
+        results: &mut Results,
+    ) -> Result<Vec<(&'static str, Results)>, Failure> {
+        let several = scenarios.len() > 1;
+        let (mut words, mut of_models) = (String::new(), Vec::new());
+        for scenario in scenarios.iter().filter(|one| one.uncertain().is_some()) {
+            let (name, model) = (scenario.motion().hinges().name(), scenario.motion().words());
+            let place = if several { &place.within(name) } else { place };
+            let place = place.within(kind.name);
+            let Some(found) = self.compute(kind, scenario, options, &place, pending)? else {
+                continue;
+            };
+            let heading = if several {
+                format!("{model}\n")
+            } else {
+                String::new()
+            };
+            words += &format!(
+                "{heading}  {}\n  results in {}\n",
+                found.words,
+                place.holds(&found)
+            );
+            let summary = &mut results.summary;
+            let summary = if several { &mut summary[name] } else { summary };
+            summary["uncertain"] = found.summary.clone();
+            of_models.push((model, found));
         }
-    }
-
-    pub fn show(&mut self, progress: Progress) {
-        let pace = pace(
-            progress.done.saturating_sub(self.before),
-            progress.all.saturating_sub(progress.done),
-            self.begun.elapsed(),
-        );
-        self.bar.set_length(progress.all as u64);
-        self.bar.set_position(progress.done as u64);
-        self.bar.set_message(pace.clone());
-        if let Some(said) = &mut self.said
-            && said.elapsed() >= MINUTE
-        {
-            *said = Instant::now();
-            say(&format!(
-                "{} of {} cases, {pace}",
-                progress.done, progress.all
-            ));
+        if !words.is_empty() {
+            results.words.insert_str(0, &(words + ITSELF));
         }
+        Ok(of_models)
     }
-
-    pub fn finish(self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-/// "12 a second, 3 minutes left", from the mean of all cases so far: a moving mean would let one slow case spoil the estimate.
-fn pace(done: usize, left: usize, elapsed: Duration) -> String {
-    if done == 0 {
-        return "none finished yet".to_owned();
-    }
-    let each = elapsed.div_f64(done as f64);
-    let rate = 1.0 / each.as_secs_f64().max(1e-6);
-    let rate = match rate {
-        10.0.. => format!("{rate:.0} a second"),
-        1.0.. => format!("{rate:.1} a second"),
-        _ => format!("one in {:.1} s", each.as_secs_f64()),
-    };
-    format!("{rate}, {} left", HumanDuration(each.mul_f64(left as f64)))
 }

@@ -1,24 +1,20 @@
 //! The command `threshold`.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use archrock::dynamics::model::Model;
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{StudyKind, thresholds_along as study_along};
+use archrock::studies::catalogue::{self, Options};
+use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
 use archrock::studies::results::{Look, Results};
 use archrock::studies::threshold::along::{Along, AlongOptions, KeyRange};
-use archrock::studies::threshold::{
-    FILES, Factors, NoHistory, Threshold, ThresholdError, check, tell, thresholds, vary,
-};
+use archrock::studies::threshold::{FILES, Factors, check, results};
 
 use super::figure::FigureOption;
-use super::run::Models;
+use super::models::{ModelsOption, warn_of};
+use super::progress::say;
 use super::scenario_file::{Destination, Input, ScenarioFile, SuiteOption};
-use super::study::{Display, Pending, Work, say};
-use super::uncertain::{Asked, ITSELF, Telling};
+use super::study::{Pending, Session, Work};
 use super::{Failure, Format, print, print_all, show};
-use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -31,9 +27,8 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     figure: FigureOption,
-    /// Models of motion [default: elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
-    #[arg(long, value_enum, value_delimiter = ',')]
-    hinges: Vec<Models>,
+    #[command(flatten)]
+    models: ModelsOption,
     /// Smallest factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
@@ -65,13 +60,18 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
     let input = arguments.scenario.open()?;
+    let session = Session {
+        input: Some(&input),
+        work: arguments.work,
+        look: Look::of(arguments.figure.get()?),
+        quiet,
+    };
     if let Some(along) = &arguments.along {
-        return thresholds_along(arguments, along, factors, &input, quiet);
+        return thresholds_along(arguments, along, factors, session, &input);
     }
-    let models = Models::read(&arguments.hinges, &input)?;
+    let models = arguments.models.read(&input)?;
     let origin = Origin::of(&models[0]);
     let about = |failure| input.about(failure);
-    let is_part = arguments.work.is_part();
     let root = arguments
         .figure
         .printed(input.results(arguments.out.as_deref())?);
@@ -95,6 +95,7 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     {
         say(ignored);
     }
+    let is_part = arguments.work.is_part();
     let root = if is_part {
         root.locked_for_a_part(THRESHOLD)?
     } else {
@@ -102,115 +103,44 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     let title = tasks[0].0[0].title();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    let mut found = Vec::new();
+    let options = Options {
+        factors,
+        ..Options::default()
+    };
+    let mut all = Vec::new();
     for (scenarios, place) in tasks {
         let mut pending = Pending::default();
-        let (scenarios, place) = (&scenarios, &place.locked_with(&root));
+        let (scenarios, place) = (&scenarios[..], &place.locked_with(&root));
         if !quiet {
             super::warn(&scenarios[0].unlikely());
         }
-        let samples = Telling {
-            work: arguments.work,
-            figure: arguments.figure.get()?,
-            quiet,
-        };
-        let mut results = if samples.is_part(scenarios)? {
+        let mut found = if session.is_part(scenarios)? {
             Results::default()
         } else {
-            find(scenarios, place, &factors, arguments, quiet)?
+            find(scenarios, place, &factors, session)?
         };
-        let mut likely = String::new();
-        let several = scenarios.len() > 1;
-        for scenario in scenarios {
-            let name = scenario.motion().hinges().name();
-            let place = if several { &place.within(name) } else { place };
-            if let Some(told) =
-                samples.tell(scenario, Asked::FirstEdges(factors), place, &mut pending)?
-            {
-                if several {
-                    likely += &format!("{}\n", scenario.motion().words());
-                }
-                likely += &told.words;
-                let summary = &mut results.summary["uncertain"];
-                *(if several { &mut summary[name] } else { summary }) = told.summary;
-            }
-        }
-        if !likely.is_empty() {
-            results.words.insert_str(0, &(likely + ITSELF));
-        }
+        let samples = catalogue::UNCERTAIN_THRESHOLD;
+        session.add_samples(
+            samples,
+            scenarios,
+            &options,
+            place,
+            &mut pending,
+            &mut found,
+        )?;
         pending.publish(place)?;
         if !is_part && !quiet {
-            say(&format!("results in {}", place.holds(&results)));
+            say(&format!("results in {}", place.holds(&found)));
         }
-        found.push(results);
+        all.push(found);
     }
     match arguments.format {
-        Format::Json => print_all(found.into_iter().map(|results| results.summary)),
+        Format::Json => print_all(all.into_iter().map(|results| results.summary)),
         Format::Text => {
-            let words: String = found.into_iter().map(|results| results.words).collect();
+            let words: String = all.into_iter().map(|results| results.words).collect();
             print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
     }
-}
-
-/// Finds the threshold for each value of a key.
-fn thresholds_along(
-    arguments: &Arguments,
-    along: &KeyRange,
-    factors: Factors,
-    input: &Input<'_>,
-    quiet: bool,
-) -> Result<(), Failure> {
-    let models = Models::read(&arguments.hinges, input)?;
-    let about = |message: &str| input.about(Failure::Input(message.to_owned()));
-    let [scenario] = &models[..] else {
-        return Err(about("--along is for one model: choose it by --hinges"));
-    };
-    if scenario.uncertain().is_some() {
-        return Err(about(
-            "--along varies one key and ignores [uncertain]: give --no-uncertain",
-        ));
-    }
-    if !quiet {
-        super::warn(&scenario.unlikely());
-        scenario.ignored().into_iter().for_each(say);
-    }
-    let options = AlongOptions {
-        along: along.clone(),
-        factors,
-        no_impact: arguments.no_impact,
-    };
-    Along::of(scenario, options.clone()).map_err(|message| about(&message))?;
-    let look = Look::of(arguments.figure.get()?);
-    let place = arguments
-        .figure
-        .printed(input.results(arguments.out.as_deref())?);
-    let place = if arguments.work.is_part() {
-        place.locked_for_a_part(ALONG)?
-    } else {
-        place.locked(ALONG, scenario, quiet)?
-    };
-    let kind = StudyKind::ThresholdAlong;
-    let done = arguments
-        .work
-        .compute(kind.name(), &place, quiet, |runner, task, watch| {
-            let task = Some(task);
-            Ok(study_along(scenario, options, look, runner, task, watch)?)
-        })?;
-    let mut pending = Pending::default();
-    let results = done.map(|(results, part)| {
-        pending.prepare(&place, &results, part)?;
-        Ok::<_, Failure>(results)
-    });
-    let results = results.transpose()?;
-    pending.publish(&place)?;
-    let Some(results) = results else {
-        return Ok(());
-    };
-    if !quiet {
-        say(&format!("results in {}", place.holds(&results)));
-    }
-    show(&results, arguments.format)
 }
 
 /// Finds the thresholds of a scenario, for one model of motion or for several, and writes them.
@@ -218,86 +148,60 @@ fn find(
     scenarios: &[Scenario],
     place: &Destination,
     factors: &Factors,
-    arguments: &Arguments,
-    quiet: bool,
+    session: Session<'_>,
 ) -> Result<Results, Failure> {
-    let scenario = &scenarios[0];
-    let models: Vec<Box<dyn Model>> = scenarios
-        .iter()
-        .map(Scenario::model)
-        .collect::<Result<_, _>>()
-        .map_err(|error| Failure::Input(error.to_string()))?;
-    let names = scenarios.iter().map(Scenario::model_name);
-    let models: Vec<(&str, &dyn Model)> = names.zip(models.iter().map(|model| &**model)).collect();
-    let ground = scenario.ground_motion();
     // Opened before the work starts, so that a folder that cannot be written costs no time.
     let folder = place.open(&FILES)?;
+    let scenarios: Vec<&Scenario> = scenarios.iter().collect();
+    let (figure, runner) = (session.look.figure, session.work.runner());
+    let found = session.watch(
+        |_| "interrupted".to_owned(),
+        |watch| results(&scenarios, factors, figure, &runner, watch),
+    )?;
+    found.write(folder)?;
+    Ok(found)
+}
 
-    let runner = arguments.work.runner();
-    let mut display = None;
-    let watch = |progress| {
-        let display = display.get_or_insert_with(|| Display::new(progress, quiet));
-        display.show(progress);
-        ControlFlow::Continue(())
+/// Finds the threshold for each value of a key.
+fn thresholds_along(
+    arguments: &Arguments,
+    along: &KeyRange,
+    factors: Factors,
+    session: Session<'_>,
+    input: &Input<'_>,
+) -> Result<(), Failure> {
+    let about = |message| input.about(Failure::Input(message));
+    let scenario = arguments.models.read_one(input, "--along")?;
+    if scenario.uncertain().is_some() {
+        let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
+        return Err(about(message.to_owned()));
+    }
+    warn_of(std::slice::from_ref(&scenario), session.quiet);
+    let along = AlongOptions {
+        along: along.clone(),
+        factors,
+        no_impact: arguments.no_impact,
     };
-    let request = scenario.request();
-    let mut found = thresholds(&models, ground, &request, factors, &runner, watch)?;
-    if let Some(display) = display {
-        display.finish();
-    }
-    for threshold in &found {
-        refuse_if_nothing_is_known(threshold)?;
-    }
-    for (threshold, scenario) in found.iter_mut().zip(scenarios) {
-        let variations = scenario.variations();
-        let variations = variations.map_err(|error| Failure::Work(error.to_string()))?;
-        let mut display = None;
-        let watch = |progress| {
-            let display = display.get_or_insert_with(|| Display::new(progress, quiet));
-            display.show(progress);
-            ControlFlow::Continue(())
-        };
-        threshold.varied = vary(
-            threshold,
-            &variations,
-            factors,
-            ground,
-            &request,
-            &runner,
-            watch,
-        )?;
-        if let Some(display) = display {
-            display.finish();
-        }
-    }
-
-    let of_models: Vec<&Scenario> = scenarios.iter().collect();
-    let results = tell(&of_models, factors, &found, arguments.figure.get()?)?;
-    results.write(folder)?;
-    Ok(results)
-}
-
-impl From<ThresholdError> for Failure {
-    fn from(error: ThresholdError) -> Self {
-        match error {
-            ThresholdError::Argument(_) => Self::Input(error.to_string()),
-            ThresholdError::Runner(error) => error.into(),
-        }
-    }
-}
-
-/// Refuses to report a threshold if not a single history could be computed.
-fn refuse_if_nothing_is_known(threshold: &Threshold) -> Result<(), Failure> {
-    let samples = &threshold.samples;
-    if samples.iter().any(|sample| sample.result.is_ok()) {
+    Along::of(&scenario, along.clone()).map_err(about)?;
+    let place = arguments
+        .figure
+        .printed(input.results(arguments.out.as_deref())?);
+    let place = arguments
+        .work
+        .lock(place, ALONG, &scenario, session.quiet)?;
+    let options = Options {
+        along: Some(along),
+        ..Options::default()
+    };
+    let mut pending = Pending::default();
+    let kind = catalogue::THRESHOLD_ALONG;
+    let found = session.compute(kind, &scenario, &options, &place, &mut pending)?;
+    pending.publish(&place)?;
+    let Some(found) = found else {
         return Ok(());
+    };
+    if !session.quiet {
+        say(&format!("results in {}", place.holds(&found)));
     }
-    match samples
-        .iter()
-        .find_map(|sample| sample.result.as_ref().err())
-    {
-        Some(NoHistory::GroundFalls(reason)) => Err(Failure::Input(reason.clone())),
-        Some(NoHistory::Failed(reason)) => Err(Failure::Work(reason.clone())),
-        None => Ok(()),
-    }
+    show(&found, arguments.format)
 }

@@ -1,64 +1,56 @@
-//! The studies that a scenario can describe, each in the table of its name: computed and reported, whichever it is.
+//! The studies of a scenario, each an entry in one list: computed at once, in parts or by merging parts, whichever it is.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use thiserror::Error;
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 
+use super::capacity::{self, capacity};
+use super::ensemble::Ensemble;
 use super::ensemble::cells::CellsOfSamples;
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
-use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
-use super::part::{self, PartError, PartFile};
-use super::results::{Look, Results};
-use super::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
-use super::suite::{Heading, RecordSuite};
-use super::threshold::Factors;
+use super::part::{self, PartFile};
+use super::results::{Look, Reported, Results, StudyError};
+use super::runner::{Computed, Progress, Runner, Task};
+use super::spread::{self, Way};
+use super::suite::{self, Heading, RecordSuite};
 use super::threshold::along::{self, Along, AlongOptions};
-use crate::output::OutputError;
-use crate::scenario::{Scenario, ScenarioErrors};
+use super::threshold::{self, Factors};
+use super::verify::{self, Check};
+use crate::scenario::Scenario;
 
-named! {
-    /// A study that a scenario describes.
-    pub enum StudyKind {
-        /// Which pulses overturn the structure, over two quantities.
-        Map = "map",
-        /// The threshold for each value of a key along a range.
-        ThresholdAlong = "threshold_along",
-        /// Which records overturn the structure.
-        Suite = "suite",
-        /// How histories end and proceed, for samples of the uncertain numbers.
-        Uncertain = "uncertain",
-        /// The factor from which samples of the uncertain numbers overturn.
-        UncertainThreshold = "uncertain_threshold",
-        /// Which records overturn samples of the uncertain numbers.
-        UncertainSuite = "uncertain_suite",
-        /// How likely pulses overturn, over two quantities, as far as samples of what is not known tell.
-        UncertainMap = "uncertain_map",
-    }
+/// What is computed of a scenario, where that is not part of the scenario.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Options {
+    /// The factors on the ground motion that a threshold tries.
+    pub factors: Factors,
+    /// The range of a threshold along a key.
+    pub along: Option<AlongOptions>,
+    /// The control point of capacity curves, in metres.
+    pub point_m: Option<Vector2<f64>>,
+    /// The movements of a springing that `spread` follows; empty: the usual ones.
+    #[serde(skip)]
+    pub ways: Vec<Way>,
 }
 
-/// Why a study has no results.
-#[derive(Debug, Error)]
-pub enum StudyError {
-    /// The scenario does not describe it.
-    #[error("{0}")]
-    Scenario(String),
-    /// Its rows could not be completed.
-    #[error(transparent)]
-    Runner(#[from] RunnerError),
-    /// Its parts cannot be joined.
-    #[error(transparent)]
-    Part(#[from] PartError),
-    /// The scenario of its parts cannot be read.
-    #[error(transparent)]
-    Read(#[from] ScenarioErrors),
-    /// A result is not a number.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+/// Receives the progress of a study; the work stops when it returns a break.
+pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
+
+/// How the rows of a study are found.
+pub enum Rows<'w> {
+    /// They are computed, in a folder, where this can be resumed, or in memory. `watch` is as in [`Runner::rows`].
+    Compute(Runner, Option<Task<'w>>, Watch<'w>),
+    /// They are read from all parts.
+    Merge(&'w [PathBuf]),
 }
+
+/// Decides how merged results look, from the scenario of the parts if that is read. It may refuse options that do not fit the study.
+pub type ChooseLook<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Result<Look, String>;
 
 /// The result of a computation.
 #[derive(Debug)]
@@ -76,256 +68,278 @@ pub enum Done {
     },
 }
 
+/// A study that a scenario describes.
+#[derive(Clone, Copy, Debug)]
+pub struct StudyKind {
+    /// Its name.
+    pub name: &'static str,
+    /// The names of all files that its results may have, the seal last.
+    pub files: &'static [&'static str],
+    run: fn(&Scenario, &Options, Look, Rows<'_>) -> Result<Done, StudyError>,
+}
+
+impl PartialEq for StudyKind {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for StudyKind {}
+
+/// Which pulses overturn the structure, over two quantities.
+pub const MAP: StudyKind = StudyKind {
+    name: "map",
+    files: &["map.svg", "map.html", "map.json", "map.csv"],
+    run: |scenario, _, look, rows| run(OverturningMap::of(scenario), look, rows),
+};
+/// Which records overturn the structure.
+pub const SUITE: StudyKind = StudyKind {
+    name: "suite",
+    files: &suite::FILES,
+    run: |scenario, _, look, rows| run(RecordSuite::of(scenario), look, rows),
+};
+/// The factors by which the ground motion overturns the structure.
+pub const THRESHOLD: StudyKind = StudyKind {
+    name: "threshold",
+    files: &threshold::FILES,
+    run: |scenario, options, look, rows| {
+        let Rows::Compute(runner, _, watch) = rows else {
+            return Err(StudyError::scenario("a threshold has no parts"));
+        };
+        let (factors, figure) = (&options.factors, look.figure);
+        threshold::results(&[scenario], factors, figure, &runner, watch).map(whole)
+    },
+};
+/// The threshold for each value of a key along a range.
+pub const THRESHOLD_ALONG: StudyKind = StudyKind {
+    name: "threshold_along",
+    files: &along::FILES,
+    run: |scenario, options, look, rows| {
+        let along = options.along.clone();
+        let along = along.ok_or("a threshold along a range needs its key and its values");
+        let study = along.map_err(str::to_owned);
+        run(
+            study.and_then(|along| Along::of(scenario, along)),
+            look,
+            rows,
+        )
+    },
+};
+/// The capacity curves of the first mechanism.
+pub const CAPACITY: StudyKind = StudyKind {
+    name: "capacity",
+    files: &capacity::FILES,
+    run: |scenario, options, look, _| {
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
+        Ok(whole(capacity::report(scenario, &sides, look.figure)?))
+    },
+};
+/// How far a springing may move until the arch falls.
+pub const SPREAD: StudyKind = StudyKind {
+    name: "spread",
+    files: &spread::FILES,
+    run: |scenario, options, look, _| {
+        let found = spread::spread(scenario, &options.ways).map_err(StudyError::scenario)?;
+        Ok(whole(spread::tell(scenario, &found, look.figure)?))
+    },
+};
+/// The check of the first mechanism by the Circolare 7/2019.
+pub const VERIFY: StudyKind = StudyKind {
+    name: "verify",
+    files: &verify::FILES,
+    run: |scenario, _, _, _| {
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        if scenario.right_foot().is_some() {
+            let message =
+                "the histories of a check shake both feet alike: leave [ground.right] out";
+            return Err(StudyError::scenario(message));
+        }
+        let check = Check::new(scenario).map_err(StudyError::scenario)?;
+        Ok(whole(verify::tell(scenario, &check)?))
+    },
+};
+/// How histories end and proceed, for samples of the uncertain numbers.
+pub const UNCERTAIN: StudyKind = StudyKind {
+    name: "uncertain",
+    files: &[
+        "bands.svg",
+        "matters.svg",
+        "bands.csv",
+        "samples.csv",
+        "uncertain.json",
+    ],
+    run: |scenario, _, look, rows| {
+        let question = Histories::of(scenario);
+        run(
+            question.and_then(|question| Ensemble::new(scenario, question)),
+            look,
+            rows,
+        )
+    },
+};
+/// The factor from which samples of the uncertain numbers overturn.
+pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind {
+    name: "uncertain_threshold",
+    files: &[
+        "probability.svg",
+        "matters.svg",
+        "probability.csv",
+        "samples.csv",
+        "uncertain.json",
+    ],
+    run: |scenario, options, look, rows| {
+        let question = FirstEdges::of(scenario, options.factors);
+        run(
+            question.and_then(|question| Ensemble::new(scenario, question)),
+            look,
+            rows,
+        )
+    },
+};
+/// Which records overturn samples of the uncertain numbers.
+pub const UNCERTAIN_SUITE: StudyKind = StudyKind {
+    name: "uncertain_suite",
+    files: &[
+        "fragility.svg",
+        "matters.svg",
+        "fragility.csv",
+        "capacities.csv",
+        "samples.csv",
+        "uncertain.json",
+    ],
+    run: |scenario, _, look, rows| {
+        let question = Capacities::of(scenario);
+        run(
+            question.and_then(|question| Ensemble::new(scenario, question)),
+            look,
+            rows,
+        )
+    },
+};
+/// How likely pulses overturn samples of the uncertain numbers, over two quantities.
+pub const UNCERTAIN_MAP: StudyKind = StudyKind {
+    name: "uncertain_map",
+    files: &[
+        "map.svg",
+        "map.html",
+        "matters.svg",
+        "probability.csv",
+        "map.csv",
+        "uncertain.json",
+    ],
+    run: |scenario, _, look, rows| run(CellsOfSamples::of(scenario), look, rows),
+};
+
+const fn whole(results: Results) -> Done {
+    Done::Whole(results, None)
+}
+
 impl StudyKind {
-    /// The kind with this name.
+    /// All studies.
+    pub const ALL: [Self; 11] = [
+        MAP,
+        SUITE,
+        THRESHOLD,
+        THRESHOLD_ALONG,
+        CAPACITY,
+        SPREAD,
+        VERIFY,
+        UNCERTAIN,
+        UNCERTAIN_THRESHOLD,
+        UNCERTAIN_SUITE,
+        UNCERTAIN_MAP,
+    ];
+
+    /// The study with this name.
     #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|kind| kind.name() == name)
+        Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 
-    /// The names of all files that its results may have, the seal last.
-    #[must_use]
-    pub const fn files(self) -> &'static [&'static str] {
-        match self {
-            Self::Map => &["map.svg", "map.html", "map.json", "map.csv"],
-            Self::ThresholdAlong => &along::FILES,
-            Self::Suite => &[
-                "suite.svg",
-                "ida.svg",
-                "peaks.svg",
-                "ida.csv",
-                "peaks.csv",
-                "capacity.csv",
-                "intensity.csv",
-                "fragility.csv",
-                "fragility.json",
-                "suite.csv",
-            ],
-            Self::Uncertain => &[
-                "bands.svg",
-                "matters.svg",
-                "bands.csv",
-                "samples.csv",
-                "uncertain.json",
-            ],
-            Self::UncertainThreshold => &[
-                "probability.svg",
-                "matters.svg",
-                "probability.csv",
-                "samples.csv",
-                "uncertain.json",
-            ],
-            Self::UncertainSuite => &[
-                "fragility.svg",
-                "matters.svg",
-                "fragility.csv",
-                "capacities.csv",
-                "samples.csv",
-                "uncertain.json",
-            ],
-            Self::UncertainMap => &[
-                "map.svg",
-                "map.html",
-                "matters.svg",
-                "probability.csv",
-                "map.csv",
-                "uncertain.json",
-            ],
-        }
-    }
-
-    /// Computes the study of a scenario, in a folder, where it can be resumed, or in memory. `watch` is as in [`Runner::rows`].
+    /// Computes the study of a scenario.
     ///
     /// # Errors
     /// When the scenario does not describe the study, or its rows could not be completed.
     pub fn compute(
         self,
         scenario: &Scenario,
+        options: &Options,
         look: Look,
-        runner: Runner,
-        task: Option<Task<'_>>,
-        watch: impl FnMut(Progress) -> ControlFlow<()>,
+        rows: Rows<'_>,
     ) -> Result<Done, StudyError> {
-        match self {
-            Self::Map => {
-                let map = OverturningMap::of(scenario).map_err(StudyError::Scenario)?;
-                complete(&map, runner, task, watch, |rows| map.tell(&rows, look))
-            }
-            Self::ThresholdAlong => Err(StudyError::Scenario(
-                "a threshold along a range needs its key and its values".to_owned(),
-            )),
-            Self::Suite => {
-                let study = RecordSuite::of(scenario).map_err(StudyError::Scenario)?;
-                let heading = study.heading();
-                complete(&study, runner, task, watch, |rows| {
-                    heading.tell(rows, look.figure)
-                })
-            }
-            Self::Uncertain => {
-                let question = Histories::of(scenario).map_err(StudyError::Scenario)?;
-                let study = ensemble(scenario, question)?;
-                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
-            }
-            Self::UncertainThreshold => {
-                first_edges(scenario, Factors::default(), look, runner, task, watch)
-            }
-            Self::UncertainSuite => {
-                let question = Capacities::of(scenario).map_err(StudyError::Scenario)?;
-                let study = ensemble(scenario, question)?;
-                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
-            }
-            Self::UncertainMap => {
-                let study = CellsOfSamples::of(scenario).map_err(StudyError::Scenario)?;
-                complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
-            }
-        }
+        (self.run)(scenario, options, look, rows)
     }
 }
 
-/// The same for [`StudyKind::UncertainThreshold`], with these factors.
-///
-/// # Errors
-/// As [`StudyKind::compute`].
-pub fn first_edges(
-    scenario: &Scenario,
-    factors: Factors,
+/// Finds the rows of a study, and turns them into results if they are those of all cases.
+fn run<S: Reported>(
+    study: Result<S, String>,
     look: Look,
-    runner: Runner,
-    task: Option<Task<'_>>,
-    watch: impl FnMut(Progress) -> ControlFlow<()>,
+    rows: Rows<'_>,
 ) -> Result<Done, StudyError> {
-    let question = FirstEdges::of(scenario, factors).map_err(StudyError::Scenario)?;
-    let study = ensemble(scenario, question)?;
-    complete(&study, runner, task, watch, |rows| study.tell(&rows, look))
-}
-
-/// [`StudyKind::compute`] for [`StudyKind::ThresholdAlong`], with its options.
-///
-/// # Errors
-/// As [`StudyKind::compute`].
-pub fn thresholds_along(
-    scenario: &Scenario,
-    options: AlongOptions,
-    look: Look,
-    runner: Runner,
-    task: Option<Task<'_>>,
-    watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Done, StudyError> {
-    let study = Along::of(scenario, options).map_err(StudyError::Scenario)?;
-    complete(&study, runner, task, watch, |rows| {
-        study.results(&rows, look.figure)
-    })
-}
-
-fn ensemble<Q: Question>(scenario: &Scenario, question: Q) -> Result<Ensemble<'_, Q>, StudyError> {
-    Ensemble::new(scenario, question).map_err(StudyError::Scenario)
-}
-
-/// Computes the requested cases, and turns them into results if they are all cases.
-fn complete<S: Study>(
-    study: &S,
-    runner: Runner,
-    task: Option<Task<'_>>,
-    watch: impl FnMut(Progress) -> ControlFlow<()>,
-    tell: impl FnOnce(Vec<S::Row>) -> Result<Results, OutputError>,
-) -> Result<Done, StudyError> {
-    let Some(task) = task else {
-        let rows = runner.rows(study, watch)?;
-        return Ok(Done::Whole(tell(rows)?, None));
+    let study = study.map_err(StudyError::Scenario)?;
+    let (rows, part) = match rows {
+        Rows::Merge(parts) => (part::merge(parts)?.1, None),
+        Rows::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
+        Rows::Compute(runner, Some(task), watch) => match runner.rows_in(&study, task, watch)? {
+            Computed::Whole(rows, part) => (rows, Some(part)),
+            Computed::Shard(part) => {
+                let all = study.count();
+                let cases = task.shard.cases(all).count();
+                return Ok(Done::Part { part, cases, all });
+            }
+        },
     };
-    Ok(match runner.rows_in(study, task, watch)? {
-        Computed::Whole(rows, part) => Done::Whole(tell(rows)?, Some(part)),
-        Computed::Shard(part) => {
-            let all = study.count();
-            let cases = task.shard.cases(all).count();
-            Done::Part { part, cases, all }
-        }
-    })
+    Ok(Done::Whole(study.results(rows, look)?, part))
 }
 
 /// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
-/// may have moved. `look` decides how the results look, and may refuse options that do not fit the study.
+/// may have moved.
 ///
 /// # Errors
 /// When parts are missing, do not belong to one study or belong to a scenario other than the given one, or `look` refuses.
 pub fn merge(
     parts: &[PathBuf],
     given: Option<&Scenario>,
-    look: impl FnOnce(StudyKind, Option<&Scenario>) -> Result<Look, String>,
+    look: ChooseLook<'_>,
 ) -> Result<(StudyKind, Results), StudyError> {
-    let first = parts.first().map(|part| part::read_header(part));
-    let study = first
-        .transpose()?
-        .map_or(String::new(), |first| first.study);
-    let kind = StudyKind::of_name(&study).ok_or_else(|| {
-        StudyError::Scenario(format!(
+    let header = parts
+        .first()
+        .map(|part| part::read_header(part))
+        .transpose()?;
+    let study = header.as_ref().map_or("", |header| &header.study);
+    let (Some(kind), Some(header)) = (StudyKind::of_name(study), &header) else {
+        return Err(StudyError::Scenario(format!(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"
-        ))
-    })?;
-    let read = |text: &str| match given {
-        None => Ok(Scenario::parse(text, "the scenario of the parts")?),
-        Some(given) if given.to_toml() == text => Ok(given.clone()),
-        Some(_) => Err(StudyError::Scenario(
-            "the parts are of another scenario than the one given".to_owned(),
-        )),
+        )));
     };
-    let results = match kind {
-        StudyKind::Map => {
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            let map = OverturningMap::of(&scenario).map_err(StudyError::Scenario)?;
-            let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
-            map.tell(&rows, look)?
-        }
-        StudyKind::ThresholdAlong => {
-            let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            let options = serde_json::from_value(header.options)
-                .map_err(|error| StudyError::Scenario(error.to_string()))?;
-            let study = Along::of(&scenario, options).map_err(StudyError::Scenario)?;
-            study.results(&rows, look.figure)?
-        }
-        StudyKind::Suite => {
-            let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge(parts)?;
-            let heading =
-                Heading::of_resolved(&header.scenario, header.warnings).ok_or_else(|| {
-                    let message = "the scenario of the parts is damaged: compute them again";
-                    StudyError::Scenario(message.to_owned())
-                })?;
-            heading.tell(rows, look.figure)?
-        }
-        StudyKind::Uncertain => {
-            let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            let question = Histories::of(&scenario).map_err(StudyError::Scenario)?;
-            ensemble(&scenario, question)?.tell(&rows, look)?
-        }
-        StudyKind::UncertainThreshold => {
-            let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            // The rows themselves know the range of the factors.
-            let question = FirstEdges::of(&scenario, Factors::default());
-            let question = question.map_err(StudyError::Scenario)?;
-            ensemble(&scenario, question)?.tell(&rows, look)?
-        }
-        StudyKind::UncertainSuite => {
-            let look = look(kind, None).map_err(StudyError::Scenario)?;
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            let question = Capacities::of(&scenario).map_err(StudyError::Scenario)?;
-            ensemble(&scenario, question)?.tell(&rows, look)?
-        }
-        StudyKind::UncertainMap => {
-            let (header, rows) = part::merge(parts)?;
-            let scenario = read(&header.scenario)?;
-            let study = CellsOfSamples::of(&scenario).map_err(StudyError::Scenario)?;
-            let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
-            study.tell(&rows, look)?
+    if kind == SUITE {
+        let look = look(kind, None).map_err(StudyError::Scenario)?;
+        let (header, rows) = part::merge(parts)?;
+        let heading = Heading::of_resolved(&header.scenario, header.warnings);
+        let damaged = "the scenario of the parts is damaged: compute them again";
+        let heading = heading.ok_or_else(|| StudyError::scenario(damaged))?;
+        return Ok((kind, heading.tell(rows, look.figure)?));
+    }
+    let scenario = match given {
+        None => Scenario::parse(&header.scenario, "the scenario of the parts")?,
+        Some(given) if given.to_toml() == header.scenario => given.clone(),
+        Some(_) => {
+            let message = "the parts are of another scenario than the one given";
+            return Err(StudyError::scenario(message));
         }
     };
-    Ok((kind, results))
+    let options: Option<Options> =
+        serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
+    let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
+    match kind.compute(
+        &scenario,
+        &options.unwrap_or_default(),
+        look,
+        Rows::Merge(parts),
+    )? {
+        Done::Whole(results, _) => Ok((kind, results)),
+        Done::Part { .. } => unreachable!("all parts are joined"),
+    }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::catalogue::StudyKind;
+use super::catalogue::{self, StudyKind};
 use super::part::{Shard, rows_in};
 use super::{capacity, peaks, run, spread, threshold, verify};
 use crate::output::print::PictureFormat;
@@ -44,7 +44,7 @@ pub const RUN: Writer = Writer {
     name: "run",
     files: &run::FILES,
     summary: Some("summary.json"),
-    samples: Some(StudyKind::Uncertain),
+    samples: Some(catalogue::UNCERTAIN),
     of_models: Some(run::OVERLAY),
     of_records: true,
 };
@@ -53,31 +53,31 @@ pub const THRESHOLD: Writer = Writer {
     name: "threshold",
     files: &threshold::FILES,
     summary: Some("threshold.json"),
-    samples: Some(StudyKind::UncertainThreshold),
+    samples: Some(catalogue::UNCERTAIN_THRESHOLD),
     of_models: Some("threshold.json"),
     of_records: true,
 };
 /// `archrock map`.
 pub const MAP: Writer = Writer {
     name: "map",
-    files: StudyKind::Map.files(),
+    files: catalogue::MAP.files,
     summary: Some("map.json"),
-    samples: Some(StudyKind::UncertainMap),
+    samples: Some(catalogue::UNCERTAIN_MAP),
     ..PLAIN
 };
 /// `archrock threshold --along`.
 pub const ALONG: Writer = Writer {
     name: "threshold --along",
-    files: StudyKind::ThresholdAlong.files(),
+    files: catalogue::THRESHOLD_ALONG.files,
     summary: Some("threshold_along.json"),
     ..PLAIN
 };
 /// `archrock suite`.
 pub const SUITE: Writer = Writer {
     name: "suite",
-    files: StudyKind::Suite.files(),
+    files: catalogue::SUITE.files,
     summary: Some("fragility.json"),
-    samples: Some(StudyKind::UncertainSuite),
+    samples: Some(catalogue::UNCERTAIN_SUITE),
     of_models: Some("models/peaks.json"),
     ..PLAIN
 };
@@ -114,7 +114,7 @@ impl Writer {
     pub const fn merge(kind: StudyKind) -> Self {
         Self {
             name: "merge",
-            files: kind.files(),
+            files: kind.files,
             ..PLAIN
         }
     }
@@ -122,7 +122,7 @@ impl Writer {
     /// The command whose results have this seal; `None` if no command writes them.
     #[must_use]
     pub fn of_seal(seal: &str) -> Option<Self> {
-        let studies = StudyKind::ALL.iter().copied().map(Self::merge);
+        let studies = StudyKind::ALL.into_iter().map(Self::merge);
         let mut all = ALL.into_iter().chain(studies);
         all.find(|writer| writer.files.last() == Some(&seal))
     }
@@ -161,7 +161,7 @@ impl Writer {
         let has_models = |writer: &Self| {
             Hinges::ALL.iter().any(|hinges| {
                 let below = folder.join(hinges.name());
-                let samples = |kind: StudyKind| below.join(kind.name()).is_dir();
+                let samples = |kind: StudyKind| below.join(kind.name).is_dir();
                 match writer.name {
                     "run" => writer.samples.is_some_and(samples),
                     _ => writer.is_sealed(&below),
@@ -212,8 +212,8 @@ impl Writer {
     /// The file that keeps the rows of samples while they are computed.
     fn part(folder: &Path, kind: StudyKind) -> PathBuf {
         folder
-            .join(kind.name())
-            .join(Shard::WHOLE.file_name(kind.name()))
+            .join(kind.name)
+            .join(Shard::WHOLE.file_name(kind.name))
     }
 
     /// Whether a folder holds complete results of this command.
@@ -261,8 +261,8 @@ impl Writer {
     fn below(&self, folder: &Path) -> Vec<PathBuf> {
         let mut all = Vec::new();
         if let Some(kind) = self.samples {
-            let samples = folder.join(kind.name());
-            all.extend(self.beside_one_another(&samples, kind.files()));
+            let samples = folder.join(kind.name);
+            all.extend(self.beside_one_another(&samples, kind.files));
             // A part without rows is no loss.
             let part = Self::part(folder, kind);
             if rows_in(&part) == Some(0) {

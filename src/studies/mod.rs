@@ -10,7 +10,7 @@
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them; and the first of them
 //!   [along](threshold::along) a range of values of one key;
 //! - [`suite`]: which records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
-//! - [`survival`]: the same in brief: where a structure first overturns, and where it survives again;
+//! - [`survival`](threshold::survival): the same in brief: where a structure first overturns, and where it survives again;
 //! - [`capacity`]: capacity curves, without a history;
 //! - [`spread`]: how far a springing may move until the arch falls, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page.
@@ -32,7 +32,7 @@ pub mod results;
 pub mod run;
 pub mod runner;
 pub mod spread;
+pub mod statistics;
 pub mod suite;
-pub mod survival;
 pub mod threshold;
 pub mod verify;

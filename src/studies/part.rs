@@ -17,8 +17,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::runner::Study;
-
 /// Largest number of shards of a study: more than any cluster has nodes.
 const MAX_SHARDS: usize = 100_000;
 
@@ -109,10 +107,10 @@ impl FromStr for Shard {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
-    program: String,
+    pub(super) program: String,
     /// Its version.
     pub version: String,
-    /// The study: [`Study::NAME`].
+    /// The study: [`NAME`](super::runner::Study::NAME).
     pub study: String,
     /// Number of cases of the whole study.
     pub cases: usize,
@@ -120,33 +118,17 @@ pub struct Header {
     pub shard: Shard,
     /// The scenario, with every default filled in.
     pub scenario: String,
-    /// What is computed of the scenario: [`Study::options`].
+    /// What is computed of the scenario: [`options`](super::runner::Study::options).
     #[serde(default, skip_serializing_if = "Value::is_null")]
     pub options: Value,
     /// The other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
-    /// Warnings about the scenario: [`Study::warnings`].
+    /// Warnings about the scenario: [`warnings`](super::runner::Study::warnings).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
 }
 
 impl Header {
-    /// The header for a shard of a study, with this version of the program.
-    #[must_use]
-    pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
-        Self {
-            program: env!("CARGO_PKG_NAME").to_owned(),
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            study: S::NAME.to_owned(),
-            cases: study.count(),
-            shard,
-            scenario: study.scenario(),
-            options: study.options(),
-            inputs: study.inputs(),
-            warnings: study.warnings(),
-        }
-    }
-
     /// Number of cases of its shard.
     #[must_use]
     pub fn shard_cases(&self) -> usize {

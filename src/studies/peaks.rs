@@ -7,8 +7,8 @@
 use serde::Serialize;
 use serde_json::json;
 
-use super::ensemble::statistics::fractile;
 use super::results::Results;
+use super::statistics::fractile;
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark};

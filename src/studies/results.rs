@@ -1,10 +1,59 @@
 //! The results of a study, once it has all rows: files and words, the same for the program, for merged parts, and for Python.
 
+use std::fmt;
 use std::io::Write as _;
 
 use serde_json::Value;
+use thiserror::Error;
 
+use super::part::PartError;
+use super::runner::{RunnerError, Study};
 use crate::output::{Figure, Folder, OutputError};
+use crate::scenario::ScenarioErrors;
+
+/// Why a study has no results.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The scenario or an option does not describe it.
+    #[error("{0}")]
+    Scenario(String),
+    /// It could not be computed.
+    #[error("{0}")]
+    Failed(String),
+    /// Its rows could not be completed.
+    #[error(transparent)]
+    Runner(#[from] RunnerError),
+    /// Its parts cannot be joined.
+    #[error(transparent)]
+    Part(#[from] PartError),
+    /// The scenario of its parts cannot be read.
+    #[error(transparent)]
+    Read(#[from] ScenarioErrors),
+    /// A result is not a number.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+}
+
+impl StudyError {
+    /// A scenario that does not describe the study, for this reason.
+    pub(super) fn scenario(reason: impl fmt::Display) -> Self {
+        Self::Scenario(reason.to_string())
+    }
+
+    /// A computation that failed, for this reason.
+    pub(super) fn failed(reason: impl fmt::Display) -> Self {
+        Self::Failed(reason.to_string())
+    }
+}
+
+/// A study whose rows become results.
+pub trait Reported: Study {
+    /// The files and words for all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    fn results(&self, rows: Vec<Self::Row>, look: Look) -> Result<Results, OutputError>;
+}
 
 /// The results of a study.
 #[derive(Clone, Debug, Default, PartialEq)]

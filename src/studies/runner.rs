@@ -100,6 +100,24 @@ pub trait Study: Sync {
     }
 }
 
+impl Header {
+    /// The header for a shard of a study, with this version of the program.
+    #[must_use]
+    pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
+        Self {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            study: S::NAME.to_owned(),
+            cases: study.count(),
+            shard,
+            scenario: study.scenario(),
+            options: study.options(),
+            inputs: study.inputs(),
+            warnings: study.warnings(),
+        }
+    }
+}
+
 /// The progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {

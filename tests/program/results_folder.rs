@@ -7,7 +7,7 @@ use std::process::Child;
 use std::thread::sleep;
 use std::time::Duration;
 
-use archrock::studies::catalogue::StudyKind;
+use archrock::studies::catalogue::{self, StudyKind};
 
 use crate::common::program::{archrock, command, names, stderr};
 use crate::common::results::json;
@@ -264,17 +264,17 @@ fn results_of_other_commands_stay_and_other_scenarios_are_warned_of() {
         (
             &["run", "s.toml", "--out", "o"],
             "summary.json",
-            StudyKind::Uncertain,
+            catalogue::UNCERTAIN,
         ),
         (
             &["threshold", "s.toml", "--out", "o"],
             "threshold.json",
-            StudyKind::UncertainThreshold,
+            catalogue::UNCERTAIN_THRESHOLD,
         ),
         (
             &["suite", "s.toml", "--out", "o"],
             "suite.csv",
-            StudyKind::UncertainSuite,
+            catalogue::UNCERTAIN_SUITE,
         ),
     ];
     let line = |arguments: &[&'static str]| -> Vec<&'static str> {
@@ -298,12 +298,12 @@ fn results_of_other_commands_stay_and_other_scenarios_are_warned_of() {
     }
     for ((_, seal, kind), arguments) in commands.iter().zip(&all) {
         assert!(at.join("o").join(seal).exists());
-        let samples = at.join("o").join(kind.name());
-        let mut expected: Vec<_> = kind.files().to_vec();
+        let samples = at.join("o").join(kind.name);
+        let mut expected: Vec<_> = kind.files.to_vec();
         expected.sort_unstable();
         assert_eq!(names(&samples), expected);
         // What a command removes of its own is all of it, and nothing else.
-        let others = |name: &&String| !name.starts_with(&format!("{}/", kind.name()));
+        let others = |name: &&String| !name.starts_with(&format!("{}/", kind.name));
         let before = below(&at.join("o"));
         succeeds(at, &[&arguments[..], &["--no-uncertain"]].concat());
         assert!(!samples.exists());

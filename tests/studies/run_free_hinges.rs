@@ -731,7 +731,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
         summary
     };
     assert_eq!(
-        without(&["spread", "longest_step_us"], results.summary()),
+        without(&["repeatability", "longest_step_us"], results.summary()),
         without(&["longest_step_us"], alone.summary())
     );
 }

@@ -17,11 +17,12 @@ use archrock::dynamics::model::Repetition;
 use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
 use archrock::studies::ending::Verdict;
+use archrock::studies::results::StudyError;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
 use archrock::studies::threshold::outcome;
 use archrock::studies::threshold::picture::draw;
 use archrock::studies::threshold::{
-    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, ThresholdError, thresholds,
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, thresholds,
 };
 use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, PulseShape, Recorder, Request,
@@ -446,7 +447,7 @@ fn the_study_can_be_cancelled_and_refuses_what_is_not_possible() {
     let runner = Runner::default();
     let stop = |_: Progress| ControlFlow::Break(());
     let error = thresholds(&models, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
-    let ThresholdError::Runner(RunnerError::Cancelled(progress)) = error else {
+    let StudyError::Runner(RunnerError::Cancelled(progress)) = error else {
         panic!("{error}");
     };
     assert!(progress.done < 1000 && progress.all == all.values().len());
@@ -459,7 +460,7 @@ fn the_study_can_be_cancelled_and_refuses_what_is_not_possible() {
         stop,
     )
     .unwrap_err();
-    assert!(matches!(error, ThresholdError::Argument(error) if error.argument == "end_s"));
+    assert!(matches!(error, StudyError::Scenario(error) if error.contains("end_s")));
 }
 
 const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\

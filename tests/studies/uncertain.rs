@@ -10,9 +10,9 @@ use std::path::Path;
 use archrock::Scenario;
 use archrock::studies::ensemble::histories::{Histories, Went};
 use archrock::studies::ensemble::matters::{total_indices, what_matters};
-use archrock::studies::ensemble::statistics::Share;
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
+use archrock::studies::statistics::Share;
 
 use crate::common::program::{
     archrock, done, files, names, printed, refused, scenarios, shown_commands,

@@ -65,7 +65,12 @@ class History:
     def report(self, words: str) -> str: ...
 
 def study(
-    scenario: Scenario, kind: str, threads: int | None, progress: Progress | None
+    scenario: Scenario,
+    kind: str,
+    factors: tuple[float, float, float] | None,
+    along: tuple[str, bool] | None,
+    threads: int | None,
+    progress: Progress | None,
 ) -> list[tuple[str, bytes]]: ...
 def compute_part(
     scenario: Scenario,
@@ -78,22 +83,6 @@ def compute_part(
 def merge(
     parts: Sequence[str | os.PathLike[str]], scenario: Scenario | None
 ) -> tuple[str, list[tuple[str, bytes]]]: ...
-def threshold(
-    scenario: Scenario,
-    factors: tuple[float, float, float],
-    threads: int | None,
-    progress: Progress | None,
-) -> list[tuple[str, bytes]]: ...
-def threshold_along(
-    scenario: Scenario,
-    along: str,
-    no_impact: bool,
-    factors: tuple[float, float, float],
-    threads: int | None,
-    progress: Progress | None,
-) -> list[tuple[str, bytes]]: ...
-def capacity(scenario: Scenario) -> list[tuple[str, bytes]]: ...
-def verify(scenario: Scenario) -> list[tuple[str, bytes]]: ...
 def save(
     folder: str | os.PathLike[str], files: Sequence[tuple[str, bytes]]
 ) -> list[str]: ...

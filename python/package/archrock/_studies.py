@@ -543,11 +543,16 @@ def _warned(results: _OfStudy) -> _OfStudy:
 
 
 def _study(
-    kind: str, scenario: Scenario, threads: int | None, progress: Progress | None
+    kind: str,
+    scenario: Scenario | Structure,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    factors: tuple[float, float, float] | None = None,
+    along: tuple[str, bool] | None = None,
 ) -> list[tuple[str, bytes]]:
     if progress is not None and not callable(progress):
         raise TypeError("`progress` must be a function of two numbers")
-    return _native.study(scenario._native, kind, _allowed(threads), progress)
+    return _native.study(scenario._native, kind, factors, along, _allowed(threads), progress)
 
 
 def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
@@ -729,9 +734,7 @@ def threshold(
         assert isinstance(of, Structure)
         scenario = Scenario.of(of, ground, **settings)
     factors = (from_factor, to_factor, stride)
-    return _warned(
-        Threshold(_native.threshold(scenario._native, factors, _allowed(threads), progress))
-    )
+    return _warned(Threshold(_study("threshold", scenario, threads, progress, factors)))
 
 
 def threshold_along(
@@ -779,7 +782,7 @@ def threshold_along(
         scenario = Scenario.of(of, ground, **settings)
     along = f"{key}={start!r}..{end!r}:{count}"
     factors = (from_factor, to_factor, stride)
-    found = _native.threshold_along(scenario._native, along, no_impact, factors, _allowed(threads), progress)
+    found = _study("threshold_along", scenario, threads, progress, factors, (along, no_impact))
     return _warned(ThresholdAlong(found))
 
 
@@ -842,7 +845,7 @@ def verify(
     if _whole(of, {"demand": demand, "title": title, **records, **how}):
         assert isinstance(of, Scenario)
         warn(of._native.unlikely())
-        return Check(_native.verify(of._native))
+        return Check(_study("verify", of))
     assert isinstance(of, Structure)
     if demand is None:
         raise ValueError("a check needs a demand")
@@ -858,7 +861,7 @@ def verify(
         of, title=title, demand=table, verify=how or None, files=files, model=of._model
     )
     warn(scenario._native.unlikely())
-    return Check(_native.verify(scenario._native))
+    return Check(_study("verify", scenario))
 
 
 def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, bytes]]:
@@ -925,7 +928,7 @@ def capacity(of: Structure | Scenario) -> Capacity:
     if not isinstance(of, (Structure, Scenario)):
         raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
     warn(of._native.unlikely())
-    return Capacity(_native.capacity(of._native))
+    return Capacity(_study("capacity", of))
 
 
 def compute_part(

@@ -7,15 +7,15 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-use super::statistics::Share;
 use super::{NoAnswer, SampleRow, Told, uncertain};
 use crate::dynamics::history::Outcome;
 use crate::output::OutputError;
 use crate::scenario::{Axis, Quantity, Scenario, Spacing, Uncertain, UncertainKey};
 use crate::studies::ending::Ending;
 use crate::studies::map::{CellResult, OverturningMap};
-use crate::studies::results::{Look, Results};
+use crate::studies::results::{Look, Reported, Results};
 use crate::studies::runner::Study;
+use crate::studies::statistics::Share;
 
 /// What became of a cell of a sample.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -393,14 +393,12 @@ impl CellsOfSamples<'_> {
             })
             .collect()
     }
+}
 
-    /// Files and words of all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn tell(&self, rows: &[Came], look: Look) -> Result<Results, OutputError> {
-        let parts = self.parts(rows);
+impl Reported for CellsOfSamples<'_> {
+    fn results(&self, rows: Vec<Came>, look: Look) -> Result<Results, OutputError> {
+        let parts = self.parts(&rows);
         let told = Told::new(self.scenario, self.uncertain, &parts);
-        told::tell(self, &told, rows, look)
+        told::tell(self, &told, &rows, look)
     }
 }

@@ -1,10 +1,10 @@
 //! The factor on its ground motion from which every sample overturns: searched upwards, up to the first edge only.
 
-use super::statistics::{BAND, Share, fractile};
-use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
-use crate::output::OutputError;
+use super::{NoAnswer, Question, Told, told};
+use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
-use crate::studies::results::{Look, Results};
+use crate::studies::results::Results;
+use crate::studies::statistics::{BAND, Share, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
 
@@ -55,7 +55,7 @@ impl FirstStrength {
 }
 
 impl FirstEdges {
-    /// The factors on the ground motion of a scenario, which must start from rest.
+    /// The question about a scenario.
     ///
     /// # Errors
     /// Explains what to change.
@@ -69,6 +69,14 @@ impl Question for FirstEdges {
     type Answer = FirstEdge;
 
     const NAME: &'static str = "uncertain_threshold";
+
+    fn results(
+        &self,
+        told: &Told<'_, Self::Answer>,
+        figure: Figure,
+    ) -> Result<Results, OutputError> {
+        told::edges(told, figure)
+    }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
         FirstEdge::of(scenario, &self.factors)
@@ -128,16 +136,5 @@ impl Told<'_, FirstEdge> {
         let edges = self.answered().map(|(_, edge)| edge);
         let [low, median, high] = BAND.map(|part| FirstStrength::of(edges.clone(), part));
         Some([low?, median?, high?])
-    }
-}
-
-impl Ensemble<'_, FirstEdges> {
-    /// The files and words for all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn tell(&self, rows: &[SampleRow<FirstEdge>], look: Look) -> Result<Results, OutputError> {
-        let told = Told::new(self.scenario, self.uncertain, rows);
-        told::edges(&told, look.figure)
     }
 }

@@ -4,15 +4,15 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use super::statistics::{Share, band, quantile};
-use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
+use super::{NoAnswer, Question, Told, told};
 use crate::dynamics::history::{Outcome, Sample};
 use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
-use crate::output::OutputError;
+use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::{Ending, Verdict};
-use crate::studies::results::{Look, Results};
+use crate::studies::results::Results;
+use crate::studies::statistics::{Share, band, quantile};
 
 /// Largest number of times in the bands over time.
 const MOST_TIMES: usize = 300;
@@ -44,11 +44,19 @@ pub struct Went {
     pub course_rad: Vec<f32>,
 }
 
+impl Histories {}
+
+/// The model of a scenario for a study of many cases.
+fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
+    let model = scenario.motion().model_for_many_cases(scenario.structure());
+    model.map_err(|error| error.to_string())
+}
+
 impl Histories {
-    /// For the samples of a scenario: simulates the scenario once, to find the body and the instants.
+    /// The question about a scenario.
     ///
     /// # Errors
-    /// Explains why the scenario has no history.
+    /// Explains what to change.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
@@ -77,16 +85,18 @@ impl Histories {
     }
 }
 
-/// The model of a scenario for a study of many cases.
-fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
-    let model = scenario.motion().model_for_many_cases(scenario.structure());
-    model.map_err(|error| error.to_string())
-}
-
 impl Question for Histories {
     type Answer = Went;
 
     const NAME: &'static str = "uncertain";
+
+    fn results(
+        &self,
+        told: &Told<'_, Self::Answer>,
+        figure: Figure,
+    ) -> Result<Results, OutputError> {
+        told::histories(told, self, figure)
+    }
 
     fn answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
         let (structure, motion, model) = &self.own;
@@ -251,16 +261,5 @@ impl Told<'_, Went> {
             })
         };
         (0..asked.times).filter_map(at).collect()
-    }
-}
-
-impl Ensemble<'_, Histories> {
-    /// The files and words for all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn tell(&self, rows: &[SampleRow<Went>], look: Look) -> Result<Results, OutputError> {
-        let told = Told::new(self.scenario, self.uncertain, rows);
-        told::histories(&told, &self.question, look.figure)
     }
 }

@@ -8,7 +8,7 @@
 
 use serde::Serialize;
 
-use super::statistics::{bootstrap, correlation, interval, moments, ranks};
+use crate::studies::statistics::{bootstrap, correlation, interval, moments, ranks};
 
 /// How much an uncertain number matters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -11,7 +11,6 @@ pub mod histories;
 pub mod matters;
 mod picture;
 pub mod records;
-pub mod statistics;
 mod told;
 
 use serde::de::DeserializeOwned;
@@ -20,7 +19,10 @@ use serde::{Deserialize, Serialize};
 use self::matters::{Matters, total_indices, what_matters};
 pub use super::ending::NoAnswer;
 use super::remarks::no_verdict;
+use super::results::{Look, Reported, Results};
 use super::runner::Study;
+pub use super::statistics;
+use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
 /// A question that is asked of every sample.
@@ -30,6 +32,16 @@ pub trait Question: Sync {
 
     /// Name of the study in the files of its parts.
     const NAME: &'static str;
+
+    /// The files and words of all answers.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    fn results(
+        &self,
+        told: &Told<'_, Self::Answer>,
+        figure: Figure,
+    ) -> Result<Results, OutputError>;
 
     /// The answer for a scenario that has the values of the sample.
     ///
@@ -128,8 +140,15 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 }
 
+impl<Q: Question> Reported for Ensemble<'_, Q> {
+    fn results(&self, rows: Vec<Self::Row>, look: Look) -> Result<Results, OutputError> {
+        let told = Told::new(self.scenario, self.uncertain, &rows);
+        self.question.results(&told, look.figure)
+    }
+}
+
 /// The rows of an ensemble, with that of the scenario itself set apart.
-pub(crate) struct Told<'a, A> {
+pub struct Told<'a, A> {
     /// The scenario.
     pub(crate) scenario: &'a Scenario,
     pub(crate) uncertain: &'a Uncertain,

@@ -7,7 +7,6 @@ use super::edges::ProbabilityAt;
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{Capacities, Capacity};
-use super::statistics::Share;
 use super::told::{Decides, spoken};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
@@ -15,6 +14,7 @@ use crate::output::chart::{Chart, LEFT_PX, Mark};
 use crate::output::panels::{MAIN, Panels, Subject, around};
 use crate::output::sheet::{Height, Key, Sheet, Sign};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
+use crate::studies::statistics::Share;
 use crate::studies::threshold::first_edge::FirstEdge;
 
 const BAND: &str = "#cfe3f1";

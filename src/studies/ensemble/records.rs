@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use super::statistics::{bootstrap, fractile, interval};
-use super::{Ensemble, NoAnswer, Question, SampleRow, Told, told};
-use crate::output::OutputError;
+use super::{NoAnswer, Question, Told, told};
+use crate::output::{Figure, OutputError};
 use crate::scenario::{Measure, Scenario, Suite};
 use crate::studies::ending::Ending;
-use crate::studies::results::{Look, Results};
+use crate::studies::results::Results;
+use crate::studies::statistics::{bootstrap, fractile, interval};
 use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
 
@@ -23,21 +23,6 @@ pub struct Capacities {
 }
 
 impl Capacities {
-    /// Those of a scenario, which must start from rest.
-    ///
-    /// # Errors
-    /// Explains what to change.
-    pub fn of(scenario: &Scenario) -> Result<Self, String> {
-        scenario.check_from_rest("suite")?;
-        let suite = scenario
-            .suite()
-            .ok_or("the scenario has no [suite], whose records shake the samples")?;
-        Ok(Self {
-            levels: suite.levels.values(),
-            suite: suite.clone(),
-        })
-    }
-
     /// The measure of the intensities.
     #[must_use]
     pub const fn measure(&self) -> Measure {
@@ -68,10 +53,35 @@ impl Capacities {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Capacity(pub Vec<FirstEdge>);
 
+impl Capacities {
+    /// The question about a scenario.
+    ///
+    /// # Errors
+    /// Explains what to change.
+    pub fn of(scenario: &Scenario) -> Result<Self, String> {
+        scenario.check_from_rest("suite")?;
+        let suite = scenario
+            .suite()
+            .ok_or("the scenario has no [suite], whose records shake the samples")?;
+        Ok(Self {
+            levels: suite.levels.values(),
+            suite: suite.clone(),
+        })
+    }
+}
+
 impl Question for Capacities {
     type Answer = Capacity;
 
     const NAME: &'static str = "uncertain_suite";
+
+    fn results(
+        &self,
+        told: &Told<'_, Self::Answer>,
+        figure: Figure,
+    ) -> Result<Results, OutputError> {
+        told::capacities(told, self, figure)
+    }
 
     fn answer(&self, scenario: &Scenario) -> Result<Capacity, NoAnswer> {
         let model = scenario
@@ -295,17 +305,6 @@ impl Fragilities {
             (name.to_owned(), of)
         });
         Value::Object(all.into_iter().collect())
-    }
-}
-
-impl Ensemble<'_, Capacities> {
-    /// The files and words for all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn tell(&self, rows: &[SampleRow<Capacity>], look: Look) -> Result<Results, OutputError> {
-        let told = Told::new(self.scenario, self.uncertain, rows);
-        told::capacities(&told, &self.question, look.figure)
     }
 }
 

@@ -7,7 +7,6 @@ use super::edges::{FirstStrength, ProbabilityAt};
 use super::histories::{BandAt, Histories, Went};
 use super::matters::Matters;
 use super::records::{AtLevel, Capacities, Capacity, Fragilities};
-use super::statistics::{Share, band, fractile};
 use super::{NoAnswer, Told, picture};
 use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{Figure, OutputError, pretty};
@@ -15,6 +14,7 @@ use crate::scenario::{Uncertain, UncertainKey, shown};
 use crate::studies::ending::columns::{self, UNCERTAIN, yes};
 use crate::studies::remarks::warnings;
 use crate::studies::results::Results;
+use crate::studies::statistics::{Share, band, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{rounded, rounded_range};
 

@@ -9,17 +9,14 @@ use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED, number};
 use crate::studies::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
 use crate::studies::remarks::{self, Remark, Remarks, counts, in_words};
-use crate::studies::results::{Look, Results};
+use crate::studies::results::{Look, Reported, Results};
 use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
 
-impl OverturningMap<'_> {
-    /// The files and words for all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn tell(&self, cells: &[CellRow], look: Look) -> Result<Results, OutputError> {
+impl Reported for OverturningMap<'_> {
+    fn results(&self, cells: Vec<CellRow>, look: Look) -> Result<Results, OutputError> {
+        let cells = &cells[..];
         let scenario = self.scenario();
         let title = scenario.title().unwrap_or("Overturning map");
         let remarks = remarks(self, cells);
@@ -39,7 +36,9 @@ impl OverturningMap<'_> {
             ..Results::default()
         })
     }
+}
 
+impl OverturningMap<'_> {
     /// The columns for one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes().map(|axis| axis.key.as_str());

@@ -11,7 +11,7 @@ use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
-use crate::studies::ensemble::statistics;
+use crate::studies::statistics;
 
 /// Number of records whose curves have looks and names of their own.
 const NAMED: usize = CURVES.len();

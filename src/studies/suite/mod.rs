@@ -12,14 +12,16 @@ use serde::{Deserialize, Serialize};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 use self::strength::Strength;
-pub use self::told::Heading;
+pub use self::told::{FILES, Heading};
 use super::ending::{Ending, Verdict, check_finite};
 use super::remarks::warnings;
+use super::results::{Look, Reported, Results};
 use super::runner::Study;
-use super::survival::Survival;
+use super::threshold::survival::Survival;
 use crate::bisection::{Width, bisect};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{Case, Model};
+use crate::output::OutputError;
 use crate::scenario::{Measure, ModelError, Scenario, Suite};
 
 /// A record that shakes the structure, and how its history ended.
@@ -118,12 +120,6 @@ impl<'a> RecordSuite<'a> {
         Self::new(scenario, suite).map_err(|error| error.to_string())
     }
 
-    /// What the results report about the scenario.
-    #[must_use]
-    pub fn heading(&self) -> Heading {
-        Heading::of(self.scenario, self.suite)
-    }
-
     /// The cases of a scenario's suite.
     ///
     /// # Errors
@@ -200,6 +196,12 @@ impl Study for RecordSuite<'_> {
         let rows = indices.iter().zip(results).zip(edges);
         rows.map(|((index, result), edge)| self.case_row(*index, result, edge))
             .collect()
+    }
+}
+
+impl Reported for RecordSuite<'_> {
+    fn results(&self, rows: Vec<CaseRow>, look: Look) -> Result<Results, OutputError> {
+        Heading::of(self.scenario, self.suite).tell(rows, look.figure)
     }
 }
 

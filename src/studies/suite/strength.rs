@@ -11,7 +11,7 @@ use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::intensity::Intensity;
 use crate::scenario::{Series, Spectral};
 use crate::studies::ending::Verdict;
-use crate::studies::ensemble::statistics::{bootstrap, interval};
+use crate::studies::statistics::{bootstrap, interval};
 
 /// How strong a record is as it is in its file, in the measures that its peak does not tell.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -14,10 +14,24 @@ use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, number, yes};
 use crate::studies::remarks::{Remarks, counts, in_words, rough_guide_of, warnings};
 use crate::studies::results::Results;
-use crate::studies::survival;
 use crate::studies::threshold::rounded;
+use crate::studies::threshold::survival;
 
 const FRAGILITY: &str = "fragility.json";
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 10] = [
+    "suite.svg",
+    "ida.svg",
+    "peaks.svg",
+    "ida.csv",
+    "peaks.csv",
+    "capacity.csv",
+    "intensity.csv",
+    "fragility.csv",
+    FRAGILITY,
+    "suite.csv",
+];
 
 /// What the results of a suite report about its scenario. The text of the resolved scenario is enough for that, so parts
 /// can be joined where the records are not at hand.

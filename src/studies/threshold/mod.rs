@@ -6,15 +6,18 @@
 //! stride may be missed.
 
 pub mod along;
+mod digits;
 mod factors;
 pub mod first_edge;
 pub mod picture;
+pub mod survival;
 mod told;
 mod varied;
 
+pub(super) use digits::{rounded, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
+pub(super) use told::peak_g;
 pub use told::{FILES, check, outcome, tell};
-pub(super) use told::{peak_g, rounded, rounded_range};
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
@@ -22,14 +25,16 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use super::ending::{Ending, Verdict, answered};
-use super::runner::{Progress, Runner, RunnerError};
-use crate::argument::ArgumentError;
+use super::results::{Results, StudyError};
+use super::runner::{Progress, Runner};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::repeatability::checked;
 use crate::dynamics::until::Until;
+use crate::output::Figure;
+use crate::scenario::Scenario;
 
 /// Number of bisection steps whose histories, seven, are computed together if the model is faster that way.
 const STEPS_AHEAD: usize = 3;
@@ -187,17 +192,6 @@ impl Threshold {
     }
 }
 
-/// Why thresholds were not found.
-#[derive(Debug, Error)]
-pub enum ThresholdError {
-    /// The request for the histories is not valid.
-    #[error(transparent)]
-    Argument(#[from] ArgumentError),
-    /// The caller cancelled, or threads could not be started.
-    #[error(transparent)]
-    Runner(#[from] RunnerError),
-}
-
 /// The factors on the ground motion by which each of the named models overturns.
 ///
 /// `watch` receives the progress as in [`Runner::rows`]: first over all factors, then over the edges as well.
@@ -212,8 +206,8 @@ pub fn thresholds(
     factors: &Factors,
     runner: &Runner,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Vec<Threshold>, ThresholdError> {
-    request.check(ground)?;
+) -> Result<Vec<Threshold>, StudyError> {
+    request.check(ground).map_err(StudyError::scenario)?;
     let factors = factors.values();
     let shaking = Shaking {
         models,
@@ -268,6 +262,43 @@ pub fn thresholds(
             Threshold::new((*name).to_owned(), found)
         })
         .collect())
+}
+
+/// The results for scenarios that differ only in their models of motion, with what each threshold depends on.
+///
+/// # Errors
+/// When a scenario has no threshold, no history can be computed, or `watch` breaks.
+pub fn results(
+    scenarios: &[&Scenario],
+    factors: &Factors,
+    figure: Figure,
+    runner: &Runner,
+    watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+) -> Result<Results, StudyError> {
+    let scenario = scenarios[0];
+    check(scenario).map_err(StudyError::Scenario)?;
+    let models = scenarios.iter().map(|scenario| scenario.model());
+    let models: Vec<Box<dyn Model>> = models
+        .collect::<Result<_, _>>()
+        .map_err(StudyError::scenario)?;
+    let names = scenarios.iter().map(|scenario| scenario.model_name());
+    let models: Vec<(&str, &dyn Model)> = names.zip(models.iter().map(|model| &**model)).collect();
+    let (ground, request) = (scenario.ground_motion(), scenario.request());
+    let mut found = thresholds(&models, ground, &request, factors, runner, &mut *watch)?;
+    for (threshold, scenario) in found.iter_mut().zip(scenarios) {
+        threshold.check_known()?;
+        let variations = scenario.variations().map_err(StudyError::failed)?;
+        threshold.varied = vary(
+            threshold,
+            &variations,
+            factors,
+            ground,
+            &request,
+            runner,
+            &mut *watch,
+        )?;
+    }
+    Ok(tell(scenarios, factors, &found, figure)?)
 }
 
 /// The models and the ground motion.
@@ -348,6 +379,18 @@ fn changes_verdict(below: &FactorSample, above: &FactorSample) -> bool {
 }
 
 impl Threshold {
+    /// Refuses a threshold if not a single history could be computed.
+    fn check_known(&self) -> Result<(), StudyError> {
+        let mut results = self.samples.iter().map(|sample| &sample.result);
+        match results.clone().find_map(|result| result.as_ref().err()) {
+            Some(reason) if results.all(Result::is_err) => Err(match reason {
+                NoHistory::GroundFalls(reason) => StudyError::Scenario(reason.clone()),
+                NoHistory::Failed(reason) => StudyError::Failed(reason.clone()),
+            }),
+            _ => Ok(()),
+        }
+    }
+
     fn new(model: String, Found { samples, edges }: Found) -> Self {
         let between = |below: &FactorSample, above: &FactorSample| {
             let mut edges = edges.iter();

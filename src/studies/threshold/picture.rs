@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::told::{outcome, rounded};
+use super::digits::rounded;
+use super::told::outcome;
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};

@@ -4,20 +4,21 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
+use super::digits::{rounded, rounded_range};
+use super::survival::{self, Survival};
 use super::{
     FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, VariedThreshold, picture,
 };
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Outcome;
 use crate::output::table::{column, csv};
-use crate::output::{Figure, OutputError, finite, pretty, range_ends};
+use crate::output::{Figure, OutputError, finite, pretty};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::columns::FAILED;
 use crate::studies::ending::{Ending, Verdict};
 use crate::studies::kind::GROUND_FALLS;
 use crate::studies::remarks::{self, Remarks};
 use crate::studies::results::Results;
-use crate::studies::survival::{self, Survival};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
@@ -84,32 +85,6 @@ pub const fn outcome(sample: &FactorSample) -> &'static str {
 #[must_use]
 pub fn peak_g(scenario: &Scenario, ground: &GroundMotion) -> f64 {
     ground.peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
-}
-
-/// A factor or an acceleration with four digits, about as many as are certain for an edge.
-#[must_use]
-pub fn rounded(value: f64) -> String {
-    let decimals = decimals(value);
-    format!("{value:.decimals$}")
-}
-
-/// Both ends of a range with four digits, or with as many as it takes to distinguish them.
-#[must_use]
-pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
-    match ends.map(rounded) {
-        [from, to] if from != to => [from, to],
-        _ => range_ends(ends, decimals(ends[1])),
-    }
-}
-
-/// Decimals of four digits.
-fn decimals(value: f64) -> usize {
-    let before_point = if value > 0.0 {
-        value.log10().floor() + 1.0
-    } else {
-        1.0
-    };
-    (4.0 - before_point).max(0.0) as usize
 }
 
 /// The samples, model by model, with ascending factors.

@@ -14,7 +14,7 @@ use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Scenario, Series, StateRule};
-use crate::studies::ensemble::statistics::{bootstrap, interval};
+use crate::studies::statistics::{bootstrap, interval};
 
 /// With this many records or more the mean counts, otherwise the largest (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;

@@ -11,7 +11,6 @@ use crate::output::table::{Cell, Column, column, csv, several};
 use crate::output::{OutputError, pretty};
 use crate::studies::ending::columns::yes;
 use crate::studies::ensemble::picture;
-use crate::studies::ensemble::statistics::{Share, band, quantile};
 use crate::studies::ensemble::told::{
     Decides, SUMMARY, band_to_json, beginning, percent, without_answer,
 };
@@ -20,6 +19,7 @@ use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
 use crate::studies::remarks::{no_verdict, warnings};
 use crate::studies::results::{Look, Results};
+use crate::studies::statistics::{Share, band, quantile};
 use crate::studies::threshold::rounded;
 
 /// Colours of probabilities, the darker the likelier, and up to where each goes; no sample and every sample are apart.

@@ -155,7 +155,7 @@ impl Study for Along<'_> {
     }
 
     fn options(&self) -> serde_json::Value {
-        serde_json::json!(self.options)
+        serde_json::json!({ "along": self.options })
     }
 
     fn count(&self) -> usize {

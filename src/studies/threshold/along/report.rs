@@ -6,10 +6,10 @@ use serde_json::json;
 use super::{Along, AlongRow, picture};
 use crate::argument::plain;
 use crate::output::table::{column, csv};
-use crate::output::{Figure, OutputError, pretty};
+use crate::output::{OutputError, pretty};
 use crate::studies::ending::NoAnswer;
 use crate::studies::remarks::{self, Remark, Remarks, no_verdict};
-use crate::studies::results::Results;
+use crate::studies::results::{Look, Reported, Results};
 use crate::studies::threshold::rounded;
 
 /// Names of the files, the seal last.
@@ -59,12 +59,9 @@ impl Point {
     }
 }
 
-impl Along<'_> {
-    /// The files and words for all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn results(&self, rows: &[AlongRow], figure: Figure) -> Result<Results, OutputError> {
+impl Reported for Along<'_> {
+    fn results(&self, rows: Vec<AlongRow>, look: Look) -> Result<Results, OutputError> {
+        let (rows, figure) = (&rows[..], look.figure);
         let points: Vec<Point> = rows.iter().map(Point::of).collect();
         let remarks = self.remarks(rows);
         let mut summary = remarks::summary(self.scenario, rows.len(), &remarks);
@@ -112,7 +109,9 @@ impl Along<'_> {
             ..Results::default()
         })
     }
+}
 
+impl Along<'_> {
     /// The values without an answer, and why.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let mut remarks = Remarks::default();

@@ -1,7 +1,8 @@
 //! Which strengths of a ground motion a structure survives, in brief and in one line of words.
 
-use super::ending::Verdict;
-use super::threshold::{Threshold, rounded};
+use super::Threshold;
+use super::digits::rounded;
+use crate::studies::ending::Verdict;
 
 /// Where a structure first overturns as its ground motion gets stronger, where it survives again, and where this is uncertain.
 #[derive(Clone, Debug, PartialEq)]

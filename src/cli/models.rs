@@ -1,0 +1,69 @@
+//! The models of motion that are chosen by `--hinges`.
+
+use archrock::scenario::{Hinges, Scenario};
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+
+use super::Failure;
+use super::progress::say;
+use super::scenario_file::Input;
+
+/// Four links and free hinges.
+const BOTH: &str = "both";
+
+fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
+    let names = Hinges::ALL.iter().map(|hinges| hinges.name());
+    PossibleValuesParser::new(names.chain([BOTH])).map(|name| {
+        let chosen = |hinges: &Hinges| match name.as_str() {
+            BOTH => *hinges != Hinges::Elastic,
+            name => hinges.name() == name,
+        };
+        Hinges::ALL.iter().copied().filter(chosen).collect()
+    })
+}
+
+/// The option of commands that compute several models of motion.
+#[derive(clap::Args, Clone)]
+pub struct ModelsOption {
+    /// Models of motion; several write to a folder each, named after the model, with what they have in common beside these [default:
+    /// elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
+    #[arg(long, value_name = "MODELS", value_delimiter = ',', value_parser = parser())]
+    hinges: Vec<Vec<Hinges>>,
+}
+
+impl ModelsOption {
+    /// Reads the scenario once for each model that is chosen, or else with the model that it chooses itself.
+    pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
+        let mut models: Vec<Hinges> = Vec::new();
+        for hinges in self.hinges.iter().flatten() {
+            if !models.contains(hinges) {
+                models.push(*hinges);
+            }
+        }
+        if models.is_empty() {
+            return Ok(vec![input.read(None)?]);
+        }
+        let scenarios = models.into_iter().map(|hinges| input.read(Some(hinges)));
+        scenarios.collect()
+    }
+
+    /// Reads a scenario with one model.
+    pub fn read_one(&self, input: &Input<'_>, command: &str) -> Result<Scenario, Failure> {
+        let mut scenarios = self.read(input)?;
+        if scenarios.len() > 1 {
+            let message = format!("{command} is for one model: choose it by --hinges");
+            return Err(input.about(Failure::Input(message)));
+        }
+        Ok(scenarios.remove(0))
+    }
+}
+
+/// Warns of unlikely numbers of a scenario, and of a table that its model ignores.
+pub fn warn_of(scenarios: &[Scenario], quiet: bool) {
+    if quiet {
+        return;
+    }
+    super::warn(&scenarios[0].unlikely());
+    if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
+        say(ignored);
+    }
+}
