@@ -5,7 +5,6 @@ use std::fs;
 use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::mechanics::stability::onset;
 use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
 use archrock::studies::{impact, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};

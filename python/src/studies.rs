@@ -87,9 +87,10 @@ pub fn study<'py>(
         ..Options::default()
     };
     // Statics need no motion.
-    let scenario = match kind {
-        studies::CAPACITY => &scenario.inner,
-        _ => scenario.moving()?,
+    let scenario = if kind == studies::CAPACITY {
+        &scenario.inner
+    } else {
+        scenario.moving()?
     };
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
