@@ -2,6 +2,7 @@
 
 use crate::common;
 use crate::common::parsed;
+use crate::common::prose::{golden, shows};
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command};
@@ -209,7 +210,8 @@ fn threads_and_parts_do_not_change_a_bit() {
     let folder = folder_with_map(13);
     let path = folder.path();
     let said = done(path, &["map", "s.toml", "--threads", "1"]);
-    assert!(said.contains("169 cells: "), "{said}");
+    shows(&said, &[169.0]);
+    golden("map", &said);
     let whole = files(&path.join("results/s"));
     assert_eq!(
         whole.keys().collect::<Vec<_>>(),

@@ -1,6 +1,7 @@
 //! `archrock run` with free hinges: its files, its words, overriding the scenario, and what it refuses.
 
 use crate::common::program;
+use crate::common::prose::{golden, shows, skeleton};
 use crate::common::results::{Table, json};
 use std::fs;
 use std::path::PathBuf;
@@ -425,10 +426,9 @@ fn the_vertical_ground_has_a_column_and_the_end_of_an_overturning_is_an_event() 
     let end = events.rows.len() - 1;
     assert_eq!(events.rows[end]["kind"], "overturned");
     assert!(summary["outcome_time_s"].as_f64().unwrap() <= events.rows[end].number("time_s"));
-    assert!(
-        results.said.contains("overturned to the right at"),
-        "{}",
-        results.said
+    shows(
+        &results.said,
+        &[summary["outcome_time_s"].as_f64().unwrap()],
     );
 }
 
@@ -482,18 +482,11 @@ fn what_repetitions_change_is_said_and_written() {
     let ratio = first["max"].as_f64().unwrap() / first["min"].as_f64().unwrap();
     assert!(ratio < 1.001, "{ratio}");
     let said = &results.said;
-    assert!(
-        said.contains("repeated (double steps; landings merged): the same outcome"),
-        "{said}"
-    );
     // This motion decays: its largest half cycles are the first three.
-    let words = match same {
-        2 => ", peaks of 2 of the 3 largest half cycles within 1 %",
-        _ => ", peaks of the 3 largest half cycles within 1 %",
-    };
-    assert!(said.contains(words), "{said}");
-    let parts_s = spread["parts_at_s"].as_f64().unwrap();
-    assert!(said.contains(&format!("from {parts_s:.4} s on ")), "{said}");
+    shows(
+        said,
+        &[same.min(3) as f64, spread["parts_at_s"].as_f64().unwrap()],
+    );
 }
 
 /// Three short pushes that make the arch rattle, before one that makes it rock: the half cycles that are reported and judged are those of
@@ -542,20 +535,18 @@ fn the_largest_half_cycles_are_reported() {
             .iter()
             .any(|cycle| number(cycle, "peak_rad") == largest_rad)
     );
-    let named = largest.iter().map(|cycle| {
+    // The words list them in this order.
+    let order = largest.iter().map(|cycle| {
         let (peak_rad, time_s) = (number(cycle, "peak_rad"), number(cycle, "peak_time_s"));
-        format!(
-            "{} {peak_rad:.6} (at {time_s:.4} s)",
-            cycle["sway"].as_str().unwrap()
-        )
+        [format!("{peak_rad:.6}"), format!("{time_s:.4}")]
     });
-    let line = format!(
-        "  largest half cycles in rad: {}\n",
-        named.collect::<Vec<_>>().join(", ")
+    let order: Vec<String> = order.flatten().collect();
+    let (_, printed) = skeleton(&said);
+    assert!(
+        printed.windows(order.len()).any(|some| some == order),
+        "{said}"
     );
-    assert!(said.contains(&line), "{said}");
-    let words = "the same outcome, peaks of the 3 largest half cycles within 1 %";
-    assert!(said.contains(words), "{said}");
+    golden("run-free-hinges", &said);
     // What differs among the repetitions does so after the rattling.
     assert!(
         summary["repeatability"]["parts_at_s"]
@@ -700,17 +691,8 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
             reason.map(|reason| (step_s, results, reason))
         });
     let (step_s, results, reason) = failed.expect("a repetition that fails");
-    assert!(reason.starts_with("the repetition with "), "{reason}");
-    assert!(
-        reason.contains(" failed: at ") || reason.contains(" failed: the energy balance is wrong"),
-        "{reason}"
-    );
     let said = &results.said;
-    let words = format!("  how far it depends on its steps is not known: {reason}\n");
-    assert!(
-        said.contains(&words) && said.contains("results in"),
-        "{said}"
-    );
+    assert!(said.contains(&reason), "{said}");
     // Everything else is as without repetitions.
     let alone = Results::of(&scenario(step_s), &["--no-repeat"]);
     assert_eq!(results.files(""), alone.files(""));
@@ -778,10 +760,7 @@ fn hinges_override_the_scenario() {
         &["--hinges", "free", "--no-repeat"],
     );
     let said = &free_of_four.said;
-    assert!(
-        said.contains("[impact] is ignored: with free hinges"),
-        "{said}"
-    );
+    assert!(said.contains("[impact]"), "{said}");
     let chosen = Results::of(&free(SEVEN), &["--no-repeat"]);
     let read = |results: &Results| fs::read(results.path("rotations.csv")).unwrap();
     assert!(read(&free_of_four) == read(&chosen));
@@ -1005,15 +984,7 @@ fn joints_that_slip_are_told_of() {
         .iter()
         .position(|slip| slip.abs() == largest_m)
         .unwrap();
-    for words in [
-        &format!("joint {joint} slipped {:.3} mm", 1e3 * largest_m),
-        &format!(
-            "at rest, but not as it stood: joints are up to {:.3} mm off",
-            1e3 * largest_m
-        ),
-    ] {
-        assert!(results.said.contains(words), "{words}\n{}", results.said);
-    }
+    shows(&results.said, &[joint as f64, 1e3 * largest_m]);
     // Limit analysis also finds that sliding governs.
     let limit = archrock(
         results.root.path(),
@@ -1059,11 +1030,7 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
              [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.1\n[simulation]\nduration_s = 0.2\n"
         );
         let results = Results::of(&scenario, &["--no-repeat"]);
-        let words = format!(
-            "  incipient acceleration with friction {push_g:.4} g; the ground reaches 0.5000 g, {:.2} times as much\n",
-            0.5 / push_g
-        );
-        assert!(results.said.contains(&words), "{}", results.said);
+        shows(&results.said, &[push_g, 0.5, 0.5 / push_g]);
         for side in ["right", "left"] {
             let told_g = &results.summary()["incipient_acceleration_g"][side];
             // Accurate to the tolerance of the interior point method.
@@ -1076,9 +1043,11 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
 fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
     let scenario = "[column]\nheight_m = 0.3\nwidth_m = 2\n[free_hinges]\nfriction_coefficient = 0.2\n\
                     [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.3\n[simulation]\nduration_s = 2\n";
-    let said = Results::of(scenario, &[]).said;
-    assert!(said.contains("  slides without rocking\n"), "{said}");
-    assert!(said.contains("joint 0 slipped 101."), "{said}");
+    let results = Results::of(scenario, &[]);
+    let said = results.said.clone();
+    let slip_m = results.summary()["slips_m"][0].as_f64().unwrap();
+    assert!((slip_m.abs() - 0.1015).abs() < 5e-4, "{slip_m}");
+    shows(&said, &[1e3 * slip_m.abs()]);
     for words in ["half cycle", "0.000000"] {
         assert!(!said.contains(words), "{said}");
     }
@@ -1094,12 +1063,13 @@ fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
     let summary = results.summary();
     assert_eq!(summary["outcome"], "overturned");
     assert!(summary["peak_potential_over_barrier"].as_f64().unwrap() < 1.0);
+    // A part of the barrier would suggest that it has not passed it.
+    let percent = 100.0 * summary["peak_potential_over_barrier"].as_f64().unwrap();
     assert!(
-        results
-            .said
-            .contains("  passed the barrier beyond which it overturns\n")
+        !results.said.contains(&format!("{percent:.1} %")),
+        "{}",
+        results.said
     );
-    assert!(!results.said.contains("reached"), "{}", results.said);
 }
 
 #[test]
@@ -1136,6 +1106,8 @@ fn limit_analysis_of_drums_tells_the_push_that_starts_them() {
             .unwrap();
         assert!((push_g - 0.1).abs() < 1e-6, "{push_g}");
     }
-    let said = program::printed(root.path(), &["limit", "s.toml"]);
-    assert!(said.contains("joints are counted from the base"), "{said}");
+    golden(
+        "limit-drums",
+        &program::printed(root.path(), &["limit", "s.toml"]),
+    );
 }
