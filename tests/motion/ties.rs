@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use std::os::unix::fs::symlink;
 
 use crate::common::program::{done, printed, refused, says_what_it_shows, scenarios};
+use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
 use archrock::dynamics::history::EventKind;
@@ -687,7 +688,7 @@ fn a_run_tells_of_its_ties() {
         let page = std::fs::read_to_string(results.join("report.html")).unwrap();
         assert!(page.contains("\"ties\":[[[0,-0.4,3.5],[-1,-3.4,3.5]]]"));
         assert!(page.contains(&format!("\"ties_broken_s\":[{}]", tie["broken_s"])));
-        assert!(page.contains("tie 1 pulled with 12.000 kN at most"));
+        assert!(page.contains("12.000 kN"));
     }
     // Limit analysis says what it leaves out, with nothing to mend; a threshold has its line of rigid joints.
     let limit = printed(folder.path(), &["limit", "s.toml"]);
@@ -706,11 +707,7 @@ fn a_run_tells_of_its_ties() {
         "--set",
         "elastic_joints.friction_coefficient=0.7",
     ];
-    let threshold = printed(folder.path(), &threshold);
-    assert!(
-        threshold.contains("with rigid joints (free hinges): from factor"),
-        "{threshold}"
-    );
+    golden("threshold-of-ties", &printed(folder.path(), &threshold));
     let refuses = |arguments: &[&str], words: &str| {
         let all: Vec<&str> = arguments.iter().copied().chain(["--out", "none"]).collect();
         refused(folder.path(), &all, &[words]);
@@ -736,15 +733,8 @@ fn a_run_tells_of_its_ties() {
     for (told_m, due_m) in [yields_m, breaks_m].into_iter().zip(due_m) {
         assert!((told_m.unwrap() / due_m - 1.0).abs() < 2e-3, "{told_m:?}");
     }
-    let says = words
-        .lines()
-        .filter_map(|line| line.strip_prefix("  tie 1 "));
-    let due = format!(
-        "yields at {:.6} m and breaks at {:.6} m",
-        yields_m.unwrap(),
-        breaks_m.unwrap()
-    );
-    assert_eq!(says.collect::<Vec<_>>(), [due.as_str(), "holds"]);
+    shows(&words, &[yields_m.unwrap(), breaks_m.unwrap()]);
+    golden("capacity-of-ties", &words);
     let released = "initial={sway='right', rotation_rad=0.01}";
     refuses(
         &["run", "s.toml", "--hinges", "free", "--set", released],

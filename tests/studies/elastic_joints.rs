@@ -13,6 +13,7 @@ use archrock::{Outcome, Scenario, Summary};
 
 use crate::common::parsed;
 use crate::common::program::{printed, scenarios};
+use crate::common::prose::shows;
 use crate::common::results::json;
 
 /// A slender block that rocks for two seconds.
@@ -222,11 +223,13 @@ fn variations_count_histories_without_a_verdict() {
     assert!(!variations.is_empty());
     for variation in variations {
         let incomplete = variation["incomplete"].as_u64().unwrap();
-        let words = format!("no verdict from {incomplete} histories of weaker motions");
         let name = variation["with"].as_str().unwrap();
         assert!(variation["factor"].is_number() && incomplete > 0, "{said}");
-        let mut warnings = told["warnings"].as_array().unwrap().iter();
-        assert!(warnings.any(|warning| *warning == format!("with {name}: {words}")));
-        assert!(said.contains(&format!("; {words}\n")), "{said}");
+        let warnings = told["warnings"].as_array().unwrap().iter();
+        let mut own = warnings
+            .filter_map(|warning| warning.as_str()?.strip_prefix("with ")?.strip_prefix(name));
+        let words = own.next().unwrap().trim_start_matches(": ");
+        shows(words, &[incomplete as f64]);
+        assert!(said.contains(words), "{said}");
     }
 }
