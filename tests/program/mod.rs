@@ -9,4 +9,5 @@ mod readme;
 mod results_folder;
 mod robustness;
 mod run_input;
+mod summaries;
 mod tour;

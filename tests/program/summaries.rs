@@ -1,0 +1,252 @@
+//! The reference of summaries in docs/results.md follows from the types that are written as JSON, and from their doc comments.
+//!
+//! Every `Summary` of a study has a table there. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+use syn::{Attribute, Expr, Field, Fields, GenericArgument, Item, Lit, Meta, PathArguments, Type};
+
+/// A type that is written as JSON, and its file.
+struct Written {
+    file: PathBuf,
+    name: String,
+    doc: String,
+    /// Doc comment and fields: of the one variant of a struct, or of all of an enum.
+    variants: Vec<(String, Fields)>,
+}
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// All types with `derive(Serialize)` in a folder.
+fn written(folder: &Path, found: &mut Vec<Written>) {
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    paths.sort();
+    for file in paths {
+        if file.is_dir() {
+            written(&file, found);
+        } else if file.extension().is_some_and(|ending| ending == "rs") {
+            let items = syn::parse_file(&fs::read_to_string(&file).unwrap());
+            for item in items.unwrap().items {
+                let (attributes, name, variants) = match item {
+                    Item::Struct(one) => (one.attrs, one.ident, vec![(String::new(), one.fields)]),
+                    Item::Enum(one) => {
+                        let variants = one.variants.into_iter();
+                        let variants = variants.map(|one| (doc(&one.attrs), one.fields));
+                        (one.attrs, one.ident, variants.collect())
+                    }
+                    _ => continue,
+                };
+                let derives = |word| list(&attributes, "derive").contains(word);
+                if derives("Serialize") {
+                    let (file, name, doc) = (file.clone(), name.to_string(), doc(&attributes));
+                    found.push(Written {
+                        file,
+                        name,
+                        doc,
+                        variants,
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// The doc comment, as one line.
+fn doc(attributes: &[Attribute]) -> String {
+    let lines = attributes
+        .iter()
+        .filter_map(|attribute| match &attribute.meta {
+            Meta::NameValue(pair) if pair.path.is_ident("doc") => match &pair.value {
+                Expr::Lit(text) => match &text.lit {
+                    Lit::Str(text) => Some(text.value().trim().to_owned()),
+                    _ => None,
+                },
+                _ => None,
+            },
+            _ => None,
+        });
+    lines
+        .collect::<Vec<_>>()
+        .join(" ")
+        .replace('|', "\\|")
+        .replace("`None`", "null")
+}
+
+/// The words in the brackets of an attribute.
+fn list(attributes: &[Attribute], name: &str) -> String {
+    let lists = attributes
+        .iter()
+        .filter_map(|attribute| match &attribute.meta {
+            Meta::List(list) if list.path.is_ident(name) => Some(list.tokens.to_string()),
+            _ => None,
+        });
+    lists.collect::<Vec<_>>().join(", ")
+}
+
+/// The name of a type, and the first type in its brackets.
+fn parts(kind: &Type) -> (String, Option<&Type>) {
+    match kind {
+        Type::Path(path) => {
+            let last = path.path.segments.last().unwrap();
+            let inner = match &last.arguments {
+                PathArguments::AngleBracketed(inner) => inner.args.first(),
+                _ => None,
+            };
+            let inner = inner.and_then(|inner| match inner {
+                GenericArgument::Type(inner) => Some(inner),
+                _ => None,
+            });
+            (last.ident.to_string(), inner)
+        }
+        Type::Array(array) => ("Vec".to_owned(), Some(&array.elem)),
+        Type::Reference(reference) => parts(&reference.elem),
+        _ => (String::new(), None),
+    }
+}
+
+/// What a value is in words, and the name of the type inside.
+fn words(kind: &Type) -> (String, String) {
+    let (name, inner) = parts(kind);
+    match (&*name, inner) {
+        ("Option", Some(inner)) => wrapped(inner, "", " or null"),
+        ("Vec", Some(inner)) => wrapped(inner, "list: ", ""),
+        ("Sides", Some(inner)) => wrapped(inner, "`right`, `left`: ", ""),
+        ("Vector2", _) => ("list: x, y".to_owned(), String::new()),
+        ("f64", _) => ("number".to_owned(), name),
+        ("usize" | "u64" | "u32" | "u8", _) => ("whole number".to_owned(), name),
+        ("bool", _) => ("true or false".to_owned(), name),
+        ("Value" | "Map", _) => ("object".to_owned(), name),
+        _ => ("text".to_owned(), name),
+    }
+}
+
+fn wrapped(inner: &Type, before: &str, after: &str) -> (String, String) {
+    let (words, name) = words(inner);
+    (format!("{before}{words}{after}"), name)
+}
+
+/// The table of a summary.
+struct Reference<'a> {
+    written: &'a [Written],
+    rows: String,
+    /// Types that have their rows already, with the key of the first value.
+    known: Vec<(&'a Written, String)>,
+}
+
+impl<'a> Reference<'a> {
+    /// Adds rows of the fields of a type, and of those inside them.
+    fn add(&mut self, one: &'a Written, before: &str) {
+        for (variant, fields) in &one.variants {
+            for field in fields {
+                self.add_field(one, before, variant, field);
+            }
+        }
+    }
+
+    fn add_field(&mut self, one: &Written, before: &str, variant: &str, field: &Field) {
+        let serde = list(&field.attrs, "serde");
+        if serde.split(", ").any(|word| word == "skip") {
+            return;
+        }
+        let (mut kind, name) = words(&field.ty);
+        let inside = self.found(one, &name);
+        let Some(ident) = field.ident.as_ref().filter(|_| !serde.contains("flatten")) else {
+            // The fields of another type in place of this one.
+            if let Some(inside) = inside {
+                let side = if kind.starts_with("`right`") {
+                    "right."
+                } else {
+                    ""
+                };
+                self.add(inside, &format!("{before}{side}"));
+            }
+            return;
+        };
+        let renamed = serde.split_once("rename = \"");
+        let renamed = renamed.map(|(_, after)| after.split('"').next().unwrap().to_owned());
+        let key = format!("{before}{}", renamed.unwrap_or_else(|| ident.to_string()));
+        let is_object = |one: &&Written| one.variants.iter().any(|(_, fields)| !fields.is_empty());
+        let inside = inside.filter(is_object);
+        let known = self
+            .known
+            .iter()
+            .find(|(known, _)| inside.is_some_and(|inside| std::ptr::eq(*known, inside)));
+        let known = known.map(|(_, key)| key.clone());
+        if inside.is_some() {
+            let as_before = known.as_ref().map(|key| format!(" as `{key}`"));
+            kind = kind.replace("text", &format!("object{}", as_before.unwrap_or_default()));
+        }
+        if serde.contains("skip_serializing_if") {
+            kind = kind.strip_suffix(" or null").unwrap_or(&kind).to_owned() + ", or absent";
+        }
+        let meaning = [variant, &doc(&field.attrs)].join(" ");
+        let _ = writeln!(self.rows, "| `{key}` | {kind} | {} |", meaning.trim());
+        if let Some(inside) = inside.filter(|_| known.is_none()) {
+            self.known.push((inside, key.clone()));
+            self.add(inside, &format!("{key}."));
+        }
+    }
+
+    /// The type of this name: if several modules have one, that of the same file, or else of the nearest folder.
+    fn found(&self, from: &Written, name: &str) -> Option<&'a Written> {
+        let shared = |other: &&Written| {
+            let pairs = other.file.components().zip(from.file.components());
+            pairs.take_while(|(a, b)| a == b).count()
+        };
+        let named = self.written.iter().filter(|other| other.name == name);
+        named.max_by_key(shared)
+    }
+}
+
+#[test]
+fn summaries_are_described_by_their_types() {
+    let mut found = Vec::new();
+    written(&source(), &mut found);
+    let mut text = String::new();
+    let studies = source().join("studies");
+    for one in &found {
+        let Ok(place) = one.file.strip_prefix(&studies) else {
+            continue;
+        };
+        if one.name == "Summary" {
+            let study = place.parent().unwrap().display();
+            let _ = write!(
+                text,
+                "\n### `{study}`\n\n{}\n\n| key | type | what it is |\n|---|---|---|\n",
+                one.doc
+            );
+            let mut reference = Reference {
+                written: &found,
+                rows: String::new(),
+                known: Vec::new(),
+            };
+            reference.add(one, "");
+            text += &reference.rows;
+        }
+    }
+    assert!(text.matches("###").count() >= 2, "{text}");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results.md");
+    let old = fs::read_to_string(&page).unwrap();
+    let begin = "<!-- Written by tests/program/summaries.rs from the types of src. -->\n";
+    let (before, after) = old.split_once(begin).unwrap();
+    let (known, after) = after.split_once("\n<!-- end -->").unwrap();
+    if env::var("ARCHROCK_GOLDEN").is_ok_and(|value| value == "write") {
+        fs::write(page, format!("{before}{begin}{text}\n<!-- end -->{after}")).unwrap();
+        return;
+    }
+    let first = known
+        .lines()
+        .zip(text.lines())
+        .find(|(known, now)| known != now);
+    assert!(
+        known == text,
+        "docs/results.md differs from the types, first in {first:?}: ARCHROCK_GOLDEN=write cargo test summaries"
+    );
+}
