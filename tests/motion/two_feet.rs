@@ -558,7 +558,7 @@ fn a_run_tells_of_its_feet() {
 }
 
 fn tells_of_its_feet(folder: &Path) {
-    let said = done(
+    let said = printed(
         folder,
         &[
             "run",
