@@ -272,8 +272,7 @@ impl GroundMotion {
         })
     }
 
-    /// This motion with additional corners at these times, for tests of the integration.
-    #[doc(hidden)]
+    /// This motion with additional corners at these times, where integration begins a new step.
     #[must_use]
     pub fn cut_at(&self, times_s: &[f64]) -> Self {
         let mut cut = self.clone();
