@@ -238,7 +238,7 @@ WRONG: list[tuple[Any, str]] = [
     (lambda: Arch(5.0, 0.01, 180.0), "`thickness_ratio = 0.01` makes an arch that cannot carry its own weight"),
     (lambda: Arch(float("nan"), 0.15, 180.0), "`mean_radius_m = nan` is not finite"),
     (lambda: Arch(5.0, 0.15, 180.0, foo=1), "unknown key `foo` in [arch]"),
-    (lambda: Arch(5.0, 0.15), "[arch] lacks `embrace_deg`"),
+    (lambda: Arch(5.0, 0.15), "[arch] needs exactly one of the keys rise_m, embrace_deg"),
     (lambda: Arch(5.0, 0.15, 180.0, voussoirs=2), "`voussoirs = 2` is out of range"),
     (lambda: Column(4.0, 0.8, drums=3, drum_heights_m=[4.0]), "cannot be combined with `drums`"),
     (lambda: Pulse("half_cosine", amplitude_g=1.0, duration_s=1.0), "half_cosine"),

@@ -69,7 +69,7 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
     studies: list[Callable[[Any], Any]] = [
         lambda of: overturning_map(of, WEAK, axes),
         lambda of: threshold(of, WEAK, from_factor=0.5, to_factor=2.0, stride=0.5, duration_s=60.0),
-        lambda of: threshold_along(of, WEAK, key="ground.one_sine.duration_s", start=0.5, end=1.0, count=2, to_factor=2.0, stride=0.5),
+        lambda of: threshold_along(of, WEAK, key="ground.rectangular.duration_s", start=0.5, end=1.0, count=2, to_factor=2.0, stride=0.5, duration_s=60.0),
         lambda of: suite(of, records, peaks_g=[0.2, 0.8], duration_s=60.0),
     ]
     for study in studies:
