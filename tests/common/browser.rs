@@ -75,6 +75,23 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
     Some(verdict.to_owned())
 }
 
+/// A check that every `<data>` of a page is a number of its JSON, rounded.
+pub const DATA_ARE_IN_THE_JSON: &str = "
+const known = new Set();
+const walk = (value) => {
+  if (typeof value === 'number') known.add(value);
+  else if (value && typeof value === 'object') Object.values(value).forEach(walk);
+};
+walk(data);
+document.querySelectorAll('data').forEach((element) => {
+  const value = Number(element.value);
+  const text = element.textContent;
+  const decimals = (text.split('.')[1] ?? '').length;
+  verify(known.has(value), `${element.value} is not in the JSON`);
+  verify(Math.abs(Number(text) - value) <= 0.5000001 * 10 ** -decimals, `${text} ${element.value}`);
+});
+";
+
 /// How many sheets of paper a page is printed on; `None`, with a message, where there is no browser.
 pub fn sheets(page: &Path) -> Option<usize> {
     let pdf = page.with_extension("pdf");

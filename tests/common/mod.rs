@@ -46,6 +46,13 @@ pub const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nemb
 /// A column five times as high as wide.
 pub const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
 
+/// An uneven arch on one pier, with a load: the first table may be continued after [`UNEVEN_ARCH`].
+pub const UNEVEN_ARCH: &str =
+    "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\n";
+/// Further tables of [`UNEVEN_ARCH`].
+pub const ON_A_PIER: &str = "[piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
+    [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
+
 /// A valid scenario.
 #[track_caller]
 pub fn parsed(text: &str) -> Scenario {

@@ -89,6 +89,16 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
+/// The files of a run without further options.
+pub const RUN_FILES: [&str; 6] = [
+    "events.csv",
+    "history.svg",
+    "impacts.csv",
+    "report.html",
+    "rotations.csv",
+    "summary.json",
+];
+
 /// The folder of the scenarios of the repository.
 pub fn scenarios() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")

@@ -1,6 +1,6 @@
 //! Printed sentences: their numbers are compared with results, and the words of one text of each study with `tests/golden`.
 //!
-//! A better sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test golden` writes them all anew.
+//! A better sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test` writes them anew.
 
 use std::fs;
 use std::path::Path;
@@ -72,7 +72,7 @@ pub fn golden(name: &str, text: &str) {
     let first = (known.lines().zip(now.lines())).find(|(known, now)| known != now);
     assert!(
         known == now,
-        "tests/golden/{name}.txt differs, first in {first:?}. If the new text is better: ARCHROCK_GOLDEN=write cargo test golden"
+        "tests/golden/{name}.txt differs, first in {first:?}. If the new text is better, write it with ARCHROCK_GOLDEN=write in the environment of this test"
     );
 }
 

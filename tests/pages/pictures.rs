@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::common::program::{done, printed, refused, scenarios};
 use crate::common::results::{Table, named, number, points, strokes, texts};
+use crate::common::{ON_A_PIER, UNEVEN_ARCH};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::geometry::profile::Profile;
 use archrock::mechanics::geometry::ring::Edge;
@@ -289,9 +290,7 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
 fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let text = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\n\
-                [piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
-                [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
+    let text = format!("{UNEVEN_ARCH}{ON_A_PIER}");
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
     let Structure::Masonry(masonry) = scenario.structure() else {

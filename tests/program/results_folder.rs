@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use archrock::studies::catalogue::{self, StudyKind};
 
-use crate::common::program::{archrock, command, names, stderr};
+use crate::common::program::{RUN_FILES, archrock, command, names, stderr};
 use crate::common::results::json;
 
 /// A column that overturns at once under a strong pulse, and stands still under a weak one.
@@ -120,14 +120,6 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
     let at = root.path();
     fs::write(at.join("strong.toml"), column(0.9, 4)).unwrap();
     fs::write(at.join("weak.toml"), column(0.05, 4)).unwrap();
-    let plain = [
-        "events.csv",
-        "history.svg",
-        "impacts.csv",
-        "report.html",
-        "rotations.csv",
-        "summary.json",
-    ];
     let films = ["--film", "20", "--snapshots", "0.1", "--poses", "--quiet"];
     for first in [&["--hinges", "four,free"][..], &["--hinges", "free"], &[]] {
         let strong = [&["run", "strong.toml", "--out", "o"], first, &films].concat();
@@ -148,7 +140,7 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
         let kept = ["film/notes.txt", "uncertain.txt"].map(str::to_owned);
         let mut left = below(&at.join("o"));
         left.retain(|name| !kept.contains(name));
-        assert_eq!(left, plain, "{first:?}");
+        assert_eq!(left, RUN_FILES, "{first:?}");
         all_are_of(&at.join("o"), 0.05);
         assert!(kept.iter().all(|name| at.join("o").join(name).exists()));
     }

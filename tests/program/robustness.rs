@@ -123,15 +123,7 @@ fn a_killed_run_leaves_complete_results_or_none() {
     // The next run removes what they left.
     assert!(spawn(0).wait().unwrap().success());
     assert!(check_results(&folder, 40.0));
-    let expected = [
-        "events.csv",
-        "history.svg",
-        "impacts.csv",
-        "report.html",
-        "rotations.csv",
-        "summary.json",
-    ];
-    assert_eq!(names(&folder), expected);
+    assert_eq!(names(&folder), crate::common::program::RUN_FILES);
 }
 
 /// Exit code and standard error of the scenario, run with these arguments and standard output.

@@ -247,6 +247,6 @@ fn summaries_are_described_by_their_types() {
         .find(|(known, now)| known != now);
     assert!(
         known == text,
-        "docs/results.md differs from the types, first in {first:?}: ARCHROCK_GOLDEN=write cargo test summaries"
+        "docs/results.md differs from the types, first in {first:?}: ARCHROCK_GOLDEN=write cargo test --test all summaries"
     );
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use crate::common::program::{printed, refused};
 use crate::common::prose::golden;
 use crate::common::results::{self, Table};
+use crate::common::{ON_A_PIER, UNEVEN_ARCH};
 use archrock::internals::contact::{Load, Program};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::impact::closing_field;
@@ -226,9 +227,7 @@ fn a_mirror_image_is_told_as_seen_in_a_mirror() {
 
 /// An uneven arch on one pier, with its depth.
 fn on_a_pier(folder: &Path) -> (Row, f64) {
-    let text = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.6\nvoussoirs = 13\ndepth_m = 2.5\n\
-                [piers.right]\nheight_m = 2.0\nwidth_m = 1.5\n\
-                [[load]]\nmass_kg = 1500.0\nx_m = 1.0\nwidth_m = 0.5\n";
+    let text = format!("{UNEVEN_ARCH}depth_m = 2.5\n{ON_A_PIER}");
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
     let Structure::Masonry(masonry) = scenario.structure() else {
