@@ -132,7 +132,7 @@ pub struct Sample {
     /// Gaps of the joints at intrados and extrados, in m; only for a row of blocks.
     pub gaps_m: Vec<[f64; 2]>,
     /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
-    /// [`Arch::thrust_sections_rad`](crate::mechanics::arch::Arch::thrust_sections_rad), over the thickness; `None`
+    /// `Arch::thrust_sections_rad`, over the thickness; `None`
     /// where there is no pressure. Empty unless a [`Recorder`](super::recorder::Recorder) wants it and the model knows it; elastic joints
     /// always give it.
     pub eccentricity_ratios: Vec<Option<f64>>,
