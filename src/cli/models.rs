@@ -24,7 +24,7 @@ fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
 /// The option of commands that compute several models of motion.
 #[derive(clap::Args, Clone)]
 pub struct ModelsOption {
-    /// Models of motion; several write to a folder each, named after the model, with what they have in common beside these [default:
+    /// Models of motion. Each of several writes to a folder named after it, and a comparison lies beside these folders [default:
     /// elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
     #[arg(long, value_name = "MODELS", value_delimiter = ',', value_parser = parser())]
     hinges: Vec<Vec<Hinges>>,

@@ -156,7 +156,7 @@ pub struct TieSample {
 }
 
 impl TieSample {
-    /// Of a tie with this memory.
+    /// The state of a tie, from what it remembers of its way.
     pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
         Self {
             force_n: memory.force_n.0[0],
@@ -446,14 +446,14 @@ pub struct Summary {
 /// Results that only one kind of model has.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Details {
-    /// Of a chain of mechanisms.
+    /// Summary of four links or of a column.
     Mechanisms {
         /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity alone overturns.
         peak_over_critical: f64,
     },
-    /// Of a row of blocks with rigid joints.
+    /// Summary of a row of blocks with rigid joints.
     Rigid(Box<RowSummary>),
-    /// Of a row of blocks with elastic joints.
+    /// Summary of a row of blocks with elastic joints.
     Elastic(Box<RowSummary>, ElasticSummary),
 }
 

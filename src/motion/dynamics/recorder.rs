@@ -30,7 +30,7 @@ pub trait Recorder {
         false
     }
 
-    /// Whether it follows the fall of a structure that has overturned.
+    /// Whether the recorder needs samples after the structure has overturned.
     fn wants_fall(&self) -> bool {
         false
     }

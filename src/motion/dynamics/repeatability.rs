@@ -90,7 +90,7 @@ pub struct RepeatedValue {
 }
 
 impl RepeatedValue {
-    /// Of the motion itself, then of its repetitions.
+    /// The range of these values: first that of the motion itself, then those of its repetitions.
     fn of(values: &[f64]) -> Self {
         Self {
             own: values[0],

@@ -116,7 +116,7 @@ pub enum RowMotionError {
         step_s: f64,
         /// The length of the motion, in seconds.
         end_s: f64,
-        /// What to do.
+        /// Remedy, as an instruction to the user.
         remedy: &'static str,
     },
     /// Numbers left their range.

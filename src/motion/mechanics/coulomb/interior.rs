@@ -250,7 +250,7 @@ impl Program {
         false
     }
 
-    /// Goes by a step of Newton's method, as far as all numbers stay positive; returns which part of it that is.
+    /// Takes the largest part of a Newton step that keeps all numbers positive, and returns that part.
     fn go_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);

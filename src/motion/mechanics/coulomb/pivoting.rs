@@ -23,9 +23,9 @@ impl Program {
         true
     }
 
-    /// Modes from Coulomb's law as a complementarity problem. `N` is complementary to the rates of the ends, friction to either
-    /// side to a speed `g` plus or minus the rate along the joint, and `g` to what is left of the bound. False when Lemke's
-    /// method fails.
+    /// Finds the modes by Lemke's method: Coulomb's law as a complementarity problem. The normal impulse `N` is complementary to the
+    /// rates of the ends. Friction to either side is complementary to a speed `g` plus or minus the rate along the joint, and `g` to
+    /// the unused part of the bound. Returns false when the method fails.
     pub(super) fn complement(&mut self) -> bool {
         const SIZE: usize = 5;
         let joints = self.own.len();

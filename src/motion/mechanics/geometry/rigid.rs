@@ -1,4 +1,4 @@
-//! Rigid motions, their momenta, and the mass moments of what moves.
+//! Rigid motions, their momenta, and the mass moments of bodies.
 
 use nalgebra::Vector2;
 

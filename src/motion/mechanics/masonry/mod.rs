@@ -193,12 +193,12 @@ pub struct Masonry {
     pub loads: Vec<PlacedLoad>,
     #[serde(skip)]
     row: Row,
-    /// Fill and loads, as they are drawn.
+    /// Fill and loads in pictures.
     #[serde(skip)]
     pub carried: Carried,
 }
 
-/// Fill and loads of an arch, as they are drawn: each part with the block of the row that it moves with.
+/// Fill and loads of an arch in pictures, each with the block that carries it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Carried {
     /// Corners of what of the fill is above a block, in metres.

@@ -425,7 +425,7 @@ struct Between {
 }
 
 impl Between {
-    /// Of ties that are all between the same parts, at these poses, whose first pins are there.
+    /// Sums the forces of ties between two bodies at these poses; `pins_m` are the first pins of the bodies.
     fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
         let mut all = Self {
             force: Vector2::zeros(),
