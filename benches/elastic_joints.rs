@@ -21,7 +21,9 @@ fn model(stiffness_pa_m: f64) -> ElasticJoints {
 }
 
 fn case(amplitude_g: f64) -> (GroundMotion, Request) {
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * 9.81, 0.2, 0.0);
+    let ground = Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(-amplitude_g * 9.81);
     let request = Request {
         end_s: 3.0,
         ..Request::default()

@@ -101,8 +101,10 @@ fn steps_over_a_record(bencher: Bencher, voussoirs: usize, friction_coefficient:
 #[divan::bench(sample_count = 3, sample_size = 1)]
 fn history_of_the_semicircle(bencher: Bencher) {
     let row = arch(180.0, 36, 5.0);
-    let ground =
-        GroundMotion::pulse(Pulse::Rectangular, -0.25 * GRAVITY_M_S2, 0.2, 0.0).expect("a pulse");
+    let ground = Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(-0.25 * GRAVITY_M_S2)
+        .expect("a pulse");
     let settings = Settings::to_landings(&row, GRAVITY_M_S2, 60.0);
     bencher.bench(|| simulate(&row, &ground, GRAVITY_M_S2, &settings, None, None).map(|r| r.end_s));
 }

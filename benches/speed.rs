@@ -33,7 +33,10 @@ fn new_arch() -> FourLinks {
 
 fn pulse(amplitude_g: f64, duration_s: f64) -> GroundMotion {
     let amplitude_m_s2 = amplitude_g * GRAVITY_M_S2;
-    GroundMotion::pulse(Pulse::Rectangular, amplitude_m_s2, duration_s, 0.0).expect("a pulse")
+    Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(amplitude_m_s2)
+        .expect("a pulse")
 }
 
 /// Limit analysis and thirty impacts of a new arch.

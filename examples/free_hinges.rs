@@ -2,12 +2,14 @@
 
 #![allow(clippy::print_stdout, reason = "an example prints its results")]
 
-use archrock::{Arch, FreeHinges, GroundMotion, Model, Pulse, Request};
+use archrock::{Arch, FreeHinges, Model, Pulse, Request};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arch = Arch::new(5.0, 0.15, 180.0)?.with_voussoirs(36)?;
     let model = FreeHinges::of_arch(&arch)?;
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.25 * 9.81, 0.20, 0.0)?;
+    let ground = Pulse::Rectangular
+        .lasting_s(0.20)
+        .horizontal_m_s2(-0.25 * 9.81)?;
     let own = model.simulate(&ground, &Request::default(), None)?;
     println!(
         "{:?} at {:.3} s, peak {:.4} rad",

@@ -6,7 +6,7 @@
     reason = "an example prints its results"
 )]
 
-use archrock::{Arch, FourLinks, GroundMotion, ImpactModel, Model, Pulse, Request};
+use archrock::{Arch, FourLinks, ImpactModel, Model, Pulse, Request};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A semicircle of 5 m mean radius, 0.75 m thick, whose hinges may open anywhere.
@@ -14,7 +14,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("A_L = {:.6} g", arch.incipient()?.acceleration_g);
 
     // The ground jerks to the left for 0.2 s, which pushes the arch to the right.
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0)?;
+    let ground = Pulse::Rectangular
+        .lasting_s(0.20)
+        .horizontal_m_s2(-0.30 * 9.81)?;
     let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution)?;
     let history = model.history(&ground, &Request::default())?;
 

@@ -6,8 +6,8 @@
 use std::ops::ControlFlow;
 
 use archrock::{
-    Column, Factors, FreeHinges, GroundMotion, ImpactModel, Model, Pulse, Request, RockingColumn,
-    Runner, thresholds,
+    Column, Factors, FreeHinges, ImpactModel, Model, Pulse, Request, RockingColumn, Runner,
+    thresholds,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let rocking = RockingColumn::new(&column, ImpactModel::MaxRestitution)?;
     let drums = FreeHinges::of_column(&column.with_drums(4)?)?;
     let models: [(&str, &dyn Model); 2] = [("one block", &rocking), ("four drums", &drums)];
-    let ground = GroundMotion::pulse(Pulse::OneSine, 0.2 * 9.81, 0.5, 0.0)?;
+    let ground = Pulse::OneSine.lasting_s(0.5).horizontal_m_s2(0.2 * 9.81)?;
     // From the pulse itself to twenty times as strong, in strides of 5 %.
     let (factors, request) = (Factors::new(1.0, 20.0, 0.05)?, Request::default());
     let go_on = |_| ControlFlow::Continue(());

@@ -26,7 +26,7 @@
 //! The arch of the paper, and the history of `docs/example.md`:
 //!
 //! ```
-//! use archrock::{Arch, FourLinks, GroundMotion, ImpactModel, Model, Outcome, Pulse, Request};
+//! use archrock::{Arch, FourLinks, ImpactModel, Model, Outcome, Pulse, Request};
 //!
 //! // Mean radius in m, thickness over it, embrace angle in degrees.
 //! let arch = Arch::new(5.0, 0.15, 180.0)?;
@@ -34,7 +34,7 @@
 //!
 //! let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution)?;
 //! // -0.30 g for 0.20 s, from the start.
-//! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.30 * 9.81, 0.20, 0.0)?;
+//! let ground = Pulse::Rectangular.lasting_s(0.20).horizontal_m_s2(-0.30 * 9.81)?;
 //! let history = model.history(&ground, &Request::default())?;
 //! assert_eq!(history.summary.outcome, Outcome::Rest);
 //! let (time_s, impact) = history.impacts().next().expect("an impact");
@@ -45,11 +45,11 @@
 //! The same arch of 36 voussoirs with free hinges:
 //!
 //! ```
-//! use archrock::{Arch, FreeHinges, GroundMotion, Model, Outcome, Pulse, Request, Sway};
+//! use archrock::{Arch, FreeHinges, Model, Outcome, Pulse, Request, Sway};
 //!
 //! let model = FreeHinges::of_arch(&Arch::new(5.0, 0.15, 180.0)?.with_voussoirs(36)?)?;
 //! assert!((model.incipient_acceleration_g(Sway::Right).expect("a push moves it") - 0.144800).abs() < 1e-6);
-//! let ground = GroundMotion::pulse(Pulse::Rectangular, -0.14 * 9.81, 0.20, 0.0)?;
+//! let ground = Pulse::Rectangular.lasting_s(0.20).horizontal_m_s2(-0.14 * 9.81)?;
 //! let summary = model.simulate(&ground, &Request::default(), None)?;
 //! assert_eq!(summary.outcome, Outcome::NeverMoved);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -110,3 +110,8 @@ pub use scenario::{Scenario, Structure};
 pub use studies::map::{CellResult, OverturningMap};
 pub use studies::runner::Runner;
 pub use studies::threshold::{Factors, Threshold, thresholds};
+
+/// The tasks of the document compile and run.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+struct Library;

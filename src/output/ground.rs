@@ -43,7 +43,11 @@ mod tests {
 
     #[test]
     fn a_rectangle_has_upright_edges_and_ends_where_the_history_does() {
-        let ground = GroundMotion::pulse(Pulse::Rectangular, -5.0, 0.2, 0.1).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.2)
+            .starting_at_s(0.1)
+            .horizontal_m_s2(-5.0)
+            .unwrap();
         let rectangle = [(0.0, 0.0), (0.1, 0.0), (0.1, -0.5), (0.3, -0.5), (0.3, 0.0)];
         let near = |curve: &[(f64, f64)], due: &[(f64, f64)]| {
             assert_eq!(curve.len(), due.len(), "{curve:?}");

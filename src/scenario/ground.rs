@@ -151,14 +151,17 @@ impl PulseGround {
             cycles: self.cycles,
             phase_rad: self.phase_deg.to_radians(),
         };
-        PulseShape::new(self.kind, self.duration_s, self.start_s, train).expect(IN_RANGE)
+        self.kind
+            .lasting_s(self.duration_s)
+            .starting_at_s(self.start_s)
+            .with_train(train)
     }
 
     /// The ground motion under the given gravity.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
         self.shape()
-            .motion(amplitude_g * gravity_m_s2)
+            .inclined_m_s2(amplitude_g * gravity_m_s2)
             .expect(IN_RANGE)
     }
 

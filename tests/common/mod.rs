@@ -7,7 +7,7 @@ pub mod program;
 pub mod prose;
 pub mod results;
 
-use archrock::dynamics::ground::{Pulse, PulseShape};
+use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::ring::{Edge, Ring};
@@ -108,7 +108,9 @@ pub fn released(end_s: f64, sway: Sway, rotation_rad: f64) -> Request {
 
 /// A pulse from time zero.
 pub fn pulse(kind: Pulse, amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(kind, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+    kind.lasting_s(duration_s)
+        .horizontal_m_s2(amplitude_g * GRAVITY)
+        .unwrap()
 }
 
 pub fn run(model: &impl Model, ground: &GroundMotion, request: &Request) -> History {
@@ -415,8 +417,9 @@ pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, 
         let kind = Pulse::ALL[random.pick(Pulse::ALL.len())];
         let amplitude = Vector2::new(strength_g, random.next() - 0.5) * GRAVITY;
         let duration_s = 0.05 + random.next();
-        PulseShape::new(kind, duration_s, 0.1, Default::default())
-            .and_then(|shape| shape.motion(amplitude))
+        kind.lasting_s(duration_s)
+            .starting_at_s(0.1)
+            .inclined_m_s2(amplitude)
             .unwrap()
     } else {
         let vertical_g = random.next() * 1.0;

@@ -34,7 +34,10 @@ fn rocking(row: &Row) -> FourLinks {
 }
 
 fn push(amplitude_g: f64) -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, 0.2, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(amplitude_g * 9.81)
+        .unwrap()
 }
 
 fn joints(model: &FourLinks, impacts: usize, sway: Sway) -> Vec<usize> {

@@ -6,7 +6,7 @@ use archrock::dynamics::row::error::RowModelError;
 use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::stability::StabilityError;
-use archrock::{Column, GroundMotion, Model as _, Pulse, Request, SimulationError};
+use archrock::{Column, Model as _, Pulse, Request, SimulationError};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -37,7 +37,10 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
         }
         Err(error) => return Err(TestCaseError::fail(error.to_string())),
     };
-    let ground = match GroundMotion::pulse(Pulse::Rectangular, -5.0, 0.01 * time_s, 0.0) {
+    let ground = match Pulse::Rectangular
+        .lasting_s(0.01 * time_s)
+        .horizontal_m_s2(-5.0)
+    {
         Ok(ground) => ground,
         Err(error) => {
             prop_assert!(!sized, "{error}");

@@ -2,7 +2,7 @@
 //! of all blocks, found by convex programmes over joints that may open anywhere.
 
 use archrock::ElasticJoints;
-use archrock::dynamics::ground::{GroundMotion, Pulse};
+use archrock::dynamics::ground::Pulse;
 use archrock::dynamics::model::{Model as _, Request};
 use archrock::internals::contact::ContactError;
 use archrock::mechanics::blocks::Row;
@@ -911,7 +911,10 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
                 assert!((there[axis] - here[axis] - by).abs() < 1e-12 * (1.0 + far));
             }
         }
-        let ground = GroundMotion::pulse(Pulse::Rectangular, -2.0, 0.05, 0.0).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.05)
+            .horizontal_m_s2(-2.0)
+            .unwrap();
         let request = Request {
             end_s: 0.05,
             ..Request::default()
@@ -1460,7 +1463,11 @@ fn spread_out(spread_m: f64) -> Movements {
 fn a_settled_arch_is_at_rest() {
     let model = ElasticJoints::new(semicircle_of_5_m(), elastic(10.0)).unwrap();
     let model = model.on_supports(spread_out(0.15)).unwrap();
-    let ground = GroundMotion::pulse(Pulse::HalfSine, 1e-9, 0.2, 9.9).unwrap();
+    let ground = Pulse::HalfSine
+        .lasting_s(0.2)
+        .starting_at_s(9.9)
+        .horizontal_m_s2(1e-9)
+        .unwrap();
     let request = Request {
         end_s: 10.2,
         ..Request::default()

@@ -272,13 +272,11 @@ fn pulse_history(
     (start_s, duration_s): (f64, f64),
     end_s: f64,
 ) -> History {
-    let ground = GroundMotion::pulse(
-        Pulse::Rectangular,
-        amplitude_g * GRAVITY,
-        duration_s,
-        start_s,
-    )
-    .unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(duration_s)
+        .starting_at_s(start_s)
+        .horizontal_m_s2(amplitude_g * GRAVITY)
+        .unwrap();
     run(arch, &ground, &sampled(end_s, 0.001))
 }
 
@@ -462,8 +460,11 @@ fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
     let sections = ring.sections(7);
     let mut swayed = [0, 0];
     for amplitude in [-0.5, 0.5] {
-        let ground =
-            GroundMotion::pulse(Pulse::Rectangular, amplitude * GRAVITY, 0.25, 0.1).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.25)
+            .starting_at_s(0.1)
+            .horizontal_m_s2(amplitude * GRAVITY)
+            .unwrap();
         for sample in lines(&arch, &ground) {
             let ratios = &sample.eccentricity_ratios;
             assert_eq!(ratios.len(), 8);
@@ -511,7 +512,10 @@ fn lines_of_thrust_of_free_hinges_stay_inside() {
         .with_voussoirs(18)
         .unwrap();
     let model = FreeHinges::of_arch(&arch).unwrap();
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.3 * GRAVITY, 0.2, 0.0).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(-0.3 * GRAVITY)
+        .unwrap();
     let mut open = 0;
     for sample in lines(&model, &ground) {
         assert_eq!(sample.eccentricity_ratios.len(), 19);
@@ -554,7 +558,11 @@ fn lines_of_thrust_of_a_column_pass_through_its_toe() {
     let column = Column::new(4.0, 0.8).unwrap();
     let model = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
     let run = |amplitude: f64| {
-        let ground = GroundMotion::pulse(Pulse::OneSine, amplitude * GRAVITY, 0.8, 0.1).unwrap();
+        let ground = Pulse::OneSine
+            .lasting_s(0.8)
+            .starting_at_s(0.1)
+            .horizontal_m_s2(amplitude * GRAVITY)
+            .unwrap();
         lines(&model, &ground)
     };
     let (samples, mirrored) = (run(0.35), run(-0.35));
@@ -589,7 +597,11 @@ fn lines_of_thrust_of_a_column_pass_through_its_toe() {
 #[test]
 fn samples_without_demand_are_the_same() {
     let arch = common::seven_voussoirs();
-    let ground = GroundMotion::pulse(Pulse::Rectangular, -0.4 * GRAVITY, 0.1, 0.5).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(0.1)
+        .starting_at_s(0.5)
+        .horizontal_m_s2(-0.4 * GRAVITY)
+        .unwrap();
     let request = sampled(3.0, 0.01);
     let (mut with, mut without): (Vec<Sample>, Vec<Sample>) = Default::default();
     let mut all = |sample: &Sample| {

@@ -109,8 +109,11 @@ fn free_motion_keeps_the_energy_of_its_bodies() {
 fn the_energy_defect_is_small_under_every_pulse_and_falls_with_the_tolerance() {
     for arch in [semicircle(), seven_voussoirs()] {
         for kind in Pulse::ALL.iter().copied() {
-            let ground =
-                GroundMotion::pulse(kind, -1.6 * arch.incipient_g() * GRAVITY, 0.3, 0.1).unwrap();
+            let ground = kind
+                .lasting_s(0.3)
+                .starting_at_s(0.1)
+                .horizontal_m_s2(-1.6 * arch.incipient_g() * GRAVITY)
+                .unwrap();
             let defect = |relative_tolerance: f64| {
                 let request = Request {
                     relative_tolerance,
@@ -226,7 +229,10 @@ fn event_times_under_a_pulse_meet_those_of_the_smallest_tolerance() {
     let arch = semicircle();
     let mut compared = 0;
     for kind in Pulse::ALL.iter().copied() {
-        let ground = GroundMotion::pulse(kind, -0.25 * GRAVITY, 0.25, 0.0).unwrap();
+        let ground = kind
+            .lasting_s(0.25)
+            .horizontal_m_s2(-0.25 * GRAVITY)
+            .unwrap();
         let times = |relative_tolerance: f64| {
             let request = Request {
                 relative_tolerance,
@@ -250,7 +256,11 @@ fn cuts_in_the_ground_motion_change_nothing() {
     let arch = semicircle();
     let mut compared = 0;
     for kind in Pulse::ALL.iter().copied() {
-        let ground = GroundMotion::pulse(kind, -0.3 * GRAVITY, 0.3, 0.05).unwrap();
+        let ground = kind
+            .lasting_s(0.3)
+            .starting_at_s(0.05)
+            .horizontal_m_s2(-0.3 * GRAVITY)
+            .unwrap();
         let whole = run(&arch, &ground, &request(20.0));
         for cuts in [
             &[0.21][..],
@@ -305,9 +315,10 @@ fn the_critical_rotation_is_where_it_turns_over() {
     for (factor, lost) in [(0.999, false), (1.001, true)] {
         let rate = factor * (2.0 * barrier / c.inertia).sqrt();
         let velocity = rate * c.inertia * arch.length_m() / c.s_x;
-        let ground =
-            GroundMotion::pulse(Pulse::Rectangular, -velocity / duration_s, duration_s, 0.0)
-                .unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(duration_s)
+            .horizontal_m_s2(-velocity / duration_s)
+            .unwrap();
         let rocking = Rocking::new(&arch, &ground, GRAVITY, REST_ENERGY_RATIO);
         assert!((rocking.barrier / barrier - 1.0).abs() < 1e-14);
         let summary = run(&arch, &ground, &request(60.0)).summary;

@@ -12,7 +12,7 @@ use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::{
     Contact, ElasticJoints, ElasticOptions, ElasticProperties, GroundMotion, Job, Jobs,
-    JointStiffness, Materials, Model, Outcome, Pulse, PulseShape, Request, RowModelError, Sample,
+    JointStiffness, Materials, Model, Outcome, Pulse, Request, RowModelError, Sample,
     SimulationError, Stiffness, Summary, Sway, Until,
 };
 use nalgebra::Vector2;
@@ -63,7 +63,10 @@ fn request(gravity_m_s2: f64, end_s: f64) -> Request {
 
 /// A pulse that pushes to the right.
 fn push(pulse: Pulse, acceleration_m_s2: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(pulse, -acceleration_m_s2, duration_s, 0.0).unwrap()
+    pulse
+        .lasting_s(duration_s)
+        .horizontal_m_s2(-acceleration_m_s2)
+        .unwrap()
 }
 
 fn falls(summary: &Summary) -> bool {
@@ -443,8 +446,9 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
                 longest_step_s: Some(step_s),
             };
             let model = model.with_options(options).unwrap();
-            let ground = PulseShape::new(Pulse::OneSine, 0.3, 0.0, archrock::WaveTrain::default())
-                .and_then(|shape| shape.motion(Vector2::new(2.5, 1.5)));
+            let ground = Pulse::OneSine
+                .lasting_s(0.3)
+                .inclined_m_s2(Vector2::new(2.5, 1.5));
             let summary = model
                 .simulate(&ground.unwrap(), &request(9.81, 0.8), None)
                 .unwrap();
@@ -720,9 +724,9 @@ fn no_history_fails_silently() {
             )
         } else {
             let peak_m_s2 = Vector2::new(strong_g, vertical_g) * 9.81;
-            let train = archrock::WaveTrain::default();
-            PulseShape::new(Pulse::OneSine, 0.5 * end_s, 0.0, train)
-                .and_then(|shape| shape.motion(peak_m_s2))
+            Pulse::OneSine
+                .lasting_s(0.5 * end_s)
+                .inclined_m_s2(peak_m_s2)
                 .unwrap()
         };
         let weight_n = row.mass_kg() * 9.81;

@@ -45,7 +45,10 @@ fn the_largest_kinetic_energy_is_noted() {
 /// `m g (R - h)`, and the largest kinetic energy is refused; the message names a step with which it is not.
 #[test]
 fn a_wrong_energy_balance_fails() {
-    let push = GroundMotion::pulse(Pulse::Rectangular, -0.8 * GRAVITY, 0.1, 0.0).unwrap();
+    let push = Pulse::Rectangular
+        .lasting_s(0.1)
+        .horizontal_m_s2(-0.8 * GRAVITY)
+        .unwrap();
     for coefficient in COEFFICIENTS {
         let (mut doubtful, mut wrong) = (0, 0);
         let mut longest_step_s = 1e-3;

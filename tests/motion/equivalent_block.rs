@@ -95,13 +95,10 @@ fn dimensionless(
 ) -> (Vec<[f64; 3]>, Vec<f64>) {
     let scales = Scales::new(structure, GRAVITY_M_S2).unwrap();
     let p = scales.frequency_rad_s;
-    let ground = GroundMotion::pulse(
-        Pulse::OneSine,
-        amplitude * scales.incipient_m_s2[0],
-        p_t_p / p,
-        0.0,
-    )
-    .unwrap();
+    let ground = Pulse::OneSine
+        .lasting_s(p_t_p / p)
+        .horizontal_m_s2(amplitude * scales.incipient_m_s2[0])
+        .unwrap();
     let request = Request {
         end_s: 12.1 / p,
         relative_tolerance: 1e-12,

@@ -42,7 +42,10 @@ fn column(drums: usize) -> Row {
 
 /// A rectangular pulse that pushes to the right.
 fn push(amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(-amplitude_g * GRAVITY)
+        .unwrap()
 }
 
 fn run(row: &Row, ground: &GroundMotion, settings: &Settings) -> Summary {
@@ -295,7 +298,10 @@ fn the_restitution_of_a_block_is_housners() {
 fn a_block_moves_like_the_column() {
     let block = Column::new(4.0, 0.8).unwrap();
     let block = RockingColumn::new(&block, ImpactModel::MaxRestitution).unwrap();
-    let ground = GroundMotion::pulse(Pulse::OneSine, 0.4 * GRAVITY, 0.5, 0.0).unwrap();
+    let ground = Pulse::OneSine
+        .lasting_s(0.5)
+        .horizontal_m_s2(0.4 * GRAVITY)
+        .unwrap();
     let request = Request {
         end_s: 4.0,
         output_step_s: 0.001,
@@ -414,7 +420,10 @@ fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     for (duration_s, threshold_g) in [(0.2, 1.4615), (0.3, 0.8750), (0.4, 0.2980), (0.5, 0.2517)] {
         for (factor, falls) in [(1.001, true), (0.999, false)] {
             let amplitude = -factor * threshold_g * GRAVITY;
-            let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0).unwrap();
+            let ground = Pulse::StepPair
+                .lasting_s(duration_s)
+                .horizontal_m_s2(amplitude)
+                .unwrap();
             let settings =
                 Settings::to_landings(&row, GRAVITY, if falls { 60.0 } else { 6.0 }).times(0.5);
             let run = run(&row, &ground, &settings);
@@ -565,7 +574,11 @@ fn size_density_and_depth_scale_as_they_should() {
 #[test]
 fn energy_does_not_grow() {
     let row = arch(157.5, 0.15, 14, 10.0);
-    let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.4, 0.1).unwrap();
+    let ground = Pulse::OneSine
+        .lasting_s(0.4)
+        .starting_at_s(0.1)
+        .horizontal_m_s2(0.5 * GRAVITY)
+        .unwrap();
     for (factor, bound) in [(1.0, 2e-6), (0.25, 5e-7)] {
         let settings = Settings {
             output_step_s: Some(0.01),

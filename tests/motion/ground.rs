@@ -1,6 +1,6 @@
 //! Ground motions from arbitrary numbers: either an error that names the number, or a motion that is sound.
 
-use archrock::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
+use archrock::{GroundError, GroundMotion, Pulse, WaveTrain};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -86,9 +86,9 @@ proptest! {
         (cycles, phase_rad) in (any_number(), any_number()),
         other in any_number(),
     ) {
-        assert_works(GroundMotion::pulse(pulse, x, duration_s, start_s), other);
+        assert_works(pulse.lasting_s(duration_s).starting_at_s(start_s).horizontal_m_s2(x), other);
         let train = WaveTrain { cycles, phase_rad };
-        let along = PulseShape::new(pulse, duration_s, start_s, train).and_then(|shape| shape.motion(Vector2::new(x, y)));
+        let along = pulse.lasting_s(duration_s).starting_at_s(start_s).with_train(train).inclined_m_s2(Vector2::new(x, y));
         assert_works(along, other);
     }
 
@@ -108,7 +108,10 @@ proptest! {
 #[test]
 fn errors_name_the_number_and_what_is_allowed() {
     let pulse = |amplitude, duration_s, start_s| {
-        let error = GroundMotion::pulse(Pulse::HalfSine, amplitude, duration_s, start_s);
+        let error = Pulse::HalfSine
+            .lasting_s(duration_s)
+            .starting_at_s(start_s)
+            .horizontal_m_s2(amplitude);
         error.unwrap_err().to_string()
     };
     assert_eq!(
@@ -121,8 +124,10 @@ fn errors_name_the_number_and_what_is_allowed() {
         cycles: 0.5,
         phase_rad: 0.0,
     };
-    let error = PulseShape::new(Pulse::Gabor, 0.2, 0.0, train)
-        .and_then(|shape| shape.motion(Vector2::x()))
+    let error = Pulse::Gabor
+        .lasting_s(0.2)
+        .with_train(train)
+        .inclined_m_s2(Vector2::x())
         .unwrap_err();
     assert!(
         error

@@ -167,7 +167,7 @@ fn size_and_gravity_only_stretch_time() {
         let (short, long) = (pulse(kind, -0.4, 0.25), pulse(kind, -0.4, 0.5));
         let a = run(&small, &short, &request(20.0));
         let b = run(&large, &long, &request(40.0));
-        let weak = GroundMotion::pulse(kind, -0.1 * GRAVITY, 0.5, 0.0).unwrap();
+        let weak = kind.lasting_s(0.5).horizontal_m_s2(-0.1 * GRAVITY).unwrap();
         let at = Request {
             gravity_m_s2: 0.25 * GRAVITY,
             ..request(40.0)
@@ -402,8 +402,11 @@ fn a_very_short_blow_gives_its_momentum() {
         for duration_s in [1e-6, 1e-4] {
             let velocity_m_s = 0.5;
             let acceleration = -velocity_m_s / duration_s;
-            let ground =
-                GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, start_s).unwrap();
+            let ground = Pulse::Rectangular
+                .lasting_s(duration_s)
+                .starting_at_s(start_s)
+                .horizontal_m_s2(acceleration)
+                .unwrap();
             let end_s = start_s + 2.0 * duration_s;
             let (_, samples) = run_sampled(&arch, &ground, &request(end_s));
             let rate = -samples.last().unwrap().rates_rad_s[0];
@@ -427,7 +430,11 @@ fn a_very_short_blow_gives_its_momentum() {
 fn a_late_pulse_is_the_same_pulse() {
     let arch = semicircle();
     let now = pulse(Pulse::HalfSine, -0.6, 0.3);
-    let later = GroundMotion::pulse(Pulse::HalfSine, -0.6 * GRAVITY, 0.3, 512.0).unwrap();
+    let later = Pulse::HalfSine
+        .lasting_s(0.3)
+        .starting_at_s(512.0)
+        .horizontal_m_s2(-0.6 * GRAVITY)
+        .unwrap();
     let (a, b) = (
         run(&arch, &now, &request(20.0)),
         run(&arch, &later, &request(532.0)),

@@ -24,7 +24,10 @@ fn peaks_rad(run: &Summary) -> Vec<f64> {
 }
 
 fn rectangular(amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(amplitude_g * GRAVITY)
+        .unwrap()
 }
 
 /// The fraction of the energy that the first impact keeps.

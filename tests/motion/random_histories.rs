@@ -61,7 +61,7 @@ proptest! {
         let Ok(arch) = FourLinks::of_arch(&arch, model) else { return Ok(()) };
         let incipient = arch.incipient_g() * gravity;
         let ground = ground.map_or_else(GroundMotion::still, |(pulse, factor, duration_s, start_s)| {
-            GroundMotion::pulse(pulse, factor * incipient, duration_s, start_s).unwrap()
+            pulse.lasting_s(duration_s).starting_at_s(start_s).horizontal_m_s2(factor * incipient).unwrap()
         });
         let link = arch.link(0).unwrap();
         let request = Request {

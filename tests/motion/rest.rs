@@ -4,8 +4,7 @@ use crate::common::program::{scenario_files, scenarios};
 use std::ops::ControlFlow;
 
 use archrock::{
-    Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sample,
-    Scenario, Sway,
+    Arch, FourLinks, ImpactModel, Model as _, Outcome, Pulse, Request, Sample, Scenario, Sway,
 };
 
 /// A structure that rests instead of hopping on loses a hundred-millionth of the barrier: its hops
@@ -55,12 +54,9 @@ fn an_arch_that_hardly_stands_does_not_lock() {
     assert!(incipient_g < 2e-4);
     let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
     let amplitude_m_s2 = 0.005_814_512_113_921_563 * 9.81;
-    let ground = GroundMotion::pulse(
-        Pulse::AntisymmetricRicker,
-        amplitude_m_s2,
-        2_407.242_639_468_504,
-        0.0,
-    );
+    let ground = Pulse::AntisymmetricRicker
+        .lasting_s(2_407.242_639_468_504)
+        .horizontal_m_s2(amplitude_m_s2);
     let request = Request {
         end_s: 14_443.455_836_811_023,
         ..Request::default()

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random, between_faces, random_history};
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
+use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
 use archrock::internals::complementarity;
@@ -102,7 +102,10 @@ fn below_the_least_coefficient_nothing_stands() {
 
 /// A rectangular pulse that pushes to the right.
 fn push(amplitude_g: f64, duration_s: f64) -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, -amplitude_g * GRAVITY, duration_s, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(-amplitude_g * GRAVITY)
+        .unwrap()
 }
 
 fn equal(step_s: f64, end_s: f64, coefficient: f64) -> Settings {
@@ -187,7 +190,10 @@ fn newmark(
 
 fn half_sine(amplitude_g: f64, duration_s: f64) -> (GroundMotion, impl Fn(f64) -> f64) {
     let peak = amplitude_g * GRAVITY;
-    let ground = GroundMotion::pulse(Pulse::HalfSine, peak, duration_s, 0.0).unwrap();
+    let ground = Pulse::HalfSine
+        .lasting_s(duration_s)
+        .horizontal_m_s2(peak)
+        .unwrap();
     (ground, move |time: f64| {
         if time < duration_s {
             peak * (PI * time / duration_s).sin()
@@ -381,10 +387,7 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     let (sizes_m, coefficient, duration_s) = ([1.0, 2.0], 0.52, 0.15);
     let peaks = Vector2::new(-1.2, -0.2) * GRAVITY;
     let kind = Pulse::Rectangular;
-    let train = WaveTrain::default();
-    let ground = PulseShape::new(kind, duration_s, 0.0, train)
-        .and_then(|shape| shape.motion(peaks))
-        .unwrap();
+    let ground = kind.lasting_s(duration_s).inclined_m_s2(peaks).unwrap();
     let loads = |time: f64| {
         if time < duration_s {
             [1.2 * GRAVITY, 0.8 * GRAVITY]
@@ -482,7 +485,10 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
         let shape = Shape::PointedArch(dimensions);
         let masonry = Masonry::new(shape, piers, None, Vec::new()).unwrap();
         assert_eq!(masonry.row().supports_extend(), [!pedestal; 2]);
-        let ground = GroundMotion::pulse(Pulse::OneSine, 0.5 * GRAVITY, 0.5, 0.0).unwrap();
+        let ground = Pulse::OneSine
+            .lasting_s(0.5)
+            .horizontal_m_s2(0.5 * GRAVITY)
+            .unwrap();
         let run = run(masonry.row(), &ground, &equal(8e-5, 6.0, 0.3));
         assert_eq!(run.outcome, Outcome::Rest);
         let time_s = run.outcome_time_s;
@@ -633,7 +639,10 @@ fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
     ] {
         for (factor, falls) in [(1.003, true), (0.997, false)] {
             let amplitude = -factor * threshold_g * GRAVITY;
-            let ground = GroundMotion::pulse(Pulse::StepPair, amplitude, duration_s, 0.0).unwrap();
+            let ground = Pulse::StepPair
+                .lasting_s(duration_s)
+                .horizontal_m_s2(amplitude)
+                .unwrap();
             let run = run(&row, &ground, &equal(1e-4, 8.0, coefficient));
             let overturned = matches!(run.outcome, Outcome::Overturned(_));
             assert_eq!(overturned, falls, "{duration_s} {coefficient} {factor}");
@@ -933,7 +942,10 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
         let row = masonry.row();
         let coefficient = least_coefficient(row).unwrap() * (1.0 + excess);
         let peak = amplitude_g * GRAVITY;
-        let ground = GroundMotion::pulse(Pulse::HalfSine, peak, duration_s, 0.0).unwrap();
+        let ground = Pulse::HalfSine
+            .lasting_s(duration_s)
+            .horizontal_m_s2(peak)
+            .unwrap();
         let settings = Settings {
             friction_coefficient: Some(coefficient),
             ..Settings::equal(row, GRAVITY, end_s)

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::common::GRAVITY;
-use archrock::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
+use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Sample, Summary};
 use archrock::dynamics::model::Recorder;
 use archrock::internals::free_hinges::{Settings, simulate};
@@ -78,7 +78,10 @@ fn taken_j(impact: &Impact) -> f64 {
 #[test]
 fn an_impact_without_slip_takes_what_housner_says_at_every_step() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
-    let ground = GroundMotion::pulse(Pulse::Rectangular, 0.5 * GRAVITY, 0.2, 0.0).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(0.5 * GRAVITY)
+        .unwrap();
     let square_sine = 0.8_f64.powi(2) / (0.8_f64.powi(2) + 16.0);
     let kept = (1.0 - 1.5 * square_sine).powi(2);
     assert!((kept - 0.8879).abs() < 5e-5);
@@ -125,9 +128,9 @@ fn an_impact_of_a_sliding_slab_divides_its_energy_between_landing_and_friction()
     let row = Row::tapered_stack(&[0.8], 4.0, 4.0, 1.0, 2000.0).unwrap();
     let (time_s, coefficient, push_g) = (0.1, 0.3, 1.0);
     let peaks = Vector2::new(-push_g, -4.0 / 3.0) * GRAVITY;
-    let train = WaveTrain::default();
-    let ground = PulseShape::new(Pulse::Rectangular, time_s, 0.0, train)
-        .and_then(|shape| shape.motion(peaks))
+    let ground = Pulse::Rectangular
+        .lasting_s(time_s)
+        .inclined_m_s2(peaks)
         .unwrap();
     let [landing, sliding] = [2.0 / 3.0, push_g].map(|part| part * GRAVITY * time_s);
     let slower = sliding - coefficient * landing;
@@ -162,7 +165,10 @@ fn an_impact_of_a_sliding_slab_divides_its_energy_between_landing_and_friction()
 fn rows_of_an_arch_that_slips_add_up() {
     let ring = Ring::new(0.15, 157.5_f64.to_radians()).unwrap();
     let row = Row::arch(&ring, 7, 10.0, 1.0, 2000.0).unwrap();
-    let ground = GroundMotion::pulse(Pulse::Rectangular, 0.8 * GRAVITY, 0.2, 0.0).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(0.2)
+        .horizontal_m_s2(0.8 * GRAVITY)
+        .unwrap();
     for step_s in [2e-4, 7e-5] {
         let (summary, rows) = run(&row, &ground, [step_s, 4.0], 0.45);
         assert!(rows.len() > 20, "{}", rows.len());

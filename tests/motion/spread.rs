@@ -73,7 +73,10 @@ fn slipping(model: FreeHinges, coefficient: f64) -> FreeHinges {
 /// A rectangular push to a side, in units of gravity.
 fn push(push_g: f64, sway: Sway, duration_s: f64) -> GroundMotion {
     let acceleration = -sway.sign() * push_g * GRAVITY;
-    GroundMotion::pulse(Pulse::Rectangular, acceleration, duration_s, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(acceleration)
+        .unwrap()
 }
 
 fn history(model: &dyn archrock::Model, ground: &GroundMotion, end_s: f64) -> History {
@@ -100,7 +103,11 @@ fn joint(hinge: Hinge) -> usize {
 
 /// Ground that moves by nothing worth it after four seconds, so that a history goes on until then.
 fn four_seconds() -> GroundMotion {
-    GroundMotion::pulse(Pulse::HalfSine, 1e-12, 0.1, 3.95).unwrap()
+    Pulse::HalfSine
+        .lasting_s(0.1)
+        .starting_at_s(3.95)
+        .horizontal_m_s2(1e-12)
+        .unwrap()
 }
 
 #[test]

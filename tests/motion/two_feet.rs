@@ -104,7 +104,11 @@ fn a_negative_delay_leaves_the_left_foot_as_it_is() {
         piece.unwrap().acceleration_m_s2(time_s)
     };
     for (from_s, start_s) in [(0.0, -0.3), (0.2, -0.1), (0.3, 0.0), (1.0, 0.0)] {
-        let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.4, from_s).unwrap();
+        let ground = Pulse::OneSine
+            .lasting_s(0.4)
+            .starting_at_s(from_s)
+            .horizontal_m_s2(3.0)
+            .unwrap();
         let early = ground.clone().with_delayed_right_foot(-0.3).unwrap();
         let right = early.right_foot().unwrap();
         assert!((early.start_s() - start_s).abs() < 1e-15 && early.start_s() == right.start_s());
@@ -153,7 +157,11 @@ fn a_history_begins_with_the_right_foot() {
     ];
     for model in models {
         let history = |from_s: f64, end_s: f64| {
-            let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.4, from_s).unwrap();
+            let ground = Pulse::OneSine
+                .lasting_s(0.4)
+                .starting_at_s(from_s)
+                .horizontal_m_s2(3.0)
+                .unwrap();
             let ground = ground.with_delayed_right_foot(-0.05).unwrap();
             model.history(&ground, &sampled(end_s, 0.02)).unwrap()
         };

@@ -8,8 +8,8 @@ use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::settling::{Follower, Movement, Movements, Reached};
 use archrock::mechanics::tie::{Anchor, Tie};
 use archrock::{
-    ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, Hinge, Model, Pulse, PulseShape,
-    RowOptions, Sample, WaveTrain,
+    ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, Hinge, Model, Pulse, RowOptions,
+    Sample,
 };
 use nalgebra::{Rotation2, Vector2, Vector3};
 
@@ -64,9 +64,9 @@ struct Way {
 impl Way {
     fn ground(&self) -> GroundMotion {
         let strong_m_s2 = Vector2::from(self.way_m) * (TAU / self.lasts_s.powi(2));
-        let train = WaveTrain::default();
-        let right = PulseShape::new(Pulse::OneSine, self.lasts_s, 0.0, train)
-            .and_then(|shape| shape.motion(strong_m_s2));
+        let right = Pulse::OneSine
+            .lasting_s(self.lasts_s)
+            .inclined_m_s2(strong_m_s2);
         GroundMotion::still().with_right_foot(right.unwrap())
     }
 
@@ -312,9 +312,9 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
             .map(|i| state[i] + h / 6.0 * (first[i] + 2.0 * second[i] + 2.0 * third[i] + fourth[i]))
     };
     let foot = |strong_m_s2: Vector2<f64>| {
-        let train = WaveTrain::default();
-        PulseShape::new(Pulse::Rectangular, 0.3, 0.0, train)
-            .and_then(|shape| shape.motion(strong_m_s2))
+        Pulse::Rectangular
+            .lasting_s(0.3)
+            .inclined_m_s2(strong_m_s2)
             .unwrap()
     };
     let ground = foot(left_m_s2).with_right_foot(foot(right_m_s2));
@@ -445,9 +445,10 @@ fn mirrored_feet_move_a_mirrored_arch() {
     let row = row(157.5, 0.15, 12);
     let foot = |side: f64, strong_m_s2: [f64; 2], delay_s: f64| {
         let strong_m_s2 = Vector2::new(side * strong_m_s2[0], strong_m_s2[1]);
-        let train = WaveTrain::default();
-        PulseShape::new(Pulse::OneSine, 0.5, delay_s, train)
-            .and_then(|shape| shape.motion(strong_m_s2))
+        Pulse::OneSine
+            .lasting_s(0.5)
+            .starting_at_s(delay_s)
+            .inclined_m_s2(strong_m_s2)
             .unwrap()
     };
     let (one, other) = (([5.0, 1.0], 0.0), ([4.0, -0.5], 0.05));

@@ -8,7 +8,7 @@ use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::studies::run::{Run, Wanted};
-use archrock::{GroundMotion, Initial, Outcome, Pulse, PulseShape, Scenario, Sway, WaveTrain};
+use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 
@@ -51,10 +51,14 @@ fn a_steady_vertical_acceleration_is_gravity() {
         assert!(after.iter().all(|row| row.state == State::Rest));
     }
     // The same for a release on ground with pulses in both directions at once.
-    let shake = PulseShape::new(Pulse::Rectangular, 50.0, 0.0, WaveTrain::default())
-        .and_then(|shape| shape.motion(Vector2::new(0.05 * G, 2.0)))
+    let shake = Pulse::Rectangular
+        .lasting_s(50.0)
+        .inclined_m_s2(Vector2::new(0.05 * G, 2.0))
         .unwrap();
-    let push = GroundMotion::pulse(Pulse::Rectangular, 0.05 * G, 50.0, 0.0).unwrap();
+    let push = Pulse::Rectangular
+        .lasting_s(50.0)
+        .horizontal_m_s2(0.05 * G)
+        .unwrap();
     let (_, rows_a) = run(&arch, &shake, G, release(0.03), 3.0);
     let (_, rows_b) = run(&arch, &push, G + 2.0, release(0.03), 3.0);
     for (x, y) in pairs(&rows_a, &rows_b) {
@@ -139,8 +143,9 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
         path.push(q);
     }
     let amplitude = Vector2::new(horizontal, vertical);
-    let ground = PulseShape::new(Pulse::OneSine, period, 0.0, WaveTrain::default())
-        .and_then(|shape| shape.motion(amplitude))
+    let ground = Pulse::OneSine
+        .lasting_s(period)
+        .inclined_m_s2(amplitude)
         .unwrap();
     let (history, rows) = run(&arch, &ground, G, release(released), end);
     assert!(history.summary.impacts == 0 && q > 0.0);
@@ -154,7 +159,10 @@ fn released_on_vertical_shaking_it_follows_the_equation_of_motion() {
         );
     }
     // Without the vertical part the arch is elsewhere.
-    let plain = GroundMotion::pulse(Pulse::OneSine, horizontal, period, 0.0).unwrap();
+    let plain = Pulse::OneSine
+        .lasting_s(period)
+        .horizontal_m_s2(horizontal)
+        .unwrap();
     let (_, rows) = run(&arch, &plain, G, release(released), end);
     assert_eq!(rows.len(), 101);
     assert!((rows.last().unwrap().rotations_rad[0] + q).abs() > 1e-4);

@@ -36,7 +36,11 @@ fn a_sampled_half_sine_does_what_a_half_sine_does() {
         .map(|t| (t, peak * (PI * t / duration).sin()))
         .collect();
     let sampled = GroundMotion::record(&samples, &[], 0.1).unwrap();
-    let exact = GroundMotion::pulse(Pulse::HalfSine, peak, duration, 0.1).unwrap();
+    let exact = Pulse::HalfSine
+        .lasting_s(duration)
+        .starting_at_s(0.1)
+        .horizontal_m_s2(peak)
+        .unwrap();
     let ((a, rows_a), (b, rows_b)) = (
         run(&arch, &sampled, G, None, 10.0),
         run(&arch, &exact, G, None, 10.0),
@@ -228,7 +232,11 @@ fn a_record_of_velocities_is_the_pulse_that_has_them() {
     let table = format!("0.1,7\n0.35,{:?}\n0.85,7\n", 7.0 + top_cm_s);
     let keys = "file = 'v.csv'\nunit = 'cm/s'\nquantity = 'velocity'";
     let read = scenario(folder.path(), &[("v.csv", &table)], keys).unwrap();
-    let pulse = GroundMotion::pulse(Pulse::StepPair, a_g * G, duration_s, 0.1).unwrap();
+    let pulse = Pulse::StepPair
+        .lasting_s(duration_s)
+        .starting_at_s(0.1)
+        .horizontal_m_s2(a_g * G)
+        .unwrap();
     let arch = semicircle();
     let ((a, rows_a), (b, rows_b)) = (
         run(&arch, read.ground_motion(), G, None, 10.0),

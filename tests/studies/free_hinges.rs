@@ -43,8 +43,10 @@ fn arch(mean_radius_m: f64, thickness_ratio: f64, embrace_deg: f64) -> Arch {
 
 /// The ending of a single history of a row, as a cell of `map` has it.
 fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration_s: f64) -> Ending {
-    let ground =
-        GroundMotion::pulse(Pulse::Rectangular, amplitude_g * 9.81, duration_s, 0.0).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(duration_s)
+        .horizontal_m_s2(amplitude_g * 9.81)
+        .unwrap();
     let case = [(ground, map.scenario().request_from_rest())];
     let mut endings = Ending::until_safe(&row.clone().for_many_cases(), &case);
     endings.remove(0).unwrap()
@@ -160,8 +162,10 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
     let mut rows = Vec::new();
     for index in 0..map.count() {
         let [duration_s, amplitude_g] = map.coordinates(index);
-        let ground =
-            GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
+        let ground = Pulse::OneSine
+            .lasting_s(duration_s)
+            .horizontal_m_s2(amplitude_g * 9.81)
+            .unwrap();
         let own = outcome_of(&*row, &ground, &request);
         let mut outcomes = vec![own];
         for repetition in row.repetitions() {
@@ -263,7 +267,10 @@ fn a_block_under_a_step_pair_has_one_band_without_gaps() {
     let row = FreeHinges::of_column(&column).unwrap();
     let housner = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
     let models: [(&str, &dyn Model); 2] = [("free_hinges", &row), ("column", &housner)];
-    let ground = GroundMotion::pulse(Pulse::StepPair, 9.81, 0.2, 0.0).unwrap();
+    let ground = Pulse::StepPair
+        .lasting_s(0.2)
+        .horizontal_m_s2(9.81)
+        .unwrap();
     let request = Request {
         end_s: 30.0,
         ..Request::default()

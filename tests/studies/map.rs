@@ -16,7 +16,7 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::studies::ending::Ending;
 use archrock::studies::map::{CellResult, OverturningMap};
 use archrock::studies::runner::Study as _;
-use archrock::{GroundMotion, Outcome, Pulse, Scenario};
+use archrock::{Outcome, Pulse, Scenario};
 
 fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {
     match map.row(index).result {
@@ -37,8 +37,10 @@ fn a_cell_is_the_history_of_its_scenario() {
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
         let arch = four_links(mean_radius_m, 0.15, 157.5, HingeSites::Voussoirs(7));
-        let ground =
-            GroundMotion::pulse(Pulse::OneCosine, amplitude_g * GRAVITY, 0.4, 0.0).unwrap();
+        let ground = Pulse::OneCosine
+            .lasting_s(0.4)
+            .horizontal_m_s2(amplitude_g * GRAVITY)
+            .unwrap();
         let expected = Ending::of(&arch, &ground, &request(10.0)).unwrap();
         assert_eq!(ending(&cells, index), expected);
     }

@@ -1,7 +1,7 @@
 //! A map of many pulses at the default tolerance equals the map at a thousandth of it.
 
 use crate::common::{GRAVITY, request, semicircle};
-use archrock::{GroundMotion, Model as _, Outcome, Pulse, Request};
+use archrock::{Model as _, Outcome, Pulse, Request};
 
 /// Cells along each side.
 const CELLS: u32 = 20;
@@ -22,9 +22,10 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
         let amplitude_g = between(0.15, 1.5, cell / CELLS);
         let duration_s = between(0.05, 1.0, cell % CELLS);
         let name = format!("{amplitude_g:.4} g for {duration_s:.4} s");
-        let ground =
-            GroundMotion::pulse(Pulse::Rectangular, amplitude_g * GRAVITY, duration_s, 0.0)
-                .unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(duration_s)
+            .horizontal_m_s2(amplitude_g * GRAVITY)
+            .unwrap();
         let [usual, exact] = [1e-9, 1e-12].map(|relative_tolerance| {
             let request = Request {
                 relative_tolerance,

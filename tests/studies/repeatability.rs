@@ -36,7 +36,10 @@ fn case(random: &mut Random, most: usize) -> (FreeHinges, GroundMotion, f64) {
             let kind = Pulse::ALL[random.pick(5)];
             let amplitude = GRAVITY * onset_g * (1.1 + 1.4 * random.next());
             let duration_s = scale_s * (0.15 + random.next());
-            let ground = GroundMotion::pulse(kind, amplitude, duration_s, 0.0).unwrap();
+            let ground = kind
+                .lasting_s(duration_s)
+                .horizontal_m_s2(amplitude)
+                .unwrap();
             return (model, ground, 20.0);
         }
         let peak_g = onset_g * (1.2 + 2.3 * random.next());
@@ -273,8 +276,10 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
         let model = FreeHinges::new(row.clone()).unwrap();
         let model = model.with_options(options).unwrap();
         let onset_g = model.incipient_acceleration_g(Sway::Right).unwrap();
-        let ground =
-            GroundMotion::pulse(Pulse::HalfSine, 1.5 * onset_g * GRAVITY, 0.2, 0.0).unwrap();
+        let ground = Pulse::HalfSine
+            .lasting_s(0.2)
+            .horizontal_m_s2(1.5 * onset_g * GRAVITY)
+            .unwrap();
         let request = Request {
             end_s: 0.3,
             output_step_s: 2e-5 * (row.size_m() / GRAVITY).sqrt(),
@@ -406,7 +411,7 @@ fn elastic_case(
             let kind = Pulse::ALL[random.pick(5)];
             let amplitude = GRAVITY * onset_g * random.within(0.6, 2.0);
             let duration_s = scale_s * random.within(0.15, 1.15);
-            let ground = GroundMotion::pulse(kind, amplitude, duration_s, 0.0);
+            let ground = kind.lasting_s(duration_s).horizontal_m_s2(amplitude);
             return (model, ground.unwrap());
         }
         let peak_g = onset_g * random.within(0.8, 2.8);
@@ -515,7 +520,10 @@ fn what_falls_slowly_is_not_safe() {
     // Whether the whole history overturns, whether one that is ended early does, and the least energy on quiet ground.
     let history = |amplitude_g: f64| {
         let push_m_s2 = -amplitude_g * GRAVITY;
-        let ground = GroundMotion::pulse(Pulse::Rectangular, push_m_s2, 0.5, 0.0).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.5)
+            .horizontal_m_s2(push_m_s2)
+            .unwrap();
         let mut least_j = f64::INFINITY;
         let mut watch = |sample: &archrock::Sample| {
             if sample.time_s > ground.end_s() && matches!(sample.state, State::Rocking(_)) {

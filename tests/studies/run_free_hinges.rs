@@ -10,7 +10,7 @@ use crate::common::program::{archrock, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::history::{Details, HalfCycle, Summary};
 use archrock::dynamics::repeatability::Repeatability;
-use archrock::{Column, GroundMotion, Model as _, Pulse, Request};
+use archrock::{Column, Model as _, Pulse, Request};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -568,7 +568,11 @@ fn half_cycles_mut(summary: &mut Summary) -> &mut Vec<HalfCycle> {
 fn half_cycles_are_compared_at_the_same_time() {
     let column = Column::new(4.0, 0.8).unwrap();
     let model = FreeHinges::of_column(&column).unwrap();
-    let ground = GroundMotion::pulse(Pulse::Rectangular, 3.0, 0.3, 0.5).unwrap();
+    let ground = Pulse::Rectangular
+        .lasting_s(0.3)
+        .starting_at_s(0.5)
+        .horizontal_m_s2(3.0)
+        .unwrap();
     let own = model.simulate(&ground, &Request::default(), None).unwrap();
     assert!(own.half_cycles().len() > 2);
     let mut rattles = own.clone();
@@ -711,7 +715,10 @@ fn a_spread_knows_other_outcomes() {
     let column = Column::new(4.0, 0.8).unwrap();
     let model = FreeHinges::of_column(&column).unwrap();
     let pulse = |amplitude_m_s2| {
-        let ground = GroundMotion::pulse(Pulse::Rectangular, amplitude_m_s2, 0.3, 0.0).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.3)
+            .horizontal_m_s2(amplitude_m_s2)
+            .unwrap();
         model.simulate(&ground, &Request::default(), None).unwrap()
     };
     let (rests, falls) = (pulse(3.0), pulse(20.0));

@@ -26,8 +26,8 @@ use archrock::studies::threshold::{
     EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, thresholds,
 };
 use archrock::{
-    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, PulseShape, Recorder, Request,
-    RockingColumn, Scenario, SimulationError, Summary, Sway, WaveTrain,
+    Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
+    Scenario, SimulationError, Summary, Sway,
 };
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -167,9 +167,9 @@ fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     let column = Column::new(4.0, 0.8).unwrap();
     let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
     let amplitude = Vector2::new(0.3, 0.2) * GRAVITY;
-    let train = WaveTrain::default();
-    let ground = PulseShape::new(Pulse::OneSine, 1.2, 0.0, train)
-        .and_then(|shape| shape.motion(amplitude))
+    let ground = Pulse::OneSine
+        .lasting_s(1.2)
+        .inclined_m_s2(amplitude)
         .unwrap();
     let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
     for sample in &threshold.samples {
@@ -333,7 +333,10 @@ fn uncertain_factors_are_ranges_of_their_own() {
 }
 
 fn unit_pulse() -> GroundMotion {
-    GroundMotion::pulse(Pulse::Rectangular, 1.0, 1.0, 0.0).unwrap()
+    Pulse::Rectangular
+        .lasting_s(1.0)
+        .horizontal_m_s2(1.0)
+        .unwrap()
 }
 
 #[test]

@@ -10,7 +10,7 @@ use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
 use archrock::studies::runner::Study as _;
 use archrock::studies::threshold::Factors;
 use archrock::studies::threshold::along::{Along, AlongOptions, AlongRow, KeyRange};
-use archrock::{GroundMotion, Outcome, Pulse, Request, Sway};
+use archrock::{Outcome, Pulse, Request, Sway};
 
 /// The rows along a range of equally spaced values, such as `ground.ricker.duration_s=1..2:3`.
 fn rows(text: &str, along: &str, factors: Factors) -> Vec<AlongRow> {
@@ -203,7 +203,9 @@ fn the_edge_without_impact_is_an_edge() {
     for duration_s in [0.4, 0.9] {
         let edge_g = without_impact(&text, "one_sine", &[duration_s])[0];
         let at = |amplitude_g: f64| {
-            let ground = GroundMotion::pulse(Pulse::OneSine, 9.81 * amplitude_g, duration_s, 0.0);
+            let ground = Pulse::OneSine
+                .lasting_s(duration_s)
+                .horizontal_m_s2(9.81 * amplitude_g);
             let request = Request {
                 end_s: 100.0,
                 ..Request::default()

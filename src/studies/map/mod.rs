@@ -155,7 +155,7 @@ impl ScalablePulse {
     /// The ground motion for an amplitude, positive to the right.
     fn motion(&self, amplitude_g: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(amplitude_g, self.vertical_g);
-        let motion = self.shape.motion(amplitude_g * self.gravity_m_s2);
+        let motion = self.shape.inclined_m_s2(amplitude_g * self.gravity_m_s2);
         motion.expect("the amplitudes of a scenario are those of a ground motion")
     }
 }

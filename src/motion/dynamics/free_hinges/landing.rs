@@ -681,7 +681,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::dynamics::ground::{GroundMotion, Pulse};
+    use crate::dynamics::ground::Pulse;
     use crate::mechanics::geometry::ring::Ring;
 
     /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
@@ -773,8 +773,10 @@ mod tests {
             (arch(179.0, 12, 5.0), 0.5, 0.03),
             (column, 1.0, 0.1),
         ] {
-            let ground =
-                GroundMotion::pulse(Pulse::OneSine, amplitude_g * 9.81, duration_s, 0.0).unwrap();
+            let ground = Pulse::OneSine
+                .lasting_s(duration_s)
+                .horizontal_m_s2(amplitude_g * 9.81)
+                .unwrap();
             let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
             let task = Task {
                 row: &row,

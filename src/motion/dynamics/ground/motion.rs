@@ -291,14 +291,18 @@ impl GroundMotion {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Pulse, PulseShape, WaveTrain};
+    use super::super::Pulse;
     use super::*;
 
     #[test]
     fn pieces_follow_one_another_from_zero_to_infinity() {
         for pulse in Pulse::ALL.iter().copied() {
             for start in [0.0, 0.7] {
-                let ground = GroundMotion::pulse(pulse, 2.0, 0.3, start).unwrap();
+                let ground = pulse
+                    .lasting_s(0.3)
+                    .starting_at_s(start)
+                    .horizontal_m_s2(2.0)
+                    .unwrap();
                 let pieces = ground.pieces();
                 assert!(pieces[0].start_s == 0.0);
                 assert!(
@@ -323,8 +327,9 @@ mod tests {
             Some(0.5)
         );
         let wave = |a| {
-            PulseShape::new(Pulse::OneSine, 1.0, 0.0, WaveTrain::default())
-                .and_then(|shape| shape.motion(Vector2::new(1.0, a)))
+            Pulse::OneSine
+                .lasting_s(1.0)
+                .inclined_m_s2(Vector2::new(1.0, a))
                 .unwrap()
         };
         assert_eq!(wave(9.0).free_fall_s(9.81), None);
@@ -349,8 +354,10 @@ mod tests {
         for pulse in Pulse::ALL.iter().copied() {
             let ground = |factor: f64| {
                 let amplitude = Vector2::new(2.0, -0.7) * factor;
-                PulseShape::new(pulse, 0.3, 0.1, WaveTrain::default())
-                    .and_then(|shape| shape.motion(amplitude))
+                pulse
+                    .lasting_s(0.3)
+                    .starting_at_s(0.1)
+                    .inclined_m_s2(amplitude)
                     .unwrap()
             };
             assert_eq!(ground(1.0).scaled(0.5), Ok(ground(0.5)));
@@ -369,7 +376,11 @@ mod tests {
 
     #[test]
     fn cuts_change_no_value() {
-        let ground = GroundMotion::pulse(Pulse::OneSine, 2.0, 0.3, 0.1).unwrap();
+        let ground = Pulse::OneSine
+            .lasting_s(0.3)
+            .starting_at_s(0.1)
+            .horizontal_m_s2(2.0)
+            .unwrap();
         let cut = ground.cut_at(&[0.05, 0.11, 0.3, 5.0]);
         assert_eq!(cut.pieces().len(), ground.pieces().len() + 4);
         for piece in cut.pieces() {

@@ -1,6 +1,7 @@
 //! Pulses: ground accelerations by formula.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 
@@ -72,38 +73,28 @@ impl Pulse {
     }
 }
 
-impl GroundMotion {
-    /// A single horizontal pulse that starts at `start_s` (0 to 1e9), with peak acceleration `amplitude_m_s2`
-    /// (at most 1e12 in magnitude) and length `duration_s` (1e-12 to 1e9). A wave train has
-    /// [`WaveTrain::default`]. For other wave trains and vertical accelerations see [`PulseShape`].
-    ///
-    /// # Errors
-    /// When an argument is outside its range.
-    pub fn pulse(
-        pulse: Pulse,
-        amplitude_m_s2: f64,
-        duration_s: f64,
-        start_s: f64,
-    ) -> Result<Self, GroundError> {
-        let shape = PulseShape::new(pulse, duration_s, start_s, WaveTrain::default())?;
-        shape.motion(Vector2::new(amplitude_m_s2, 0.0))
-    }
-}
-
-/// A pulse of any amplitude: its kind, its duration and when it starts.
+/// A pulse of any amplitude: its kind, its duration, and when it starts.
+///
+/// ```
+/// # use archrock_motion::dynamics::ground::{GroundError, Pulse};
+/// let ground = Pulse::OneSine.lasting_s(0.5).starting_at_s(1.0).horizontal_m_s2(-2.0)?;
+/// assert_eq!(ground.end_s(), 1.5);
+/// # Ok::<(), GroundError>(())
+/// ```
 ///
 /// Finding the extrema of a wave train takes far longer than one history under it. They do not depend on the
-/// amplitude, so a study that varies it finds them once.
-#[derive(Clone, Debug, PartialEq)]
+/// amplitude, so they are found once, for the first ground motion.
+#[derive(Clone, Debug)]
 pub struct PulseShape {
     pulse: Pulse,
     duration_s: f64,
     start_s: f64,
-    train: Option<CutTrain>,
+    train: WaveTrain,
+    cut: OnceLock<CutTrain>,
 }
 
 /// A wave train, cut at its extrema.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 struct CutTrain {
     shape: Shape,
     /// Extrema and end, in seconds since the start.
@@ -112,38 +103,54 @@ struct CutTrain {
     peak: f64,
 }
 
+impl Pulse {
+    /// A pulse of length `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
+    #[must_use]
+    pub fn lasting_s(self, duration_s: f64) -> PulseShape {
+        PulseShape {
+            pulse: self,
+            duration_s,
+            start_s: 0.0,
+            train: WaveTrain::default(),
+            cut: OnceLock::new(),
+        }
+    }
+}
+
 impl PulseShape {
-    /// The pulse of that kind of length `duration_s` (1e-12 to 1e9) that starts at `start_s` (0 to 1e9). `train`
-    /// matters only to pulses that are wave trains.
+    /// This pulse, starting at `start_s` (0 to 1e9).
+    #[must_use]
+    pub fn starting_at_s(self, start_s: f64) -> Self {
+        Self { start_s, ..self }
+    }
+
+    /// This pulse with another wave train, which matters only to pulses that are wave trains.
+    #[must_use]
+    pub fn with_train(self, train: WaveTrain) -> Self {
+        let cut = OnceLock::new();
+        Self { train, cut, ..self }
+    }
+
+    /// The ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
     ///
     /// # Errors
-    /// When an argument is outside its range.
-    pub fn new(
-        pulse: Pulse,
-        duration_s: f64,
-        start_s: f64,
-        train: WaveTrain,
-    ) -> Result<Self, GroundError> {
-        within("duration_s", duration_s, DURATION_S)?;
-        within("start_s", start_s, TIME_S)?;
-        if pulse.is_wave_train() {
-            within("cycles", train.cycles, 1.0..=1e3)?;
-            within("phase_rad", train.phase_rad, -1e3..=1e3)?;
-        }
-        Ok(Self {
-            pulse,
-            duration_s,
-            start_s,
-            train: CutTrain::new(pulse, duration_s, train),
-        })
+    /// When a number of the pulse is outside its range.
+    pub fn horizontal_m_s2(&self, amplitude_m_s2: f64) -> Result<GroundMotion, GroundError> {
+        self.inclined_m_s2(Vector2::new(amplitude_m_s2, 0.0))
     }
 
     /// The ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of one
     /// common shape.
     ///
     /// # Errors
-    /// When one of them is outside its range.
-    pub fn motion(&self, amplitude_m_s2: Vector2<f64>) -> Result<GroundMotion, GroundError> {
+    /// When a number of the pulse is outside its range.
+    pub fn inclined_m_s2(&self, amplitude_m_s2: Vector2<f64>) -> Result<GroundMotion, GroundError> {
+        within("duration_s", self.duration_s, DURATION_S)?;
+        within("start_s", self.start_s, TIME_S)?;
+        if self.pulse.is_wave_train() {
+            within("cycles", self.train.cycles, 1.0..=1e3)?;
+            within("phase_rad", self.train.phase_rad, -1e3..=1e3)?;
+        }
         within("amplitude_m_s2.x", amplitude_m_s2.x, ACCELERATION_M_S2)?;
         within("amplitude_m_s2.y", amplitude_m_s2.y, ACCELERATION_M_S2)?;
         Ok(GroundMotion::from_pieces(
@@ -210,16 +217,15 @@ impl PulseShape {
                 cut(&[ends[0], ends[1], ends[2], ends[3], 5.0], wavelet)
             }
             Pulse::MavroeidisPapageorgiou | Pulse::Gabor | Pulse::WindowedSine => {
-                let train = self.train.as_ref().expect("these are wave trains");
-                train.pieces(a)
+                let cut = || CutTrain::new(self.pulse, t, self.train);
+                self.cut.get_or_init(cut).pieces(a)
             }
         }
     }
 }
 
 impl CutTrain {
-    /// `None` if the pulse is not a wave train.
-    fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Option<Self> {
+    fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Self {
         let t = duration_s;
         let (shape, length_s) = match pulse {
             Pulse::MavroeidisPapageorgiou => {
@@ -247,8 +253,8 @@ impl CutTrain {
                 };
                 (shape, 2.0 * centre_s)
             }
-            Pulse::WindowedSine => {
-                // sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
+            _ => {
+                // The windowed sine: sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
                 let term = |amplitude: f64, periods: f64| Sine {
                     amplitude,
                     frequency_rad_s: periods * 2.0 * PI / t,
@@ -262,7 +268,6 @@ impl CutTrain {
                 ]);
                 (shape, train.cycles * t)
             }
-            _ => return None,
         };
         let mut ends_s = shape.extrema_s(length_s, t);
         ends_s.push(length_s);
@@ -271,11 +276,11 @@ impl CutTrain {
             .iter()
             .map(|end| shape.at(*end).0.abs())
             .fold(0.0, f64::max);
-        Some(Self {
+        Self {
             shape,
             ends_s,
             peak,
-        })
+        }
     }
 
     /// Its pieces, scaled so that the largest extremum is the amplitude.
@@ -312,8 +317,11 @@ mod tests {
         let plain = Pulse::ALL.iter().map(|pulse| (*pulse, default));
         let amplitude = Vector2::new(-3.0, 1.5);
         for (pulse, train) in plain.chain(trains()) {
-            let ground = PulseShape::new(pulse, 0.4, 0.2, train)
-                .and_then(|shape| shape.motion(amplitude))
+            let ground = pulse
+                .lasting_s(0.4)
+                .starting_at_s(0.2)
+                .with_train(train)
+                .inclined_m_s2(amplitude)
                 .unwrap();
             for piece in ground.pieces() {
                 let end = piece.end_s.min(piece.start_s + 10.0);
@@ -341,8 +349,11 @@ mod tests {
     fn wave_trains_reach_their_amplitude_and_not_more() {
         for (pulse, train) in trains() {
             let amplitude = Vector2::new(2.0, 0.0);
-            let ground = PulseShape::new(pulse, 0.3, 0.1, train)
-                .and_then(|shape| shape.motion(amplitude))
+            let ground = pulse
+                .lasting_s(0.3)
+                .starting_at_s(0.1)
+                .with_train(train)
+                .inclined_m_s2(amplitude)
                 .unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
             // The pieces end at the extrema, which bound what is between.
@@ -387,8 +398,10 @@ mod tests {
                     _ => (w * s + phase).sin() * (w * s / (2.0 * n)).sin().powi(2),
                 }
             };
-            let ground = PulseShape::new(pulse, t, 0.0, train)
-                .and_then(|shape| shape.motion(Vector2::x()))
+            let ground = pulse
+                .lasting_s(t)
+                .with_train(train)
+                .inclined_m_s2(Vector2::x())
                 .unwrap();
             let ours = |part: f64| acceleration_at(&ground, part * length);
             let strongest = (1..50)
@@ -411,7 +424,10 @@ mod tests {
     #[test]
     fn the_antisymmetric_wavelet_is_the_published_one() {
         let (t, b) = (0.3, 1.3801);
-        let ground = GroundMotion::pulse(Pulse::AntisymmetricRicker, 1.0, t, 0.0).unwrap();
+        let ground = Pulse::AntisymmetricRicker
+            .lasting_s(t)
+            .horizontal_m_s2(1.0)
+            .unwrap();
         for since in [0.1, 0.4, 0.7, 0.75, 0.9, 1.2] {
             let y = 2.0 * PI * (since - 2.5 * t) / (3.0_f64.sqrt() * t);
             let published = (y * y * y - 3.0 * y) * (-0.5 * y * y).exp() / b;
@@ -445,7 +461,15 @@ mod tests {
 
     #[test]
     fn velocities_left_by_the_pulses_are_the_closed_forms() {
-        let velocity = |pulse| final_velocity(&GroundMotion::pulse(pulse, 2.0, 0.3, 0.1).unwrap());
+        let velocity = |pulse: Pulse| {
+            final_velocity(
+                &pulse
+                    .lasting_s(0.3)
+                    .starting_at_s(0.1)
+                    .horizontal_m_s2(2.0)
+                    .unwrap(),
+            )
+        };
         assert!((velocity(Pulse::Rectangular) - 0.6).abs() < 1e-12);
         assert!(velocity(Pulse::StepPair).abs() < 1e-12);
         assert!((velocity(Pulse::HalfSine) - 1.2 / PI).abs() < 1e-12);
@@ -463,8 +487,12 @@ mod tests {
 
     #[test]
     fn pulses_reach_their_amplitude_where_they_say() {
-        let peak = |pulse, at: f64| {
-            let ground = GroundMotion::pulse(pulse, 2.0, 0.3, 0.1).unwrap();
+        let peak = |pulse: Pulse, at: f64| {
+            let ground = pulse
+                .lasting_s(0.3)
+                .starting_at_s(0.1)
+                .horizontal_m_s2(2.0)
+                .unwrap();
             let inside = |p: &&Piece| p.start_s <= 0.1 + at && 0.1 + at < p.end_s;
             ground
                 .pieces()
@@ -480,7 +508,11 @@ mod tests {
         assert!((peak(Pulse::Ricker, 0.6) - 2.0).abs() < 1e-12);
         assert!((peak(Pulse::StepPair, 0.5) + 1.0).abs() < 1e-12);
         // A tiny pulse keeps its piece, however long the time before it.
-        let short = GroundMotion::pulse(Pulse::Rectangular, 2.0, 1e-12, 100.0).unwrap();
+        let short = Pulse::Rectangular
+            .lasting_s(1e-12)
+            .starting_at_s(100.0)
+            .horizontal_m_s2(2.0)
+            .unwrap();
         assert_eq!(short.pieces().len(), 3);
     }
 }

@@ -170,7 +170,7 @@ impl<'a> FeetApart<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::ground::{Pulse, PulseShape, WaveTrain};
+    use crate::dynamics::ground::{Pulse, WaveTrain};
 
     /// Simpson's rule on fine parts that respect the corners errs by the fourth power of their length, below
     /// 1e-11.
@@ -180,8 +180,11 @@ mod tests {
         for pulse in Pulse::ALL {
             for (cycles, phase_rad) in [(2.0, 0.0), (1.7, 0.4), (3.5, -2.0)] {
                 let train = WaveTrain { cycles, phase_rad };
-                let ground = PulseShape::new(*pulse, 0.3, 0.1, train)
-                    .and_then(|shape| shape.motion(amplitude))
+                let ground = pulse
+                    .lasting_s(0.3)
+                    .starting_at_s(0.1)
+                    .with_train(train)
+                    .inclined_m_s2(amplitude)
                     .unwrap();
                 let exact = GroundVelocity::new(&ground);
                 let (mut velocity, n) = (Vector2::zeros(), 400);
@@ -204,12 +207,16 @@ mod tests {
     /// frequency `w`, `a/w (t - sin(w t)/w)`.
     #[test]
     fn the_ground_is_where_its_velocity_brings_it() {
-        let ground = GroundMotion::pulse(Pulse::Rectangular, 2.0, 0.3, 0.1).unwrap();
+        let ground = Pulse::Rectangular
+            .lasting_s(0.3)
+            .starting_at_s(0.1)
+            .horizontal_m_s2(2.0)
+            .unwrap();
         let at_m = GroundVelocity::new(&ground).displacements_m(&[0.0, 0.1, 0.25, 1.0]);
         for (at_m, due_m) in at_m.iter().zip([0.0, 0.0, 0.0225, 0.09 + 0.6 * 0.6]) {
             assert!((at_m.x - due_m).abs() < 1e-14, "{at_m} {due_m}");
         }
-        let ground = GroundMotion::pulse(Pulse::OneSine, 3.0, 0.8, 0.0).unwrap();
+        let ground = Pulse::OneSine.lasting_s(0.8).horizontal_m_s2(3.0).unwrap();
         let times_s: Vec<f64> = (0..=160).map(|i| 0.005 * f64::from(i)).collect();
         let at_m = GroundVelocity::new(&ground).displacements_m(&times_s);
         let frequency = std::f64::consts::TAU / 0.8;
