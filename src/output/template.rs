@@ -64,6 +64,12 @@ pub(crate) mod filters {
         Ok(forces.collect::<Vec<_>>().join(", "))
     }
 
+    /// Padded with blanks on the right to a column of this width.
+    #[filter_fn]
+    pub fn left(text: impl Display, _: &dyn Values, width: usize) -> Result<String> {
+        Ok(format!("{:<width$}", text.to_string()))
+    }
+
     /// Padded with blanks on the left, so that it ends at the right of a column of this width.
     #[filter_fn]
     pub fn right(text: impl Display, _: &dyn Values, width: usize) -> Result<String> {

@@ -141,7 +141,7 @@ pub const SPREAD: StudyKind = StudyKind {
     files: &spread::FILES,
     run: |scenario, options, look, _| {
         let found = spread::spread(scenario, &options.ways).map_err(StudyError::scenario)?;
-        Ok(whole(spread::tell(scenario, &found, look.figure)?))
+        Ok(whole(spread::report(scenario, &found, look.figure)?))
     },
 };
 /// The check of the first mechanism by the Circolare 7/2019.

@@ -774,7 +774,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
         "{counts:?}"
     );
     let last = found.paths.iter().map(|path| path.stages.last().unwrap());
-    let due: usize = last.clone().map(|stage| stage.hinges().len()).sum();
+    let due: usize = last.clone().map(|stage| stage.hinges.len()).sum();
     assert_eq!(named(&picture, "hinge").len(), due);
     let ties = named(&picture, "tie");
     let blocks = named(&picture, "block 1");
@@ -1300,10 +1300,42 @@ fn pins_may_change_sides() {
     assert_eq!(path.stages.len(), 21);
     for stage in &path.stages {
         assert_eq!(stage.not_found, []);
-        for (first_g, capacity_g) in stage.first_motion_g.iter().zip(stage.capacity_g) {
-            assert!(first_g.unwrap() <= capacity_g.unwrap());
+        for (sway, first_g) in stage.first_motion_g.iter() {
+            assert!(first_g.unwrap() <= stage.capacity_g.to(sway).unwrap());
         }
     }
+}
+
+/// A flat arch on springings that part snaps through where its three hinges lie on one line. There its forces grow beyond all bounds: thrust and
+/// pushes are left out with the reason, and the stage before has a large thrust.
+#[test]
+fn a_thrust_beyond_all_bounds_is_left_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.1\nembrace_deg = 40\nvoussoirs = 12\n[free_hinges]\n";
+    std::fs::write(folder.path().join("flat.toml"), text).unwrap();
+    let words = printed(folder.path(), &["spread", "flat.toml", "--angle", "0"]);
+    let told = json(&folder.path().join("results/flat/spread.json"));
+    let path = &told["paths"][0];
+    let [before, last] = [19, 20].map(|stage: usize| &path["stages"][stage]);
+    assert_eq!(path["falls_at_m"], last["movement_m"]);
+    assert!((1.0..100.0).contains(&before["thrust_ratio"].as_f64().unwrap()));
+    assert_eq!(before["not_found"], serde_json::json!([]));
+    for force in ["thrust_n", "thrust_ratio", "right_support_force_n"] {
+        assert!(last[force].is_null(), "{force}");
+    }
+    assert!(last["friction_demand"].as_f64().unwrap() < 1.0);
+    let reasons = last["not_found"].as_array().unwrap();
+    assert_eq!(reasons.len(), 2);
+    for (reason, side) in reasons.iter().zip(["right", "left"]) {
+        assert_eq!(
+            (&reason["push"], &reason["side"]),
+            (&"first motion".into(), &side.into())
+        );
+        assert!(last["first_motion_g"][side].is_null() && last["capacity_g"][side].is_null());
+        assert!(words.contains(reason["reason"].as_str().unwrap()));
+    }
+    let table = Table::read(folder.path().join("results/flat/spread.csv"));
+    assert_eq!(table.rows[20]["thrust_n"], "");
 }
 
 /// Under a push of several g this flat arch leaves one springing and leans on the other, which is not followed: that capacity is left out with its

@@ -22,7 +22,7 @@ use thiserror::Error;
 
 use self::descent::Descent;
 pub use self::held::{Held, HeldError};
-pub use self::pins::{Hinge, Pins, State};
+pub use self::pins::{Pin, Pins, State};
 use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
@@ -140,16 +140,20 @@ pub struct Condition {
 }
 
 /// Hinges that gave way.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Snap {
-    /// Where along the way.
+    /// Where along the way, in metres if supports move.
+    #[serde(rename = "at_m")]
     pub at: f64,
-    /// The hinges before; none where the row was undeformed.
-    pub before: Option<Vec<Hinge>>,
-    /// The hinges after; none where it fell.
-    pub after: Option<Vec<Hinge>>,
+    /// The hinges before; `None` where the row was undeformed.
+    #[serde(rename = "hinges_before")]
+    pub before: Option<Vec<Pin>>,
+    /// The hinges after; `None` where it fell.
+    #[serde(rename = "hinges_after")]
+    pub after: Option<Vec<Pin>>,
     /// Causes, if the row had hinges: joints whose line of thrust reached an edge, or that shut.
-    pub causes: Vec<Hinge>,
+    #[serde(rename = "by")]
+    pub causes: Vec<Pin>,
 }
 
 /// How far a row followed.

@@ -6,8 +6,8 @@ use thiserror::Error;
 
 use self::report::open_joints;
 pub use self::report::{
-    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, RestingHinge,
-    Summary, TieLimits, Ties, YieldingJoint, YieldingTies,
+    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, Summary, TieLimits,
+    Ties, YieldingJoint, YieldingTies,
 };
 use super::results::Answer;
 use crate::dynamics::row::error::RowModelError;
@@ -187,15 +187,8 @@ fn of_moved_row(
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
-    let hinges = follower
-        .hinges()
-        .map_or(&[][..], |pins| &pins.hinges)
-        .iter();
-    let resting = |hinge: &crate::mechanics::settling::Hinge| RestingHinge {
-        joint: hinge.joint,
-        edge: hinge.edge,
-    };
-    summary.hinges = Some(hinges.map(resting).collect());
+    let hinges = follower.hinges().map(|pins| pins.hinges.clone());
+    summary.hinges = Some(hinges.unwrap_or_default());
     if !row.ties().is_empty() {
         summary.tie_places = scenario.structure().tie_places();
         summary.ties = Some(Ties {

@@ -11,6 +11,7 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::settling::Pin;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
@@ -46,7 +47,7 @@ pub struct Summary {
     pub capacity_not_found: Option<Sides<Option<String>>>,
     /// Hinges on which a structure on moved springings stands.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hinges: Option<Vec<RestingHinge>>,
+    pub hinges: Option<Vec<Pin>>,
     /// Present for a structure with ties.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ties: Option<Ties>,
@@ -84,15 +85,6 @@ pub enum OpenHinge {
         /// Position of that edge in metres.
         y_m: f64,
     },
-}
-
-/// A hinge on which a structure stands whose springings have moved.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct RestingHinge {
-    /// The joint, from 0 at the left springing.
-    pub joint: usize,
-    /// The edge at which it is closed.
-    pub edge: Edge,
 }
 
 /// Forces of ties, and the pushes that they change.

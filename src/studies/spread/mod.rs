@@ -1,27 +1,37 @@
 //! How far a springing may move until the arch falls, and what push it bears on the way: see [`crate::mechanics::settling`].
 
 mod picture;
-mod told;
+mod report;
 
+use askama::Template;
+use nalgebra::Vector2;
 use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };
+use serde::Serialize;
+use serde_json::Value;
 use thiserror::Error;
 
-pub use self::told::{FILES, tell};
+pub use self::report::{FILES, report};
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::settling::{
-    Follower, Hinge, Movement, Movements, Reached, SettlingError, Snap, State,
+    Follower, Movement, Movements, Pin, Reached, SettlingError, Snap, State,
 };
+use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
+use crate::output::template::filters;
 use crate::scenario::Scenario;
 
-/// Equal parts of a way at which its states are told.
+/// Number of equal parts of a way, with a stage at the end of each.
 const STEPS: u32 = 20;
-/// Both sides, right first.
-const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
+/// Stages that words show.
+const PARTS: [usize; 5] = [0, 5, 10, 15, 20];
+/// A thrust of more times the weight is without meaning.
+const LARGEST_THRUST: f64 = 1e5;
+/// Why a stage with such a thrust has no pushes.
+const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows beyond all bounds";
 /// No way is longer than so many clear spans.
 const LONGEST: f64 = 1.0;
 
@@ -35,10 +45,10 @@ named! {
     }
 }
 
-/// In which direction a springing moves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Direction in which a springing moves.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Way {
-    /// Which one moves; the other stands still.
+    /// The springing that moves; the other stands still.
     pub springing: Springing,
     /// From outwards (0) over down (90) to inwards (180); up is -90.
     pub angle_deg: f64,
@@ -60,7 +70,7 @@ impl Way {
         }
     }
 
-    /// So far along it, in metres.
+    /// The movements of both springings after this distance along it, in metres.
     #[must_use]
     pub fn movements(&self, movement_m: f64) -> Movements {
         // Quarters of a turn have no rounding.
@@ -93,23 +103,46 @@ impl Way {
 }
 
 /// The arch when a springing has moved so far.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stage {
-    /// By how much it has moved, in metres.
+    /// Movement of the springing, in metres.
     pub movement_m: f64,
-    /// Hinges and forces; `None` where nothing has moved yet, and they are not determined.
-    pub state: Option<State>,
-    /// Where the blocks are.
-    pub poses: Vec<Pose>,
+    /// Hinges; none where nothing has moved yet.
+    pub hinges: Vec<OpenHinge>,
+    /// Horizontal force between springings and arch, in N. `None` where nothing has moved yet, so that it is not determined, and where
+    /// three hinges lie on one line, so that it grows beyond all bounds.
+    pub thrust_n: Option<f64>,
+    /// That force over the weight of the arch.
+    pub thrust_ratio: Option<f64>,
+    /// Force of the right support on the arch, in N.
+    pub right_support_force_n: Option<Vector2<f64>>,
+    /// Coefficient of friction below which a joint slides.
+    pub friction_demand: Option<f64>,
     /// By how much the crown is lower than undeformed, in metres.
     pub crown_drop_m: f64,
-    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way, to the right and to the left; `None` where none
-    /// does. With three hinges open it is small, and says nothing of safety.
-    pub first_motion_g: [Option<f64>; 2],
-    /// The horizontal ground acceleration that makes the arch fall, likewise.
-    pub capacity_g: [Option<f64>; 2],
+    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way; `None` where none does. With three hinges open
+    /// it is small, and says nothing of safety.
+    pub first_motion_g: Sides<Option<f64>>,
+    /// The horizontal ground acceleration that makes the arch fall, in units of gravity.
+    pub capacity_g: Sides<Option<f64>>,
     /// Pushes that are `None` because they were not found.
     pub not_found: Vec<NotFound>,
+    /// Forces and rotations.
+    #[serde(skip)]
+    pub state: Option<State>,
+    /// Positions of the blocks.
+    #[serde(skip)]
+    pub poses: Vec<Pose>,
+}
+
+/// An open hinge.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OpenHinge {
+    /// Its place.
+    #[serde(flatten)]
+    pub hinge: Pin,
+    /// Rotation of the part on its right against that on its left, anticlockwise, in radians.
+    pub rotation_rad: f64,
 }
 
 named! {
@@ -123,40 +156,55 @@ named! {
 }
 
 /// A push that was not found.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NotFound {
     /// Which push.
     pub push: Push,
-    /// To which side.
+    /// Its direction.
+    #[serde(rename = "side")]
     pub sway: Sway,
-    /// Why.
-    pub reason: SettlingError,
+    /// The reason.
+    pub reason: String,
 }
 
-/// What an arch does while a springing moves one way.
-#[derive(Clone, Debug, PartialEq)]
+/// The arch while a springing moves one way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Path {
     /// The way.
+    #[serde(flatten)]
     pub way: Way,
-    /// The arch at equal parts of it.
-    pub stages: Vec<Stage>,
-    /// Where hinges gave way to others, in metres; the last one may be its fall.
-    pub snaps: Vec<Snap>,
-    /// Where it falls, in metres; `None`: not within the clear span, or not known.
+    /// Movement at which the arch falls, in metres; `None`: not within the clear span, or not known.
     pub falls_at_m: Option<f64>,
+    /// That movement over the clear span.
+    pub falls_at_part_of_clear_span: Option<f64>,
+    /// Joints whose line of thrust reaches an edge at the fall, or that shut.
+    pub falls_by: Vec<Pin>,
     /// Why it was not followed beyond its last stage, if it neither fell nor came to the end of its way.
-    pub lost: Option<SettlingError>,
+    pub lost: Option<String>,
+    /// Where hinges gave way to others; the last one may be its fall.
+    pub snaps: Vec<Snap>,
+    /// The arch at equal parts of the way.
+    pub stages: Vec<Stage>,
 }
 
 /// An arch on springings that move.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SpreadPaths {
-    /// Its blocks.
-    pub row: Row,
+#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[template(path = "studies/spread/words.txt")]
+pub struct Summary {
     /// Distance of the springings at the intrados, in metres.
     pub clear_span_m: f64,
+    /// Weight of the arch, in N.
+    pub weight_n: f64,
     /// One for every way.
     pub paths: Vec<Path>,
+    /// The scenario with all defaults.
+    pub scenario: Value,
+    /// The blocks of the arch.
+    #[serde(skip)]
+    pub row: Row,
+    /// The coefficient of friction of the scenario, if its joints may slip.
+    #[serde(skip)]
+    pub friction_coefficient: Option<f64>,
 }
 
 /// Why there are no such paths.
@@ -174,24 +222,34 @@ pub enum NoSpread {
 ///
 /// # Errors
 /// When it is no row of blocks between two supports, or does not stand. Ways on which it is lost end there.
-pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<SpreadPaths, NoSpread> {
+pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     let row = scenario.structure().row()?;
+    let weight_n = row.mass_kg() * scenario.gravity_m_s2();
     let joints = row.joints();
     let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
     let clear_span_m = across.norm();
     let settled = scenario.motion().supports().unwrap_or_default();
-    let longest_m = LONGEST * clear_span_m;
+    let sizes = [clear_span_m, weight_n];
     let paths = ways.par_iter().with_max_len(1);
-    let paths = paths.map(|way| path(&row, settled, *way, longest_m));
-    Ok(SpreadPaths {
+    let paths = paths.map(|way| path(&row, settled, *way, sizes));
+    Ok(Summary {
         paths: paths.collect::<Result<_, _>>()?,
         clear_span_m,
+        weight_n,
+        scenario: scenario.to_json(),
+        friction_coefficient: scenario.motion().friction_coefficient(),
         row: row.clone(),
     })
 }
 
 /// First how far it goes, then the stages on the way there.
-fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path, SettlingError> {
+fn path(
+    row: &Row,
+    settled: Movements,
+    way: Way,
+    [clear_span_m, weight_n]: [f64; 2],
+) -> Result<Path, SettlingError> {
+    let longest_m = LONGEST * clear_span_m;
     let movements = |movement_m: f64| settled + way.movements(movement_m);
     let mut start = Follower::new(row)?;
     // That it stands there was seen when the scenario was read.
@@ -228,70 +286,72 @@ fn path(row: &Row, settled: Movements, way: Way, longest_m: f64) -> Result<Path,
     }
     // The pushes of one place do not depend on those of another.
     let stages = places.par_iter().with_max_len(1);
-    let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m));
+    let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m, weight_n));
+    let snaps = scout.snaps[before..].to_vec();
+    let fall = falls_at_m.and(snaps.last());
     Ok(Path {
         way,
-        stages: stages.collect(),
-        snaps: scout.snaps[before..].to_vec(),
         falls_at_m,
-        lost,
+        falls_at_part_of_clear_span: falls_at_m.map(|at_m| at_m / clear_span_m),
+        falls_by: fall.map_or_else(Vec::new, |fall| fall.causes.clone()),
+        lost: lost.map(|error| error.to_string()),
+        snaps,
+        stages: stages.collect(),
     })
 }
 
-fn stage(follower: &Follower<'_>, movement_m: f64) -> Stage {
-    let row = follower.row;
-    let (place, crown_m) = row.crown();
-    let block = place as usize;
+fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
+    let (place, crown_m) = follower.row.crown();
     let poses = &follower.placement().poses;
+    let state = follower.state();
+    let reaction = state.as_ref().map(|state| state.right_reaction.linear);
+    // A larger force is one over the height of three hinges on one line, which is rounding.
+    let is_aligned = reaction.is_some_and(|force| force.x.abs() > LARGEST_THRUST);
+    let reaction = reaction.filter(|_| !is_aligned);
     let mut not_found = Vec::new();
-    let mut found = |push, sway, result: Result<Option<f64>, SettlingError>| {
+    let mut found = |push, sway, result: Result<Option<f64>, String>| {
         result.unwrap_or_else(|reason| {
             not_found.push(NotFound { push, sway, reason });
             None
         })
     };
-    let pushes = SIDES.map(|sway| {
-        let first_g = follower.first_motion_g(sway).map_err(SettlingError::from);
-        let first_g = found(Push::FirstMotion, sway, first_g);
-        let capacity_g = match first_g {
-            Some(first_g) => found(Push::Capacity, sway, follower.capacity_g(sway, first_g)),
-            None => None,
+    let pushes = Sides::of(|sway| {
+        let first_g = if is_aligned {
+            Err(ALIGNED.to_owned())
+        } else {
+            let first_g = follower.first_motion_g(sway).map_err(SettlingError::from);
+            first_g.map_err(|error| error.to_string())
         };
-        [first_g, capacity_g]
+        let first_g = found(Push::FirstMotion, sway, first_g)?;
+        let capacity_g = follower.capacity_g(sway, first_g);
+        let capacity_g = capacity_g.map_err(|error| error.to_string());
+        Some((first_g, found(Push::Capacity, sway, capacity_g)))
     });
+    let open = |state: &State| {
+        let hinges = state.hinges.iter().zip(&state.turns_rad);
+        let open = hinges.map(|(hinge, rotation_rad)| OpenHinge {
+            hinge: *hinge,
+            rotation_rad: *rotation_rad,
+        });
+        open.collect()
+    };
     Stage {
         movement_m,
-        state: follower.state(),
-        poses: poses.to_vec(),
-        crown_drop_m: (crown_m - poses[block].of(crown_m)).y,
-        first_motion_g: pushes.map(|[first_g, _]| first_g),
-        capacity_g: pushes.map(|[_, capacity_g]| capacity_g),
+        hinges: state.as_ref().map_or_else(Vec::new, open),
+        thrust_n: reaction.map(|force| force.x.abs() * weight_n),
+        thrust_ratio: reaction.map(|force| force.x.abs()),
+        right_support_force_n: reaction.map(|force| force * weight_n),
+        friction_demand: state.as_ref().map(|state| state.friction),
+        crown_drop_m: (crown_m - poses[place as usize].of(crown_m)).y,
+        first_motion_g: pushes.map(|pushes| pushes.map(|(first_g, _)| first_g)),
+        capacity_g: pushes.map(|pushes| pushes.and_then(|(_, capacity_g)| capacity_g)),
         not_found,
+        state,
+        poses: poses.clone(),
     }
 }
 
 impl Stage {
-    /// Horizontal force between springings and arch, over its weight; `None` where it is not determined.
-    #[must_use]
-    pub fn thrust_ratio(&self) -> Option<f64> {
-        let state = self.state.as_ref()?;
-        Some(state.right_reaction.linear.x.abs())
-    }
-
-    /// The hinges, none where nothing has moved.
-    #[must_use]
-    pub fn hinges(&self) -> &[Hinge] {
-        self.state.as_ref().map_or(&[], |state| &state.hinges)
-    }
-
-    /// A push to the right and to the left.
-    fn sides(&self, push: Push) -> [Option<f64>; 2] {
-        match push {
-            Push::FirstMotion => self.first_motion_g,
-            Push::Capacity => self.capacity_g,
-        }
-    }
-
     /// The lesser of a push to the right and one to the left; `None` where none moves the arch, or one of them was not found.
     fn least(&self, push: Push) -> Option<f64> {
         // Without its first motion a capacity is not sought.
@@ -299,6 +359,51 @@ impl Stage {
         if missing.any(|missing| missing.push == push || missing.push == Push::FirstMotion) {
             return None;
         }
-        self.sides(push).into_iter().flatten().reduce(f64::min)
+        let sides = match push {
+            Push::FirstMotion => self.first_motion_g,
+            Push::Capacity => self.capacity_g,
+        };
+        <[_; 2]>::from(sides).into_iter().flatten().reduce(f64::min)
+    }
+
+    /// The hinges by their joints and the letters of their edges.
+    fn hinges_in_letters(&self) -> String {
+        let letters = self.hinges.iter().map(|OpenHinge { hinge, .. }| {
+            let edge = &hinge.edge.name()[..1];
+            format!("{}{edge}", hinge.joint)
+        });
+        letters.collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Path {
+    /// The stages that words show.
+    fn shown(&self) -> impl Iterator<Item = &Stage> {
+        let last = self.stages.len() - 1;
+        PARTS.iter().map(move |part| &self.stages[*part.min(&last)])
+    }
+
+    /// Each push that was not found at some stages, with their number and the movement at the first of them.
+    fn missing(&self) -> Vec<(usize, f64, &NotFound)> {
+        let mut missing: Vec<(usize, f64, &NotFound)> = Vec::new();
+        for stage in &self.stages {
+            for one in &stage.not_found {
+                let known = |(.., known): &&mut (_, _, &NotFound)| {
+                    (known.push, known.sway) == (one.push, one.sway)
+                };
+                match missing.iter_mut().find(known) {
+                    Some((count, ..)) => *count += 1,
+                    None => missing.push((1, stage.movement_m, one)),
+                }
+            }
+        }
+        missing.sort_by_key(|(.., one)| (one.push as u8, one.sway as u8));
+        missing
+    }
+
+    /// The coefficient of friction that this way needs.
+    fn friction_demand(&self) -> f64 {
+        let demands = self.stages.iter().filter_map(|stage| stage.friction_demand);
+        demands.fold(0.0, f64::max)
     }
 }

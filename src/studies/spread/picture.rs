@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Path, Push, SpreadPaths, Stage};
+use super::{Path, Push, Stage, Summary};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 use crate::output::Figure;
@@ -19,7 +19,7 @@ const LEAST_PX: f64 = 180.0;
 const FIRST_MOTION_PX: f64 = 1.0;
 
 /// The picture.
-pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Scene) -> String {
+pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene) -> String {
     let mut sheet = Sheet::new(figure, title);
     pushes(figure, spread).add_to(&mut sheet);
     sheet.gap(10.0);
@@ -54,7 +54,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &SpreadPaths, scene: &Sc
 }
 
 /// Capacity and first motion against the movement, to the weaker side.
-fn pushes(figure: Figure, spread: &SpreadPaths) -> Chart {
+fn pushes(figure: Figure, spread: &Summary) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {

@@ -10,7 +10,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use thiserror::Error;
 
 use super::pins::{Pins, Pulls, side, two_bodies};
-use super::{Condition, Hinge};
+use super::{Condition, Pin};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::capacity::{CapacityError, Displaced, GivesWay};
@@ -108,7 +108,7 @@ impl<'a> Held<'a> {
 
     /// Its hinges.
     #[must_use]
-    pub fn hinges(&self) -> &[Hinge] {
+    pub fn hinges(&self) -> &[Pin] {
         &self.pins.hinges
     }
 
@@ -250,12 +250,12 @@ impl<'a> Held<'a> {
 
 /// The hinges that a push opens, if these are a mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
-    let hinges: Vec<Hinge> = onset
+    let hinges: Vec<Pin> = onset
         .openings
         .iter()
         .filter_map(|opening| {
             let (joint, edge) = (opening.joint, opening.hinge?);
-            Some(Hinge { joint, edge })
+            Some(Pin { joint, edge })
         })
         .collect();
     let due = match row.supports() {

@@ -4,6 +4,7 @@
 //! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
+use serde::Serialize;
 
 use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
@@ -29,11 +30,11 @@ const STIFFER: f64 = 1e6;
 const ENDS: [f64; 2] = [-1.0, 1.0];
 
 /// A joint that turns about one of its corners.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hinge {
-    /// Which joint, from 0 on the left support.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Pin {
+    /// The joint, from 0 on the left support.
     pub joint: usize,
-    /// About which corner.
+    /// The edge at which it is closed.
     pub edge: Edge,
 }
 
@@ -41,7 +42,7 @@ pub struct Hinge {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pins {
     /// The hinges.
-    pub hinges: Vec<Hinge>,
+    pub hinges: Vec<Pin>,
     /// Corners of the hinges in the undeformed row, in metres.
     pub(super) pins_m: Vec<Vector2<f64>>,
 }
@@ -53,7 +54,7 @@ pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// The hinges.
-    pub hinges: Vec<Hinge>,
+    pub hinges: Vec<Pin>,
     /// Of the part right of each hinge against the part left of it, anticlockwise.
     pub turns_rad: Vec<f64>,
     /// By how much each hinge is open, in radians; below zero it would have to penetrate.
@@ -88,10 +89,10 @@ impl State {
 
     /// Where it has less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
     #[must_use]
-    pub fn beyond(&self, margin: f64) -> Vec<Hinge> {
+    pub fn beyond(&self, margin: f64) -> Vec<Pin> {
         let pull = self.pressing().filter(|(_, force)| *force < margin);
         // Where one corner would pull the thrust line is at the other.
-        let pull = pull.map(|(hinge, _)| Hinge {
+        let pull = pull.map(|(hinge, _)| Pin {
             edge: hinge.edge.opposite(),
             ..hinge
         });
@@ -101,7 +102,7 @@ impl State {
     }
 
     /// All forces that must press.
-    fn pressing(&self) -> impl Iterator<Item = (Hinge, f64)> + '_ {
+    fn pressing(&self) -> impl Iterator<Item = (Pin, f64)> + '_ {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
             let hinge = self.hinges.iter().find(|hinge| hinge.joint == joint);
@@ -110,7 +111,7 @@ impl State {
                 .zip(*forces)
                 .filter_map(move |(&edge, force)| {
                     let there = hinge.is_none_or(|hinge| hinge.edge == edge);
-                    there.then_some((Hinge { joint, edge }, force))
+                    there.then_some((Pin { joint, edge }, force))
                 })
         })
     }
@@ -119,7 +120,7 @@ impl State {
 impl Pins {
     /// These hinges of a row, three or more from left to right.
     #[must_use]
-    pub fn new(row: &Row, hinges: Vec<Hinge>) -> Self {
+    pub fn new(row: &Row, hinges: Vec<Pin>) -> Self {
         let pins = hinges.iter();
         Self {
             pins_m: pins
@@ -140,16 +141,16 @@ impl Pins {
                 [_, 0.0] => Edge::Extrados,
                 _ => return None,
             };
-            hinges.push(Hinge { joint, edge });
+            hinges.push(Pin { joint, edge });
         }
         (hinges.len() >= 3).then(|| Self::new(row, hinges))
     }
 
     /// These hinges with others exchanged: those already present leave, new ones are added; `None` if that leaves less than three, or a joint would open at
     /// both edges.
-    pub(super) fn exchanged(&self, row: &Row, others: &[Hinge]) -> Option<Self> {
-        let stays = |hinge: &&Hinge| !others.contains(hinge);
-        let mut hinges: Vec<Hinge> = self.hinges.iter().filter(stays).copied().collect();
+    pub(super) fn exchanged(&self, row: &Row, others: &[Pin]) -> Option<Self> {
+        let stays = |hinge: &&Pin| !others.contains(hinge);
+        let mut hinges: Vec<Pin> = self.hinges.iter().filter(stays).copied().collect();
         let new = others.iter().filter(|hinge| !self.hinges.contains(hinge));
         hinges.extend(new);
         hinges.sort_by_key(|hinge| hinge.joint);
@@ -720,7 +721,7 @@ mod tests {
         ];
         let row = row.with_ties(ties, 9.81).unwrap();
         let hinges = Edge::ALL.iter().copied().cycle().zip([0, 2, 4, 6, 8]);
-        let hinges = hinges.map(|(edge, joint)| Hinge { joint, edge });
+        let hinges = hinges.map(|(edge, joint)| Pin { joint, edge });
         let pins = Pins::new(&row, hinges.collect());
         let condition = Condition {
             supports: [Pose::UNDEFORMED; 2],

@@ -1,0 +1,83 @@
+//! The report of springings that move: a table, a picture, and the summary in JSON and words.
+
+use super::picture::draw;
+use super::{Path, Stage, Summary};
+use crate::mechanics::sides::Sides;
+use crate::output::scene::Scene;
+use crate::output::summary::summary_of;
+use crate::output::table::{Cell, column, csv, several};
+use crate::output::template::render;
+use crate::output::{Figure, OutputError, pretty};
+use crate::scenario::Scenario;
+use crate::studies::results::Results;
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["spread.svg", "spread.csv", "spread.json"];
+
+/// Files, words and JSON for all ways.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn report(
+    scenario: &Scenario,
+    spread: &Summary,
+    figure: Figure,
+) -> Result<Results, OutputError> {
+    let scene = Scene::of_row(&spread.row).of_structure(scenario.structure());
+    let title = scenario.title().unwrap_or("Springings that move");
+    let json = summary_of(spread)?;
+    let contents = [
+        draw(figure, title, spread, &scene).into_bytes(),
+        table(spread)?,
+        pretty(&json).into_bytes(),
+    ];
+    Ok(Results {
+        files: FILES.into_iter().zip(contents).collect(),
+        words: render(spread),
+        summary: json,
+        ..Results::default()
+    })
+}
+
+/// A row for each stage of every way.
+fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
+    type Row<'a> = (&'a Path, &'a Stage);
+    let paths = spread.paths.iter();
+    let rows: Vec<Row<'_>> = paths
+        .flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
+        .collect();
+    // Ties may hold it on more.
+    let most = rows
+        .iter()
+        .map(|row| row.1.hinges.len())
+        .fold(3, usize::max);
+    let hinges = (1..=most).flat_map(|hinge| {
+        ["joint", "edge", "rotation_rad"].map(|what| format!("hinge_{hinge}_{what}"))
+    });
+    let sides = |name: &str, pushes: fn(&Stage) -> &Sides<Option<f64>>| {
+        let names = ["right", "left"].map(|side| format!("{name}_{side}_g"));
+        several(names, move |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
+            cells.extend(<[_; 2]>::from(*pushes(row.1)).map(Cell::from));
+        })
+    };
+    let columns = [
+        column("springing", |row: &Row<'_>| row.0.way.springing.name()),
+        column("angle_deg", |row: &Row<'_>| row.0.way.angle_deg),
+        column("movement_m", |row: &Row<'_>| row.1.movement_m),
+        several(hinges, move |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
+            for index in 0..most {
+                let open = row.1.hinges.get(index);
+                cells.push(open.map(|open| open.hinge.joint).into());
+                cells.push(open.map(|open| open.hinge.edge.name()).into());
+                cells.push(open.map(|open| open.rotation_rad).into());
+            }
+        }),
+        column("thrust_n", |row: &Row<'_>| row.1.thrust_n),
+        column("thrust_ratio", |row: &Row<'_>| row.1.thrust_ratio),
+        column("friction_demand", |row: &Row<'_>| row.1.friction_demand),
+        column("crown_drop_m", |row: &Row<'_>| row.1.crown_drop_m),
+        sides("first_motion", |stage| &stage.first_motion_g),
+        sides("capacity", |stage| &stage.capacity_g),
+    ];
+    csv(columns, &rows)
+}
