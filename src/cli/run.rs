@@ -218,58 +218,108 @@ impl Job {
             look: Look::of(arguments.figure.get()?),
             quiet,
         };
-        let mut pending = Pending::default();
-        let is_part = session.is_part(&self.scenarios)?;
-        let mut results = if is_part {
-            Results::default()
-        } else {
-            self.run_itself(arguments, quiet)?
-        };
-        if let Some(place) = &self.place.results {
-            self.run_samples(session, place, &mut pending, &mut results)?;
-            if !is_part {
-                pending.publish(place)?;
+        let (scenarios, mut pending) = (&self.scenarios, Pending::default());
+        if session.is_part(scenarios)? {
+            if let Some(place) = &self.place.results {
+                self.run_samples(session, place, &mut pending, &mut Results::default())?;
             }
+            return Ok(Results::default());
         }
-        if !is_part {
-            let mut heading = heading(&self.scenarios[0]);
-            if let Some(ignored) = self.scenarios.iter().find_map(Scenario::ignored) {
-                let _ = writeln!(heading, "  {ignored}");
+        let runs = self.prepared(arguments)?;
+        let several = runs.len() > 1;
+        let folder = if several {
+            self.place.open(&[OVERLAY])?
+        } else {
+            None
+        };
+        let mut own = Vec::new();
+        for (run, scenario) in runs.iter().zip(scenarios) {
+            own.push(if several {
+                let place = self.place.within(scenario.motion().hinges().name());
+                place.run(run, scenario, quiet)?
+            } else {
+                self.place.run(run, scenario, quiet)?
+            });
+        }
+        let mut results = Results {
+            summary: if several {
+                let summaries = own.iter().zip(scenarios);
+                let summaries = summaries.map(|(own, scenario)| {
+                    let name = scenario.motion().hinges().name();
+                    (name.to_owned(), own.summary.clone())
+                });
+                summaries.collect::<Map<_, _>>().into()
+            } else {
+                own[0].summary.clone()
+            },
+            ..Results::default()
+        };
+        let mut of_samples = Vec::new();
+        if let Some(place) = &self.place.results {
+            of_samples = self.run_samples(session, place, &mut pending, &mut results)?;
+        }
+        let heading = heading(&scenarios[0]);
+        results.words.insert_str(0, &heading);
+        if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
+            results
+                .words
+                .insert_str(heading.len(), &format!("  {ignored}\n"));
+        }
+        for (model, own) in runs.iter().zip(&mut own) {
+            let samples = of_samples.iter().find(|(name, _)| *name == model.name());
+            own.complete(samples.map_or("", |(_, samples)| &samples.words))?;
+        }
+        if several {
+            results.words += &compared(&own);
+            for (run, own) in runs.iter().zip(&own) {
+                let _ = write!(results.words, "{}\n{}", run.name(), own.words);
             }
-            results.words.insert_str(0, &heading);
+        } else {
+            results.words += &own[0].words;
+        }
+        if let Some(mut folder) = folder {
+            folder
+                .file(OVERLAY)
+                .write_all(overlay(&own).as_bytes())
+                .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+            let path = folder.path().join(OVERLAY);
+            folder.complete()?;
+            let all = if runs.len() > 2 { "all" } else { "both" };
+            let _ = writeln!(results.words, "{all} in {}", path.display());
+        }
+        if let Some(place) = &self.place.results {
+            pending.publish(place)?;
         }
         Ok(results)
     }
 
-    /// Runs the samples of `[uncertain]`, and adds their results and the comparison of several models, of which the words come first.
+    /// Runs the samples of `[uncertain]`, and adds their results and the comparison of several models. Returns the results of each model.
     fn run_samples(
         &self,
         session: Session<'_>,
         place: &Destination,
         pending: &mut Pending,
         results: &mut Results,
-    ) -> Result<(), Failure> {
+    ) -> Result<Vec<(&'static str, Results)>, Failure> {
         let (kind, options) = (catalogue::UNCERTAIN, Options::default());
-        let own = results.words.len();
         let models =
             session.add_samples(kind, &self.scenarios, &options, place, pending, results)?;
         let title = self.scenarios[0].title();
         if let Some(compared) = compare(title, &models, place, session.look.figure)? {
-            // After the words on samples, before those on the scenario itself.
-            let at = results.words.len() - own - ITSELF.len();
+            // After the words on samples, before the heading of those on the scenario itself.
+            let at = results.words.len() - ITSELF.len();
             results
                 .words
                 .insert_str(at, &format!("{}\n", compared.words));
             results.summary["peaks"] = compared.summary;
         }
-        Ok(())
+        Ok(models)
     }
 
-    /// Runs the scenario itself.
-    fn run_itself(&self, arguments: &Arguments, quiet: bool) -> Result<Results, Failure> {
-        let (scenarios, place) = (&self.scenarios, &self.place);
-        let several = scenarios.len() > 1;
-        if several && place.to_stdout {
+    /// The runs of all models. If one scenario cannot be run, none is.
+    fn prepared(&self, arguments: &Arguments) -> Result<Vec<Run<'_>>, Failure> {
+        let (scenarios, to_stdout) = (&self.scenarios, self.place.to_stdout);
+        if scenarios.len() > 1 && to_stdout {
             let message = "--rotations - is for one model: choose one by --hinges";
             return Err(Failure::Input(message.to_owned()));
         }
@@ -278,55 +328,14 @@ impl Job {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(Failure::Input(message.to_owned()));
         }
-        // If one scenario cannot be run, none is.
         let beside = scenarios.iter().map(|one| one.motion().hinges());
         let wanted = Wanted {
             beside: beside.collect(),
-            ..arguments.wanted(place.to_stdout)?
+            ..arguments.wanted(to_stdout)?
         };
         let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
-        let runs = runs.map_err(Failure::Input)?;
-        if several {
-            return self.run_all(&runs, quiet);
-        }
-        let RunResults { words, summary, .. } = place.run(&runs[0], &scenarios[0], quiet)?;
-        Ok(Results {
-            words,
-            summary,
-            ..Results::default()
-        })
-    }
-
-    /// Runs several models, each in a folder of its own, and draws them in one picture.
-    fn run_all(&self, runs: &[Run<'_>], quiet: bool) -> Result<Results, Failure> {
-        let folder = self.place.open(&[OVERLAY])?;
-        let (mut text, mut summaries) = (String::new(), Map::new());
-        let (mut curves, mut histories) = (Vec::new(), Vec::new());
-        for (run, scenario) in runs.iter().zip(&self.scenarios) {
-            let name = scenario.motion().hinges().name();
-            let told = self.place.within(name).run(run, scenario, quiet)?;
-            let _ = write!(text, "{}\n{}", run.name(), told.words);
-            summaries.insert(name.to_owned(), told.summary);
-            curves.push(told.curves);
-            histories.push((told.history, told.varied));
-        }
-        if let Some(mut folder) = folder {
-            let picture = overlay(runs, &curves);
-            folder
-                .file(OVERLAY)
-                .write_all(picture.as_bytes())
-                .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
-            let path = folder.path().join(OVERLAY);
-            folder.complete()?;
-            let all = if runs.len() > 2 { "all" } else { "both" };
-            let _ = writeln!(text, "{all} in {}", path.display());
-        }
-        Ok(Results {
-            words: compared(runs, &histories) + &text,
-            summary: summaries.into(),
-            ..Results::default()
-        })
+        runs.map_err(Failure::Input)
     }
 }
 
@@ -421,7 +430,12 @@ impl Place {
     }
 
     /// Runs a scenario and writes its results here.
-    fn run(&self, run: &Run<'_>, scenario: &Scenario, quiet: bool) -> Result<RunResults, Failure> {
+    fn run<'r>(
+        &self,
+        run: &'r Run<'r>,
+        scenario: &Scenario,
+        quiet: bool,
+    ) -> Result<RunResults<'r>, Failure> {
         if let (None, Some(option)) = (&self.results, self.of_files) {
             let message = format!("{option} writes a file: name a folder for it with --out");
             return Err(Failure::Input(message));
@@ -431,8 +445,8 @@ impl Place {
         let stdout = || -> Box<dyn io::Write> { Box::new(BufWriter::new(io::stdout().lock())) };
         let rotations = self.to_stdout.then(stdout);
         let progress = RunProgress::new(scenario.request().end_s, quiet);
-        let told = run.compute(folder, rotations, &mut |stage| progress.show(stage))?;
-        Ok(told)
+        let results = run.compute(folder, rotations, &mut |stage| progress.show(stage))?;
+        Ok(results)
     }
 }
 

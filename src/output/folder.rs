@@ -157,8 +157,9 @@ impl Batch {
                     .map_err(|error| failed(&path)(error.error))?;
             }
         }
-        // Subfolders are sealed before the folder around them, which was prepared before them.
-        for (path, file) in seals.into_iter().rev() {
+        // Subfolders are sealed before the folder around them.
+        seals.sort_by_key(|(path, _)| std::cmp::Reverse(path.components().count()));
+        for (path, file) in seals {
             file.persist(&path)
                 .map_err(|error| failed(&path)(error.error))?;
         }

@@ -180,7 +180,7 @@ impl Remarks {
             _ => format!("; all are in {file}"),
         };
         Some(format!(
-            "uncertain: with other steps, or with landings merged, they end otherwise; the first: {first}{listed}"
+            "uncertain: with other steps, or with landings merged, they end otherwise or differ before the largest rotation; the first: {first}{listed}"
         ))
     }
 }

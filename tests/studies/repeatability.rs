@@ -264,6 +264,29 @@ fn an_outcome_that_an_early_half_cycle_decides_is_uncertain() {
     assert!(!same.is_uncertain() && same.uncertain_slip().is_none() && same.has_slipped());
 }
 
+/// Without friction as well, a motion near overturning is uncertain where a half cycle before the largest rotation depends on the steps.
+#[test]
+fn an_early_half_cycle_decides_without_friction_too() {
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 12\n[free_hinges]\n\
+         [ground.windowed_sine]\ncycles = 6\namplitude_g = 1.3\nduration_s = 0.6\n[simulation]\nduration_s = 12.0";
+    let scenario = Scenario::parse(text, "s.toml").unwrap();
+    let (model, ground) = (scenario.model().unwrap(), scenario.ground_motion());
+    let request = scenario.request();
+    let own = model.simulate(ground, &request, None).unwrap();
+    let repeated = Repetitions::start(&*model, ground, &request).compare(&own);
+    let spread = repeated.unwrap();
+    let early = spread.early.unwrap();
+    assert!(spread.same_outcome() && spread.is_uncertain());
+    assert!((0.01..0.1).contains(&early.ratio), "{early:?}");
+    let largest = own
+        .half_cycles()
+        .into_iter()
+        .max_by(|one, other| one.peak_rad.total_cmp(&other.peak_rad));
+    assert!(early.peak_time_s < largest.unwrap().peak_time_s);
+    let cell = Ending::until_safe(&*model, &[(ground.clone(), request)]).remove(0);
+    assert!(cell.unwrap().uncertain.is_some());
+}
+
 /// Output times closer together than the longest step limit the steps. A repetition with other steps must still have other steps.
 #[test]
 fn repetitions_have_other_steps_however_close_output_times_are() {

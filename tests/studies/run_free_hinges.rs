@@ -3,6 +3,7 @@
 use crate::common::program;
 use crate::common::prose::{golden, shows, skeleton};
 use crate::common::results::{Table, json};
+use crate::common::{COLUMN, parsed};
 use std::fs;
 use std::path::PathBuf;
 
@@ -10,6 +11,7 @@ use crate::common::program::{archrock, stderr};
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::history::{Details, HalfCycle, Summary};
 use archrock::dynamics::repeatability::Repeatability;
+use archrock::studies::run;
 use archrock::{Column, Model as _, Pulse, Request};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -737,6 +739,20 @@ fn a_spread_knows_other_outcomes() {
     assert_eq!(other.same_until_half_cycle, 0);
     // They part in the first half cycle, which begins with the first step.
     assert!(other.parts_at_s.unwrap() < 1e-3);
+    // JSON has the side to which each overturns.
+    let left = pulse(-20.0);
+    let spread = Repeatability::new(
+        &falls,
+        &[("double steps", left), ("half steps", rests.clone())],
+    );
+    let scenario = parsed(&format!("{COLUMN}[free_hinges]\n"));
+    let summary = run::summary(&scenario, &model, &falls, Some(&Ok(spread))).unwrap();
+    let spread = &summary["repeatability"];
+    assert_eq!(spread["outcomes"]["double_steps"], "overturned");
+    let sides =
+        ["own", "double_steps", "half_steps"].map(|name| &spread["overturning_sways"][name]);
+    assert_eq!(sides[0], &summary["overturning_sway"]);
+    assert!(sides[1].is_string() && sides[1] != sides[0] && sides[2].is_null());
 }
 
 #[test]

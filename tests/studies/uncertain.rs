@@ -385,6 +385,32 @@ fn the_program_tells_what_follows() {
     );
 }
 
+/// The page of a run begins with the report on its samples, which are computed after its motion.
+#[test]
+fn the_page_of_a_run_begins_with_the_probability() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("s.toml"), uncertain_arch(16, 1)).unwrap();
+    let said = printed(at, &["run", "s.toml", "--out", "one"]);
+    let page = fs::read_to_string(at.join("one/report.html")).unwrap();
+    let first = said.lines().find(|line| line.contains("of [uncertain]"));
+    let probability = page.find(first.unwrap().trim().trim_end_matches(';'));
+    assert!(probability.unwrap() < page.find("id=\"outcome\"").unwrap());
+    printed(at, &["run", "s.toml", "--out", "none", "--no-uncertain"]);
+    let page = fs::read_to_string(at.join("none/report.html")).unwrap();
+    assert!(!page.contains("of [uncertain]"));
+    // Each model has its own.
+    let arguments = ["run", "s.toml", "--out", "two", "--hinges", "both"];
+    printed(
+        at,
+        &[&arguments[..], &["--set", "arch.voussoirs=7"]].concat(),
+    );
+    for name in ["four", "free"] {
+        let page = fs::read_to_string(at.join("two").join(name).join("report.html")).unwrap();
+        assert!(page.contains("of [uncertain]"), "{name}");
+    }
+}
+
 /// A map of a block whose width is uncertain: the share of each cell is that of the widths that overturn, by quadrature, to a sample or
 /// two of 64, since samples of one number are spread evenly; and the line of 50 % is where the block of the median width begins to overturn.
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! If these disagree on whether it overturns, that is **uncertain**: neither overturned nor survived. The side to which it overturns,
 //! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
-//! nothing after an impact decides (`is_plain`). Where joints slip, a motion that comes near overturning is uncertain as well if a
+//! nothing after an impact decides (`is_plain`). With rigid joints, a motion that comes near overturning is uncertain as well if a
 //! repetition differs before the largest rotation: then still other steps may end otherwise ([`EarlyDifference`]).
 
 use std::collections::VecDeque;
@@ -44,7 +44,7 @@ pub struct Repeatability {
     pub parts_at_s: Option<f64>,
     /// The largest rotation of a block; `None` if one of the motions overturns.
     pub largest_rad: Option<RepeatedValue>,
-    /// The first difference that makes the outcome of a row with joints that slip uncertain.
+    /// The first difference that makes the outcome of a row with rigid joints uncertain.
     pub early: Option<EarlyDifference>,
     /// Slips of the joints at the end; empty if one of the motions overturns, and without slip.
     pub slips_m: Vec<RepeatedValue>,
@@ -204,17 +204,16 @@ fn slips_m(runs: &[&Summary]) -> Vec<RepeatedValue> {
     (0..all[0].offsets_m.len()).map(joint).collect()
 }
 
-/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for joints that do not slip, elastic joints, and motions that are known to stay far from
-/// overturning. Where rigid joints slip, already the first half cycle may depend on the step.
+/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for
+/// elastic joints, and for motions that are known to stay far from overturning.
 fn early_difference(
     own: &Summary,
     repetition: &'static str,
     other: &Summary,
 ) -> Option<EarlyDifference> {
     let row = own.row()?;
-    let slips = row.sliding.is_some() && own.elastic().is_none();
     let overturns = Verdict::from(own.outcome) == Verdict::Overturns;
-    if !slips || !overturns && is_far(row.peak_potential_over_barrier) {
+    if own.elastic().is_some() || !overturns && is_far(row.peak_potential_over_barrier) {
         return None;
     }
     let others = &other.row()?.half_cycles;
@@ -225,7 +224,8 @@ fn early_difference(
         .fold(0.0, f64::max);
     let before = cycles
         .iter()
-        .take_while(|cycle| cycle.peak_rad < largest_rad);
+        .take_while(|cycle| cycle.peak_rad < largest_rad)
+        .filter(|cycle| cycle.peak_rad >= LEAST_PEAK_RATIO * largest_rad);
     let mut differences = before.map(|cycle| {
         let ratio = cycle.counterpart(others).map_or(1.0, |other| {
             let [one_rad, other_rad] = [cycle.peak_rad, other.peak_rad];

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::Run;
+use super::{Run, RunResults};
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::Varied;
@@ -10,11 +10,10 @@ use crate::scenario::Hinges;
 
 /// A table of the runs of one structure with different models of motion and their results, followed by the conclusion.
 #[must_use]
-pub fn compared(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
+pub fn compared(runs: &[RunResults<'_>]) -> String {
     let rows: Vec<[String; 3]> = runs
         .iter()
-        .zip(histories)
-        .map(|(run, (history, _))| {
+        .map(|RunResults { run, history, .. }| {
             let peak = match history.outcome {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
@@ -32,7 +31,7 @@ pub fn compared(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> Strin
         let line = format!("  {model:0$}  {ends:1$}  {peak}", wide[0], wide[1]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    text + &believed(runs, histories)
+    text + &believed(runs)
 }
 
 fn ends(history: &Summary) -> String {
@@ -48,16 +47,16 @@ fn ends(history: &Summary) -> String {
 }
 
 /// The model with the fewest assumptions, whether its outcome depends on its joints, and how the others differ from its answer.
-fn believed(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
+fn believed(runs: &[RunResults<'_>]) -> String {
     let trust = |run: &Run<'_>| match run.scenario.motion().hinges() {
         Hinges::Four => 0,
         Hinges::Free => 1,
         Hinges::Elastic => 2,
     };
-    let all = runs.iter().zip(histories);
-    let Some((best, (own, varied))) = all.clone().max_by_key(|(run, _)| trust(run)) else {
+    let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
         return String::new();
     };
+    let (best, own, varied) = (best.run, &best.history, &best.varied);
     let is_elastic = best.scenario.motion().hinges() == Hinges::Elastic;
     if own.outcome == Outcome::Incomplete {
         return format!(
@@ -84,7 +83,8 @@ fn believed(runs: &[Run<'_>], histories: &[(Summary, Vec<Varied>)]) -> String {
             format!("  believe {}: {why}\n", best.name())
         }
     };
-    for (run, (other, _)) in all.filter(|(run, _)| trust(run) != trust(best)) {
+    let others = runs.iter().map(|results| (results.run, &results.history));
+    for (run, other) in others.filter(|(run, _)| trust(run) != trust(best)) {
         let [own_verdict, other_verdict] = [own, other].map(|one| Verdict::from(one.outcome));
         let (own_rad, other_rad) = (own.largest_rotation_rad(), other.largest_rotation_rad());
         let _ = if other_verdict == Verdict::Incomplete {

@@ -121,19 +121,21 @@ pub enum Stage {
     Repeating,
 }
 
-/// The results of a run.
-#[derive(Debug)]
-pub struct RunResults {
+/// The results of a run. Its pictures and page are written by [`RunResults::complete`].
+pub struct RunResults<'r> {
     /// For people.
     pub words: String,
     /// For programs, as in `summary.json`.
     pub summary: Value,
-    /// Curves for a picture of several models.
-    pub curves: Curves,
     /// The summary of the motion.
     pub history: Summary,
     /// The motions with other properties that are as likely.
     pub varied: Vec<Varied>,
+    run: &'r Run<'r>,
+    shown: Shown,
+    folder: Option<Folder>,
+    /// Number of rows of the rotations.
+    rows: usize,
 }
 
 /// Why a run has no results.
@@ -212,8 +214,8 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(wanted).collect()
     }
 
-    /// Simulates the scenario. The files go into a folder that was opened for them, and which is completed. Rotations go to `rotations` instead, if it is
-    /// given.
+    /// Simulates the scenario. The tables go into a folder that was opened for them; [`RunResults::complete`] writes the other files. Rotations go to
+    /// `rotations` instead, if it is given.
     ///
     /// # Errors
     /// When the motion cannot be computed, or a result not written.
@@ -222,7 +224,7 @@ impl<'a> Run<'a> {
         mut folder: Option<Folder>,
         rotations: Option<Box<dyn io::Write + '_>>,
         watch: &mut dyn FnMut(Stage),
-    ) -> Result<RunResults, RunError> {
+    ) -> Result<RunResults<'_>, RunError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut shown = Shown::new(self, folder.is_some());
@@ -252,7 +254,7 @@ impl<'a> Run<'a> {
             spread,
             varied: &varied,
         };
-        let mut text = words(&evidence, model, &shown, &self.wanted.beside);
+        let text = words(&evidence, model, &shown, &self.wanted.beside);
         let mut summary = summary(scenario, model, &history, spread)?;
         if !varied.is_empty() {
             summary["variations"] = summary::of_variations(&varied)?;
@@ -265,24 +267,15 @@ impl<'a> Run<'a> {
             // The cost of a computation is reported here; the results do not contain it.
             summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
         }
-        if let Some(mut folder) = folder {
-            shown.write(self, &mut folder, &history, &mut text)?;
-            write(&mut folder, SUMMARY, "the summary", &pretty(&summary))?;
-            let path = folder.path().to_owned();
-            folder.complete()?;
-            let files = self.files().into_iter().map(|name| match name {
-                ROTATIONS => format!("{ROTATIONS} ({rows} rows)"),
-                name => name.to_owned(),
-            });
-            let files = files.collect::<Vec<_>>().join(", ");
-            let _ = writeln!(text, "  results in {}: {files}", path.display());
-        }
         Ok(RunResults {
             words: text,
             summary,
-            curves: shown.curves,
             history,
             varied,
+            run: self,
+            shown,
+            folder,
+            rows,
         })
     }
 
@@ -307,16 +300,42 @@ impl<'a> Run<'a> {
     }
 }
 
-/// One picture of several runs that differ in their models of motion, with their curves.
+impl RunResults<'_> {
+    /// Writes the pictures, and the page, which begins with the report on the samples of `[uncertain]`; then completes the folder.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn complete(&mut self, samples: &str) -> Result<(), OutputError> {
+        let Some(mut folder) = self.folder.take() else {
+            return Ok(());
+        };
+        let text = &mut self.words;
+        self.shown
+            .write(self.run, &mut folder, &self.history, samples, text)?;
+        write(&mut folder, SUMMARY, "the summary", &pretty(&self.summary))?;
+        let path = folder.path().to_owned();
+        folder.complete()?;
+        let files = self.run.files().into_iter().map(|name| match name {
+            ROTATIONS => format!("{ROTATIONS} ({} rows)", self.rows),
+            name => name.to_owned(),
+        });
+        let files = files.collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "  results in {}: {files}", path.display());
+        Ok(())
+    }
+}
+
+/// One picture of several runs that differ in their models of motion.
 #[must_use]
-pub fn overlay(runs: &[Run<'_>], curves: &[Curves]) -> String {
-    let names: Vec<_> = runs.iter().map(Run::name).collect();
-    let first = &runs[0];
+pub fn overlay(runs: &[RunResults<'_>]) -> String {
+    let names: Vec<_> = runs.iter().map(|results| results.run.name()).collect();
+    let first = runs[0].run;
     let mut all = names.join(" and ");
     if let Some(initial) = all.get_mut(..1) {
         initial.make_ascii_uppercase();
     }
     let subject = first.subject(first.scenario.title().unwrap_or(&all));
+    let curves = runs.iter().map(|results| &results.shown.curves);
     let named: Vec<_> = names.into_iter().zip(curves).collect();
     overlay::draw(first.wanted.figure, &subject, &named)
 }
@@ -442,6 +461,7 @@ impl Shown {
         run: &Run<'_>,
         folder: &mut Folder,
         history: &Summary,
+        samples: &str,
         said: &mut String,
     ) -> Result<(), OutputError> {
         let (scenario, figure) = (run.scenario, run.wanted.figure);
@@ -450,7 +470,7 @@ impl Shown {
         let picture = self.picture.draw(figure, &subject, history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
-            let page = report.page(scenario, scenario.ground_motion(), history, said);
+            let page = report.page(scenario, history, samples, said);
             write(folder, REPORT, "the report", &page)?;
         }
         if let Some(film) = &self.film {

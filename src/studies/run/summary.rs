@@ -346,10 +346,16 @@ fn of_spread(spread: &Repeatability) -> Result<Value, OutputError> {
     let names = std::iter::once("own").chain(spread.repeated.iter().copied());
     let names = names.map(|name| name.replace(' ', "_"));
     let outcomes = spread.outcomes.iter().map(|outcome| json!(outcome.name()));
+    let sways = spread.outcomes.iter().map(|outcome| match outcome {
+        Outcome::Overturned(sway) => json!(sway.name()),
+        _ => Value::Null,
+    });
+    let sways: Map<_, _> = names.clone().zip(sways).collect();
     let outcomes: Map<_, _> = names.zip(outcomes).collect();
     let largest = spread.largest_rad.as_ref().map(peak).transpose()?;
     Ok(json!({
         "outcomes": outcomes,
+        "overturning_sways": sways,
         "half_cycles": half_cycles,
         "same_until_half_cycle": spread.same_until_half_cycle,
         "parts_at_s": spread.parts_at_s,

@@ -254,8 +254,8 @@ fn of_mechanisms(model: &dyn MechanismModel, history: &Summary, impacts: &Notabl
     if let [Some((time_s, impact)), _] = impacts.of(history) {
         let _ = writeln!(
             text,
-            "  first impact at {time_s:.4} s, restitution (energy after/before) {:.4}",
-            impact.restitution,
+            "  first impact at {time_s:.4} s, restitution (energy after/before) {}",
+            kept(impact.restitution),
         );
     }
     if is_unmoved(history) {
@@ -757,8 +757,16 @@ fn landing(impact: &Impact) -> String {
             _ => write!(text, "joints {named} {many}, "),
         };
     }
-    let _ = write!(text, "energy after/before {:.4}", impact.restitution);
-    text
+    text += "energy after/before ";
+    text + &kept(impact.restitution)
+}
+
+/// The part of the energy that an impact keeps. One that takes energy does not read as if it took none.
+fn kept(ratio: f64) -> String {
+    match format!("{ratio:.4}") {
+        all if ratio < 1.0 && all == "1.0000" => "above 0.9999".to_owned(),
+        kept => kept,
+    }
 }
 
 /// Numbers of the joints of these hinges; neighbours as `3-7`.
