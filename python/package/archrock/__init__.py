@@ -8,10 +8,10 @@
 >>> history.rotations.shape
 (675, 3)
 
-Everything is computed by the Rust library of the same name; results are bit-identical to the program's. Lengths are in
+The Rust library archrock computes everything; results are bit-identical to the program's. Lengths are in
 metres, times in seconds, and ground accelerations in units of gravity if their name ends in ``_g``. x is to the right,
-rotations are positive anticlockwise. An invalid value raises ``ValueError`` with the library's explanation. An unlikely value, and
-whatever limits the trust in a result, is an :class:`ArchrockWarning`.
+rotations are positive anticlockwise. An invalid value raises ``ValueError`` with the library's explanation. An unlikely value, or
+a limit of the trust in a result, issues an :class:`ArchrockWarning`.
 """
 
 from importlib.metadata import version as _version

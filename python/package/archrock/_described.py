@@ -14,7 +14,7 @@ Self = TypeVar("Self", bound="Described")
 class Described:
     """Tables of a scenario with the contents of the files that they name.
 
-    Such objects do not change. They are equal if their contents are, and can be pickled with their files.
+    Such objects are immutable. They are equal if their contents are, and can be pickled with their files.
     """
 
     __slots__ = ("_files", "_tables", "_text")

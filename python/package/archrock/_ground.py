@@ -272,7 +272,7 @@ class Record(Ground):
     Args:
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
-        acceleration: accelerations in ``unit``, or whatever ``quantity`` says, shape ``(samples,)``.
+        acceleration: accelerations in ``unit``, or velocities if ``quantity`` says so, shape ``(samples,)``.
         unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` for velocities.
         quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
         remove_mean: whether the mean over the time of the record is subtracted from the accelerations.
@@ -280,9 +280,9 @@ class Record(Ground):
         scale: factor on the accelerations; or give ``peak_g``.
         peak_g: peak acceleration to which to scale, in units of gravity.
         start_s: time of the simulation at the record's time zero.
-        component: where the accelerations point, ``"horizontal"`` (positive to the right) or ``"vertical"``
+        component: direction of the accelerations, ``"horizontal"`` (positive to the right) or ``"vertical"``
             (upwards).
-        vertical: a record of the vertical component for this one, with its own scaling, on the same clock.
+        vertical: a record of the vertical component, with its own scaling and the time zero of this record.
 
     Raises:
         ValueError: when samples are not valid, with the library's explanation; a line number there is that of the sample.
@@ -338,7 +338,7 @@ class Record(Ground):
         return table, {table["file"]: self._files[name]}
 
     def _as_right(self, beside: Ground) -> tuple[Tables, dict[str, bytes]]:
-        """The table ``[ground.right]`` of this record, with its files under names that another ground beside it does not have."""
+        """The table ``[ground.right]`` of this record, with its files under names that the other ground does not use."""
         table: Tables = dict(self._tables["record"])
         files: dict[str, bytes] = {}
 
@@ -366,9 +366,9 @@ class Record(Ground):
 
         Args:
             path: the file; its contents are kept.
-            vertical: a record of the vertical component for this one.
+            vertical: a record of the vertical component.
             keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
-                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if the file extension does not tell it;
+                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file extension;
                 ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
@@ -427,7 +427,7 @@ class Record(Ground):
 
     @property
     def time(self) -> npt.NDArray[np.float64]:
-        """Times of the samples in s, on the record's own clock, shape ``(samples,)``."""
+        """Times of the samples in s, from the record's time zero, shape ``(samples,)``."""
         return self._samples()[0]
 
     @property

@@ -50,7 +50,7 @@ class Mechanism:
 
 @dataclass(frozen=True)
 class ChainLink:
-    """An impact in the chain of mechanisms through which impacts lead.
+    """An impact in the chain of mechanisms that follow each other from impact to impact.
 
     Attributes:
         index: number of the impact, from 1.

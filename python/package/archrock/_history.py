@@ -34,7 +34,7 @@ class Impact:
         time_s: its time, in s.
         sway_before: sway of the mechanism that closed, ``"right"`` or ``"left"``.
         sway_after: sway of the mechanism that opened.
-        restitution: kinetic energy after over that before.
+        restitution: kinetic energy after the impact over that before.
         energy_before_j: kinetic energy before, in J.
         energy_after_j: kinetic energy after, in J.
         rates_before_rad_s: rotation rates of the bodies just before, in rad/s, anticlockwise.
@@ -182,7 +182,7 @@ class History:
 
     @property
     def phase(self) -> Whole:
-        """Events so far, shape ``(samples,)``."""
+        """Number of events so far, shape ``(samples,)``."""
         return self._column("phase")
 
     @property
@@ -254,19 +254,19 @@ class History:
 
     @property
     def tie_forces(self) -> Floats:
-        """What each tie pulls with in N, shape ``(samples, ties)``; ``tie_1_force_n`` of ``joints.csv`` is the first."""
+        """Force of each tie in N, shape ``(samples, ties)``; ``tie_1_force_n`` of ``joints.csv`` is the first."""
         return self._column("ties")[:, :, 0]
 
     @property
     def tie_elongations(self) -> Floats:
-        """By how much each tie is longer than in the undeformed structure in m, shape ``(samples, ties)``."""
+        """Elongation of each tie from the undeformed structure in m, shape ``(samples, ties)``."""
         return self._column("ties")[:, :, 1]
 
     @property
     def feet_apart(self) -> Floats:
-        """How far the right foot has gone from where it was beside the left one, to the right and upwards in m, shape ``(samples, 2)``.
+        """Displacement of the right foot relative to the left one, to the right and upwards in m, shape ``(samples, 2)``.
 
-        Zero where both feet move alike.
+        Zero if both feet move alike.
         """
         return self._column("feet_apart_m")
 
@@ -285,7 +285,7 @@ class History:
 
     @property
     def thrust_excess_ratio(self) -> Floats:
-        """How far the line of thrust leaves the structure, in thicknesses, shape ``(samples,)``."""
+        """Distance by which the thrust line leaves the structure, in thicknesses, shape ``(samples,)``."""
         return self._column("thrust_excess_ratio")
 
     @property
@@ -323,7 +323,7 @@ class History:
 
     @property
     def largest_body(self) -> int:
-        """Index in :attr:`bodies` of the body that turns most, of all time steps; the last one if several turn as far."""
+        """Index in :attr:`bodies` of the body that turns most, over all time steps; the last one if several turn equally far."""
         index: int = self._once("largest_body", lambda native: native.largest_body())
         return index
 
@@ -345,7 +345,7 @@ class History:
 
     @property
     def outcome_time_s(self) -> float:
-        """The time of the outcome in s: the last outward passage of the unstable equilibrium, the last coming to rest, or the end."""
+        """The time of the outcome in s: the last outward passage of the unstable equilibrium, the last time that it came to rest, or the end."""
         time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
         return time_s
 

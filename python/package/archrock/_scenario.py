@@ -20,7 +20,7 @@ from ._warnings import warn
 
 
 class Scenario(Described):
-    """What to simulate, with every default filled in: everything that a TOML file of the program can contain.
+    """A scenario with every default filled in: everything that a TOML file of the program can contain.
 
     Args:
         tables: the tables of a scenario, such as ``{"arch": {...}, "ground": {"half_sine": {...}}}``.
@@ -28,10 +28,10 @@ class Scenario(Described):
         model: the model of motion; ``None``: the one that the tables choose.
 
     Raises:
-        ValueError: everything that is wrong with it, in the library's words.
+        ValueError: all errors of the scenario, in the library's words.
 
     Limit analysis and capacity need no motion: a scenario is read although the record of its ``[ground]`` is missing or faulty, or
-    although drums or moved springings have no model of motion. Then :meth:`limit` and :func:`capacity` answer, and everything that moves
+    although drums or moved springings have no model of motion. Then :meth:`limit` and :func:`capacity` work, and everything that moves
     the structure raises the error.
 
     A scenario is pickled with the contents of the files that it names, unless these lie outside the scenario's
@@ -85,7 +85,7 @@ class Scenario(Described):
         Raises:
             OSError: when the file cannot be read.
             TypeError: when ``path`` is not a path.
-            ValueError: everything that is wrong with it, each with line and column.
+            ValueError: all errors of the scenario, each with line and column.
         """
         # `open` alone would also take a number, for the descriptor of an open file, and close that file.
         path = Path(path)
@@ -104,7 +104,7 @@ class Scenario(Described):
         """Reads the TOML text of a scenario; ``name`` stands for its file, and records are relative to the folder of that.
 
         Raises:
-            ValueError: everything that is wrong with it, each with line and column.
+            ValueError: all errors of the scenario, each with line and column.
         """
         scenario = cls.__new__(cls)
         native = NativeScenario(text, name, {}, model, list(changes))
@@ -133,21 +133,21 @@ class Scenario(Described):
         Args:
             structure: the structure.
             ground: the ground motion.
-            right: how the ground under the right foot moves instead, with joints: a record of its own, or table ``[ground.right]``, such
-                as ``{"delay_s": 0.05}`` or ``{"apparent_velocity_m_s": 300.0}`` for the same motion later.
-            supports: table ``[supports]``: where the springings have gone before time begins, with joints, such as
+            right: ground motion under the right foot, for models with joints: a record, or table ``[ground.right]``, such as
+                ``{"delay_s": 0.05}`` or ``{"apparent_velocity_m_s": 300.0}`` for a delay of ``ground``.
+            supports: table ``[supports]``: movement of the springings before time 0, for models with joints, such as
                 ``{"right": {"spread_m": 0.02, "settlement_m": 0.01, "rotation_rad": 0.0}}``.
             title: free text for the results.
             map: table ``[map]``: two axes.
             suite: table ``[suite]``.
             demand: table ``[demand]``.
             verify: table ``[verify]``.
-            uncertain: table ``[uncertain]``: samples, seed, and the spread of each key such as ``"column.width_m"``.
+            uncertain: table ``[uncertain]``: samples, seed, and the distribution of each key such as ``"column.width_m"``.
             files: contents of the files that the tables name.
             settings: how to simulate it, as for :func:`simulate`.
 
         Raises:
-            ValueError: everything that is wrong with it, in the library's words.
+            ValueError: all errors of the scenario, in the library's words.
         """
         if not isinstance(structure, Structure):
             raise _not_a_structure(structure)
@@ -174,7 +174,7 @@ class Scenario(Described):
         return cls(tables, files=held, model=_model(chosen.model) if "model" in settings else None)
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:
-        """Its history.
+        """Simulates the scenario and returns its history.
 
         Args:
             memory_gb: memory that the history may take, in units of 1e9 bytes; see :meth:`memory_gb`.
@@ -333,15 +333,15 @@ def simulate(
     """The history of a structure on moving ground, bit-identical to the program's.
 
     The interpreter's lock is released meanwhile, so histories in several threads run on several processors. A
-    structure keeps results that do not depend on the ground. So many histories of one structure are fastest with a single
-    object and the same settings.
+    structure caches results that do not depend on the ground. So many histories of one structure are fastest with a single
+    object and equal settings.
 
     Args:
         structure: the structure.
         ground: the ground motion; ``None`` for a release from a rotated position.
-        right: how the ground under the right foot moves instead, as for :meth:`Scenario.of`; with joints.
-        supports: where the springings have gone before time begins, as for :meth:`Scenario.of`; with joints. With this or ``right`` the
-            structure keeps nothing from call to call.
+        right: ground motion under the right foot, as for :meth:`Scenario.of`, for models with joints.
+        supports: movement of the springings before time 0, as for :meth:`Scenario.of`, for models with joints. With this or ``right``
+            the structure caches nothing from call to call.
         model: ``"four_links"`` (or Housner's column), or ``"free_hinges"``: blocks whose joints open and shut anywhere,
             or ``"elastic_joints"``: blocks with elastic joints; these need a stiffness.
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
@@ -350,12 +350,12 @@ def simulate(
         initial_sway: side to which it is released from a rotated position, ``"right"`` or ``"left"``.
         initial_rotation_rad: magnitude of that rotation, for the body whose rotation is the coordinate.
         longest_step_s: longest step, with free hinges and elastic joints.
-        shortest_step_s: landings within this time count as one, with free hinges.
+        shortest_step_s: after more than 50 impacts within this time the next landings count as one, with free hinges.
         friction_coefficient: Coulomb's coefficient at every joint, with free hinges and elastic joints; ``None``: joints do not
             slip.
         normal_stiffness_gpa_m: stiffness of elastic joints against penetration, per area, in GPa/m.
-        shear_stiffness_gpa_m: the same against slip; ``None``: 0.4 times the stiffness against penetration.
-        stone_modulus_gpa: Young's modulus of the blocks, from which the stiffness can be derived instead.
+        shear_stiffness_gpa_m: stiffness against slip; ``None``: 0.4 times the stiffness against penetration.
+        stone_modulus_gpa: Young's modulus of the blocks, which gives the stiffness instead of ``normal_stiffness_gpa_m``.
         mortar_modulus_gpa: Young's modulus of the mortar, with ``mortar_thickness_m``.
         mortar_thickness_m: thickness of the mortar.
         damping_time_s: damping forces are this time multiplied by the rates of the elastic forces; ``None``: the default, 1e-4.

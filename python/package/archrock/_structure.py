@@ -1,4 +1,4 @@
-"""Structures that stand on the ground."""
+"""Structures."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Structure(Described):
             ``piers``, ``fill``, ``load`` and ``tie`` (lists), with their keys; ``blocks`` may name files, which are read now.
 
     Raises:
-        ValueError: when it is not a structure that stands; all errors are reported together.
+        ValueError: when the tables are wrong or the structure does not stand; all errors are reported together.
         OSError: when a file cannot be read.
     """
 
@@ -86,7 +86,7 @@ class Structure(Described):
         return Limit._of(json.loads(self._native.limit_json()))
 
     def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:
-        """The mechanisms through which the first ``count`` impacts lead, after a first sway to this side.
+        """The mechanisms of the first ``count`` impacts, after a first sway to this side.
 
         They do not depend on the ground motion. The impacts follow the model ``max_restitution``; there are fewer if
         one of them stops the structure.
@@ -170,8 +170,8 @@ class Column(Structure):
         drums: number of equal drums; or give ``drum_heights_m``. Drums and a taper need a model of blocks.
         drum_heights_m: heights of drums from the base up, shape ``(drums,)``.
         top_width_m: width at the top, if it tapers.
-        pedestal: whether it stands on a pedestal as wide as its base, and falls off if it slips too far, instead of on level
-            ground; ``None``: the default, on the ground.
+        pedestal: true: it stands on a pedestal as wide as its base and can slide off; false or ``None``: the ground extends
+            beyond the base.
         depth_m: length out of plane; ``None``: the default, 1.
         density_kg_m3: density; ``None``: the default, 2000.
 

@@ -66,7 +66,7 @@ class Files:
     def save(self, folder: str | os.PathLike[str]) -> None:
         """Writes the files into a folder, all of them or none.
 
-        They replace everything that the last run of the same study left there. Results of other studies stay; if they come from another
+        They replace everything that the last run of this study left there. Results of other studies stay; if they come from another
         scenario, that is an :class:`ArchrockWarning`.
 
         Raises:
@@ -217,7 +217,7 @@ class Suite(Results):
     def fragility(self) -> dict[str, npt.NDArray[Any]]:
         """For each intensity: cases, how many overturned, and the curve with its 95 % band, as in ``fragility.csv``.
 
-        With free hinges also the number of uncertain cases, and ``..._with_uncertain``: the same with these counted as overturned.
+        With free hinges also the number of uncertain cases, and columns ``..._with_uncertain`` that count these as overturned.
         """
         return self.columns("fragility.csv")
 
@@ -290,9 +290,9 @@ class Threshold(Results):
         return gaps
 
     def plot(self, ax: Axes | None = None) -> Figure:
-        """The largest rotation over the factor on the ground motion, and which factors overturn. Needs matplotlib.
+        """The largest rotation over the factor on the ground motion, with the factors that overturn. Needs matplotlib.
 
-        Rotations are over the critical one where that is known, else in rad. What overturns has no largest rotation.
+        Rotations are over the critical one where that is known, else in rad. Overturned histories have no largest rotation.
 
         Args:
             ax: axes to draw into; ``None``: those of a new figure.
@@ -371,7 +371,7 @@ class Capacity(Results):
 
 
 class Ensemble(Results):
-    """The consequences of the uncertain numbers of a scenario: how the history of every sample proceeds and ends."""
+    """The consequences of the uncertain numbers of a scenario: the history of every sample and its end."""
 
     __slots__ = ()
 
@@ -397,7 +397,7 @@ class Ensemble(Results):
 
     @property
     def what_matters(self) -> dict[str, Any]:
-        """For each answer, the share of the variance and the rank correlation of each uncertain number, with intervals."""
+        """For each answer, the part of the variance and the rank correlation of each uncertain number, with intervals."""
         matters: dict[str, Any] = self.summary["what_matters"]
         return matters
 
@@ -419,7 +419,7 @@ class Histories(Ensemble):
 
     @property
     def probability(self) -> dict[str, float]:
-        """The share of samples that overturn, and its 95 % interval: ``share``, ``low``, ``high``, ``count``, ``of``."""
+        """The fraction of samples that overturn, and its 95 % interval: ``share``, ``low``, ``high``, ``count``, ``of``."""
         share: dict[str, float] = self.summary["outcomes"]["overturned"]
         return share
 
@@ -462,7 +462,7 @@ class Fragilities(Ensemble):
 
 
 class ProbabilityMap(_Plane):
-    """How likely each cell of a map overturns, as far as the samples of what is uncertain tell."""
+    """The probability that each cell of a map overturns, estimated from samples of the uncertain numbers."""
 
     __slots__ = ()
 
@@ -472,12 +472,12 @@ class ProbabilityMap(_Plane):
 
     @property
     def probability(self) -> npt.NDArray[np.float64]:
-        """The share of samples that overturn in each cell, NaN where none has an outcome, shape ``(len(x), len(y))``."""
+        """The fraction of samples that overturn in each cell, NaN if none has an outcome, shape ``(len(x), len(y))``."""
         return self._plane("overturned")
 
     @property
     def interval(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """The ends of its interval of 95 %."""
+        """The ends of the 95 % interval of the probability, each of shape ``(len(x), len(y))``."""
         return self._plane("overturned_low"), self._plane("overturned_high")
 
     @property
@@ -598,7 +598,7 @@ def overturning_map(
     progress: Progress | None = None,
     **settings: Any,
 ) -> OverturningMap:
-    """Which ground motions overturn a structure, over two quantities.
+    """The ground motions that overturn a structure, over two quantities.
 
     >>> found = overturning_map(
     ...     Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0),
@@ -609,11 +609,11 @@ def overturning_map(
 
     Args:
         of: the structure, or a scenario with a table ``[map]``, which gives everything else.
-        ground: the ground motion; whatever does not vary stays the same.
+        ground: the ground motion; its other values do not vary.
         axes: two of the keys of ``[map]`` with increasing values: ``duration_s``, ``frequency_hz``, ``mean_radius_m``,
             ``thickness_ratio``, ``embrace_deg``, ``restitution``, ``amplitude_g``, for a record ``scale`` or ``peak_g``,
             or any number of the scenario by its table and key, such as ``column.width_m``.
-        repeat: with free hinges, whether every cell is repeated in full, and its number of outcomes given in the column ``outcomes``.
+        repeat: with free hinges, true: repeats every cell in full and counts its outcomes in the column ``outcomes``.
         threads: number of threads; ``None``: as many as there are processors.
         progress: called on this thread with the number of cells done and of all cells.
         settings: as for :func:`simulate`.
@@ -668,7 +668,7 @@ def suite(
     progress: Progress | None = None,
     **settings: Any,
 ) -> Suite:
-    """How likely records of a given strength overturn a structure: a history for every record at every level.
+    """The probability that records of a given intensity overturn a structure: a history for every record at every level.
 
     Args:
         of: the structure, or a scenario with a table ``[suite]``, which gives everything else.
@@ -761,8 +761,8 @@ def threshold_along(
         key: the key with its table, such as ``"arch.mean_radius_m"``.
         start: its first value.
         end: its last value.
-        count: how many equally spaced values.
-        no_impact: whether also the least factor is found that overturns before any impact, for four links and columns.
+        count: number of equally spaced values.
+        no_impact: true: also finds the least factor that overturns before any impact, for four links and columns.
         from_factor: smallest factor.
         to_factor: largest factor.
         stride: relative step from one factor to the next; narrower bands may be missed.
@@ -833,7 +833,7 @@ def verify(
             spectrum by points is the path of its file, or a pair of periods in s and accelerations in g.
         title: free text for the page.
         slv_records: records for the dynamic route at SLV, all in one unit, each with its own name.
-        slc_records: the same at SLC.
+        slc_records: records for the dynamic route at SLC, likewise.
         how: keys of ``[verify]``: ``confidence_factor``, ``behaviour_factor``, ``sides``, ``free_standing``.
 
     Raises:

@@ -1,4 +1,4 @@
-"""What limits the trust in results, as warnings of Python."""
+"""Warnings about unlikely numbers and about limits of the trust in results."""
 
 from __future__ import annotations
 
