@@ -423,7 +423,11 @@ const PROBED: [f64; 3] = [0.0, 1.0, 0.381_966];
 impl UncertainKey {
     /// Refuses values that the scenario does not allow, with its own values of all other keys.
     fn check(&self, scenario: &Scenario) -> Result<(), String> {
-        for value in PROBED.map(|part| self.at(part)) {
+        let largest = self.at(0.0).abs().max(self.at(1.0).abs());
+        for part in PROBED {
+            // A bound that only rounding keeps from zero is zero.
+            let value = Some(self.at(part)).filter(|value| value.abs() > 1e-12 * largest);
+            let value = value.unwrap_or(0.0);
             scenario
                 .with_values(&[(&self.key, value)])
                 .map_err(|wrong| {

@@ -903,6 +903,11 @@ fn what_cannot_be_uncertain_is_refused() {
             "'arch.thickness_ratio' = { deviation = 0.1 }",
             "reaches -0.15, which the scenario does not allow",
         ),
+        // Three deviations of 0.05 below 0.15 are zero, but for rounding.
+        (
+            "'arch.thickness_ratio' = { deviation = 0.05 }",
+            "reaches 0, which the scenario does not allow: `thickness_ratio = 0` is out of range",
+        ),
         // Invalid numbers.
         (
             "samples = 0\n'arch.depth_m' = { deviation = 0.1 }",
