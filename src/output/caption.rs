@@ -1,44 +1,119 @@
 //! One line with the input of a picture: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, four_digits};
+use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, Structure};
+
+/// Whether a value of this key varies along the axes of a picture. The table of a pulse is called `pulse`.
+type Varies<'a> = &'a dyn Fn(&str) -> bool;
 
 /// The caption. It leaves out what varies along the axes.
 #[must_use]
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
-    let varies = |quantities: &[Quantity], key: &str| {
-        axes.iter()
-            .any(|axis| quantities.contains(&axis.quantity) || axis.key == key)
-    };
-    let mut parts = vec![scenario.structure().caption(&varies)];
+    let varied: Vec<String> = axes.iter().map(|axis| varied_key(axis)).collect();
+    let varies = |key: &str| varied.iter().any(|varied| varied == key);
+    let mut parts = vec![structure(scenario.structure(), &varies)];
     parts.extend(ground(scenario, &varies));
     parts.push(model(scenario, &varies));
     parts.join("; ")
 }
 
+/// The key of the value that an axis varies.
+fn varied_key(axis: &Axis) -> String {
+    let name = axis.quantity.name();
+    match axis.quantity {
+        Quantity::Other => axis.key.clone(),
+        Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
+            format!("arch.{name}")
+        }
+        Quantity::Restitution => format!("impact.{name}"),
+        Quantity::Frequency => "ground.pulse.duration_s".to_owned(),
+        Quantity::Duration | Quantity::Amplitude => format!("ground.pulse.{name}"),
+        Quantity::Scale | Quantity::PeakG => "ground.record.scale".to_owned(),
+    }
+}
+
+/// The structure, with its values that do not vary.
+fn structure(structure: &Structure, varies: Varies<'_>) -> String {
+    let (name, values) = match structure {
+        Structure::Arch(arch) => {
+            let shape = [
+                "mean_radius_m",
+                "thickness_ratio",
+                "embrace_deg",
+                "span_m",
+                "rise_m",
+                "thickness_m",
+            ];
+            let varies_shape = shape.iter().any(|key| varies(&format!("arch.{key}")));
+            let mut values = match arch.measured_at().filter(|_| !varies_shape) {
+                Some(line) => {
+                    let [span_m, rise_m] = arch.span_and_rise_m(line).map(four_digits);
+                    let thick_m = four_digits(arch.mean_radius_m() * arch.thickness_ratio());
+                    let at = line.in_words();
+                    vec![(
+                        "",
+                        format!("span {span_m} m, rise {rise_m} m {at}, {thick_m} m thick"),
+                    )]
+                }
+                None => vec![
+                    (
+                        "arch.mean_radius_m",
+                        format!("R {} m", four_digits(arch.mean_radius_m())),
+                    ),
+                    (
+                        "arch.thickness_ratio",
+                        format!("t/R {}", four_digits(arch.thickness_ratio())),
+                    ),
+                    (
+                        "arch.embrace_deg",
+                        format!("{} degrees", four_digits(arch.embrace_deg())),
+                    ),
+                ],
+            };
+            let voussoirs = arch.voussoirs().map(|count| format!("{count} voussoirs"));
+            let voussoirs = voussoirs.unwrap_or_else(|| "hinges anywhere".to_owned());
+            values.push(("arch.voussoirs", voussoirs));
+            ("arch", values)
+        }
+        Structure::Column(column) => {
+            let [high_m, wide_m] = [column.height_m(), column.width_m()].map(four_digits);
+            let values = [
+                ("column.height_m", format!("{high_m} m high")),
+                ("column.width_m", format!("{wide_m} m wide")),
+            ];
+            ("column", values.into())
+        }
+        Structure::Masonry(_) => return "blocks".to_owned(),
+    };
+    let values = values.into_iter().filter(|(key, _)| !varies(key));
+    let values: Vec<_> = values.map(|(_, words)| words).collect();
+    format!("{name}: {}", values.join(", "))
+}
+
+/// Four digits are enough to identify a value.
+fn four_digits(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
 /// How the ground moves: the pulse, or the record with its scale; and how the right foot moves.
 #[must_use]
 pub fn ground_in_words(scenario: &Scenario) -> String {
-    let words = ground(scenario, &|_, _| false);
+    let words = ground(scenario, &|_| false);
     words.unwrap_or_else(|| "the ground stays still".to_owned())
 }
 
-fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Option<String> {
+fn ground(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
     let left = of_left_foot(scenario, varies)?;
-    let varies = |key: &str| varies(&[], &format!("ground.right.{key}"));
     let right = match scenario.right_foot() {
         None => return Some(left),
-        Some(RightFoot::Late(delay_s)) if !varies("delay_s") => {
+        Some(RightFoot::Late(delay_s)) if !varies("ground.right.delay_s") => {
             let when = if *delay_s < 0.0 { "earlier" } else { "later" };
             format!("right foot {} s {when}", four_digits(delay_s.abs()))
         }
-        Some(RightFoot::Wave(velocity_m_s)) if !varies("apparent_velocity_m_s") => {
+        Some(RightFoot::Wave(velocity_m_s)) if !varies("ground.right.apparent_velocity_m_s") => {
             let speed_m_s = four_digits(velocity_m_s.abs());
-            let side = if *velocity_m_s < 0.0 {
-                " to the left"
-            } else {
-                ""
-            };
+            let to_left = *velocity_m_s < 0.0;
+            let side = if to_left { " to the left" } else { "" };
             format!("right foot by a wave of {speed_m_s} m/s{side}")
         }
         Some(RightFoot::Late(_) | RightFoot::Wave(_)) => "right foot later".to_owned(),
@@ -50,17 +125,20 @@ fn ground(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Op
     Some(format!("{left}, {right}"))
 }
 
-fn of_left_foot(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Option<String> {
+fn of_left_foot(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
     match scenario.ground()? {
         Ground::Pulse(pulse) => {
             let kind = pulse.kind.name();
+            let varies = |key: &str| {
+                ["pulse", kind]
+                    .iter()
+                    .any(|table| varies(&format!("ground.{table}.{key}")))
+            };
             let mut part = format!("{} pulse", kind.replace('_', " "));
-            let durations = [Quantity::Duration, Quantity::Frequency];
-            if !varies(&durations, &format!("ground.{kind}.duration_s")) {
+            if !varies("duration_s") {
                 part += &format!(" of {} s", pulse.duration_s);
             }
-            let key = format!("ground.{kind}.amplitude_g");
-            if !varies(&[Quantity::Amplitude], &key) {
+            if !varies("amplitude_g") {
                 part += &format!(", {} g", pulse.amplitude_g);
             }
             Some(part)
@@ -68,9 +146,8 @@ fn of_left_foot(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool)
         Ground::Record(record) => {
             let files: Vec<_> = record.series().map(Series::name).collect();
             let name = format!("record {}", files.join(" and "));
-            let varied = varies(&[Quantity::Scale, Quantity::PeakG], "ground.record.scale");
             Some(match record.main.scaling {
-                _ if varied => name,
+                _ if varies("ground.record.scale") => name,
                 Scaling::Factor(1.0) => name,
                 Scaling::Factor(factor) => format!("{name} times {}", four_digits(factor)),
                 Scaling::PeakG(peak_g) => format!("{name} scaled to {} g", four_digits(peak_g)),
@@ -79,7 +156,7 @@ fn of_left_foot(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool)
     }
 }
 
-fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> String {
+fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
     if scenario.motion().hinges().has_joints() {
         return scenario.motion().words().to_owned();
     }
@@ -88,9 +165,7 @@ fn model(scenario: &Scenario, varies: &dyn Fn(&[Quantity], &str) -> bool) -> Str
         false => "Housner's block",
     };
     match scenario.motion().impact().model {
-        ImpactModel::Prescribed { .. }
-            if varies(&[Quantity::Restitution], "impact.restitution") =>
-        {
+        ImpactModel::Prescribed { .. } if varies("impact.restitution") => {
             format!("{name}, restitution prescribed")
         }
         ImpactModel::Prescribed { restitution } => format!("{name}, restitution {restitution}"),

@@ -31,8 +31,6 @@ pub use figure::Figure;
 pub use folder::{Batch, Folder};
 pub use panels::Subject;
 use serde_json::Value;
-
-use table::NotFinite;
 use thiserror::Error;
 
 use crate::scenario::shown_lines;
@@ -71,10 +69,7 @@ impl OutputError {
 
     pub(crate) fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
         let what = what.into();
-        |source| match source.downcast::<NotFinite>() {
-            Ok(NotFinite(what)) => Self::NotFinite { what },
-            Err(source) => Self::Io { what, source },
-        }
+        |source| Self::Io { what, source }
     }
 
     fn csv(what: impl Into<String>) -> impl FnOnce(csv::Error) -> Self {

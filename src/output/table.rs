@@ -1,8 +1,7 @@
 //! Tables: lists of columns, written as CSV with only finite numbers.
 
 use std::borrow::Cow;
-use std::fmt;
-use std::io::{self, Write};
+use std::io::Write;
 
 use serde::Serialize;
 
@@ -118,7 +117,7 @@ pub(crate) fn csv<'a, 'r, R: 'r>(
 
 /// Writes a table row by row.
 pub(crate) struct TableWriter<'a, R, W: Write> {
-    csv: Table<W>,
+    csv: csv::Writer<W>,
     columns: Vec<Column<'a, R>>,
     rows: usize,
     what: &'static str,
@@ -131,7 +130,7 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
         what: &'static str,
         columns: Vec<Column<'a, R>>,
     ) -> Result<Self, OutputError> {
-        let mut csv = table(writer);
+        let mut csv = csv::Writer::from_writer(writer);
         let names = columns.iter().flat_map(|column| &column.names);
         csv.write_record(names.map(|name| &**name))
             .map_err(OutputError::csv(what))?;
@@ -150,6 +149,20 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
         for column in &self.columns {
             (column.cells)(row, self.rows, &mut cells);
         }
+        let mut at = 0;
+        for cell in &cells {
+            let (numbers, width) = match cell {
+                Cell::Number(number) => (std::slice::from_ref(number), 1),
+                Cell::Numbers(numbers) => (&**numbers, numbers.len()),
+                _ => (&[][..], 1),
+            };
+            if let Some(wrong) = numbers.iter().position(|number| !number.is_finite()) {
+                let mut names = self.columns.iter().flat_map(|column| &column.names);
+                let what = names.nth(at + wrong).map_or("", |name| name).to_owned();
+                return Err(OutputError::NotFinite { what });
+            }
+            at += width;
+        }
         let written = self.csv.serialize(cells);
         written.map_err(OutputError::csv(self.what))
     }
@@ -161,139 +174,40 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
     }
 }
 
-/// Writes text as CSV.
-type Table<W> = csv::Writer<Finite<W>>;
-
-/// Begins a table.
-fn table<W: Write>(writer: W) -> Table<W> {
-    csv::Writer::from_writer(Finite {
-        writer,
-        columns: Vec::new(),
-        in_header: true,
-        quoted: false,
-        column: 0,
-        cell: Vec::new(),
-    })
-}
-
-/// Passes the text of a table on to its file, and refuses cells that hold the text of a number that is not
-/// finite.
-struct Finite<W> {
-    writer: W,
-    /// Names of the columns.
-    columns: Vec<String>,
-    in_header: bool,
-    /// Whether the current text is between quotation marks.
-    quoted: bool,
-    /// Number of the current column.
-    column: usize,
-    /// The current cell so far, or its beginning.
-    cell: Vec<u8>,
-}
-
-/// The column in which a number is not finite.
-#[derive(Debug)]
-pub(super) struct NotFinite(pub(super) String);
-
-impl fmt::Display for NotFinite {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} is not finite", self.0)
-    }
-}
-
-impl std::error::Error for NotFinite {}
-
-/// Length of the longest text of a number that is not finite.
-const LONGEST: usize = "-inf".len();
-
-impl<W> Finite<W> {
-    fn read(&mut self, byte: u8) -> io::Result<()> {
-        match byte {
-            b',' | b'\n' if !self.quoted => {
-                self.end_cell()?;
-                if byte == b',' {
-                    self.column += 1;
-                } else {
-                    self.column = 0;
-                    self.in_header = false;
-                }
-            }
-            _ => {
-                self.quoted ^= byte == b'"';
-                if self.in_header || self.cell.len() <= LONGEST {
-                    self.cell.push(byte);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn end_cell(&mut self) -> io::Result<()> {
-        if self.in_header {
-            let name = String::from_utf8_lossy(&self.cell).into_owned();
-            self.columns.push(name);
-        } else if matches!(&self.cell[..], b"NaN" | b"inf" | b"-inf") {
-            let name = self.columns.get(self.column).cloned();
-            return Err(io::Error::other(NotFinite(name.unwrap_or_default())));
-        }
-        self.cell.clear();
-        Ok(())
-    }
-}
-
-impl<W: Write> Write for Finite<W> {
-    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
-        for byte in text {
-            self.read(*byte)?;
-        }
-        self.writer.write_all(text)?;
-        Ok(text.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.writer.flush()
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::OutputError;
     use super::*;
 
     fn written(number: f64, text: &str) -> Result<String, OutputError> {
-        let mut bytes = Vec::new();
-        {
-            let mut table = table(&mut bytes);
-            let what = "cannot write";
-            let csv = |error| OutputError::csv(what)(error);
-            table.write_record(["a", "b\"c"]).map_err(csv)?;
-            // Much more text than is buffered.
-            for row in 0..10_000 {
-                table.serialize((f64::from(row), 0.5)).map_err(csv)?;
-            }
-            table.serialize((text, number)).map_err(csv)?;
-            table.flush().map_err(OutputError::io(what))?;
-        }
-        Ok(String::from_utf8(bytes).unwrap())
+        let columns = [
+            column("a", |row: &(String, [f64; 2])| row.0.clone()),
+            numbers(
+                ["b", "c\"d"].map(String::from),
+                |row: &(String, [f64; 2])| &row.1,
+            ),
+            column("e", |row| row.1[0]),
+        ];
+        // Much more text than is buffered.
+        let mut rows: Vec<_> = (0..10_000)
+            .map(|row| (row.to_string(), [0.5, f64::from(row)]))
+            .collect();
+        rows.push((text.to_owned(), [1.0, number]));
+        Ok(String::from_utf8(csv(columns, &rows)?).unwrap())
     }
 
     #[test]
     fn no_number_that_is_not_finite_is_written() {
         for number in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             let error = written(number, "x").unwrap_err();
-            let words = r#"the result "b""c" is not a finite number: please report the scenario"#;
+            let words = r#"the result c"d is not a finite number: please report the scenario"#;
             assert_eq!(error.to_string(), words);
             assert!(matches!(error, OutputError::NotFinite { .. }));
         }
         for text in ["", "NaN,inf", "NaNs", "-info", "a\"NaN", "\nNaN\n", ",inf,"] {
             let table = written(-1e300, text).unwrap();
-            assert!(table.starts_with("a,\"b\"\"c\"\n0.0,0.5\n"));
-            assert!(
-                table.ends_with("-1e300\n"),
-                "{}",
-                &table[table.len() - 30..]
-            );
-            let mut reader = csv::Reader::from_reader(table.as_bytes());
+            assert!(table.starts_with("a,b,\"c\"\"d\",e\n0,0.5,0.0,0.5\n"));
+            assert!(table.ends_with("1.0,-1e300,1.0\n"));
+            let mut reader = ::csv::Reader::from_reader(table.as_bytes());
             let last = reader.records().last().unwrap().unwrap();
             assert_eq!(&last[0], text);
         }

@@ -4,17 +4,15 @@ use nalgebra::Vector2;
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
 use super::error::ScenarioErrors;
-use super::record::{Record, Series};
+use super::record::{MAX_ACCELERATION_G, Record, Series, free_fall};
 use super::relation::Relation;
 use super::rule::{Number, above, within};
 use super::source::Source;
 use super::table::{self, Reading, Reported, Table};
-use crate::argument::{self, ArgumentError, plain};
+use crate::argument::{self, ArgumentError};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 use crate::dynamics::model::Request;
 
-/// Largest acceleration of the ground: beyond it the unit must be wrong.
-pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const AMPLITUDE_G: Number = within(&(-MAX_ACCELERATION_G..=MAX_ACCELERATION_G));
 pub(super) const DURATION_S: Number = within(&(1e-6..=1e6));
 /// The range of frequencies: inverses of durations.
@@ -208,13 +206,4 @@ impl Serialize for PulseGround {
         }
         map.end()
     }
-}
-
-/// Says that a vertical acceleration is impossible for a structure that rests on the ground.
-pub(super) fn free_fall(time_s: f64) -> String {
-    format!(
-        "makes the ground fall as fast as a free body at {} s, where it no longer carries the \
-         structure; vertical accelerations must stay above -1 g",
-        plain(time_s)
-    )
 }

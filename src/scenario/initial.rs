@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};
 
-use super::motion::Hinges;
+use super::hinges::Hinges;
 use super::rule::{Number, one_of};
 use super::structure::Structure;
 use super::table::{Reading, Table};

@@ -12,14 +12,16 @@
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
+use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
+use super::hinges::Hinges;
 use super::impact::RESTITUTION;
-use super::motion::{Hinges, Motion};
+use super::motion::Motion;
 use super::record::{PEAK_G, SCALE};
 use super::rule::{ANY_NUMBER, Number, Switch};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
-use super::structure::{EMBRACE_DEG, MAGNITUDE, Structure, THICKNESS_RATIO};
+use super::structure::Structure;
 use super::table::{Reading, Table};
 use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;

@@ -14,10 +14,10 @@ use std::path::Path;
 use nalgebra::Vector2;
 
 use super::LineFault;
+use super::bounds::{MAGNITUDE, VOUSSOIRS};
 use super::record::{faulty, read_numbers};
 use super::relation::Relation;
 use super::rule::{Count, OneOrMore, Switch, Text, above, one_of, within};
-use super::structure::{MAGNITUDE, VOUSSOIRS};
 use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
 use crate::argument::ArgumentError;
@@ -80,7 +80,7 @@ fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
     let path = table.path(&joints_file);
     let rows = read_numbers::<4>(&path).map_err(|wrong| table.wrong("joints", wrong))?;
     table.note_file(&joints_file);
-    let wrong_line = |line, message| faulty(&path, &LineFault { line, message });
+    let wrong_line = |line, message| faulty(&path, &LineFault::on(line)(message));
     if !(2..=MAX_BLOCKS + 1).contains(&rows.len()) {
         let wrong = format!(
             "has {} joints; must be from 2 to {}: blocks lie between joints, and a row has at most {MAX_BLOCKS}",
@@ -166,7 +166,7 @@ fn why_no_row(error: &RowError) -> String {
 fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
     let rows = read_numbers::<3>(path)?;
     let blocks = given.joints.len() - 1;
-    let fault = |line: usize, message: String| faulty(path, &LineFault { line, message });
+    let fault = |line: usize, message: String| faulty(path, &LineFault::on(line)(message));
     let mut outlines = Outlines::new();
     let mut lines = Vec::new();
     for (line, [block, x, y]) in rows {

@@ -26,11 +26,13 @@
 //! Field names are the keys of the file, units included.
 
 mod assignment;
+mod bounds;
 mod document;
 mod elastic_joints;
 mod error;
 mod free_hinges;
 mod ground;
+mod hinges;
 mod impact;
 mod initial;
 mod input_file;
@@ -75,11 +77,12 @@ pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use free_hinges::FreeTable;
 pub use ground::{Ground, PulseGround};
+pub use hinges::Hinges;
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
-pub use motion::{Hinges, Motion};
+pub use motion::Motion;
 pub use record::{
     Component, Contents, Decimal, Form, Format, Layout, LineFault, Record, Recorded, Sampling,
     Scaling, Series, TableColumn, TableLayout, Times, Unit,
@@ -91,7 +94,6 @@ pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
 use span::Circular;
-pub(crate) use structure::four_digits;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
 use table::{Reading, Reported, Table};

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
+use super::hinges::Hinges;
 use super::structure::{DRUM_KEYS, ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact, supports};
@@ -12,29 +13,6 @@ use crate::dynamics::model::{Model, Request};
 use crate::dynamics::variation::Variation;
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::settling::Movements;
-
-named! {
-    /// A model of motion.
-    pub enum Hinges {
-        /// Mechanisms with one degree of freedom, one after another: four links, or Housner's column.
-        Four = "four",
-        /// A row of blocks whose joints open and shut anywhere.
-        Free = "free",
-        /// A row of blocks with elastic joints.
-        Elastic = "elastic",
-    }
-}
-
-impl Hinges {
-    /// Whether it moves a row of blocks that open at their joints.
-    #[must_use]
-    pub const fn has_joints(self) -> bool {
-        match self {
-            Self::Four => false,
-            Self::Free | Self::Elastic => true,
-        }
-    }
-}
 
 /// A model of motion with its options.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,7 +11,7 @@
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::motion::Hinges;
+use super::hinges::Hinges;
 use super::record::{Record, Series};
 use super::relation::Relation;
 use super::rule::within;

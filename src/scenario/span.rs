@@ -13,9 +13,9 @@ use std::ops::Bound::{Excluded, Unbounded};
 
 use serde_json::{Map, Value};
 
+use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::relation::Relation::{OneOf, Requires};
 use super::rule::{Number, Rule as _, one_of, within};
-use super::structure::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::table::{Reading, Reported, Table};
 use crate::argument::plain;
 use crate::mechanics::arch::MeasuredAt;

@@ -15,7 +15,6 @@ use serde::Serialize;
 
 use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
 use super::rule::{Count, List, Number, one_of, within};
-use super::structure::Structure;
 use super::table::{Reading, Table};
 use crate::argument::short;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row};
@@ -332,15 +331,15 @@ pub(super) fn tied(
     tied.map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))
 }
 
-/// A structure with its ties: a column of any number of drums.
+/// A column of any number of drums with its ties.
 pub(super) fn tied_column(
     table: &mut Table<'_>,
     ties: &[TieTable],
     column: Column,
     gravity_m_s2: f64,
-) -> Reading<Structure> {
+) -> Reading<Column> {
     if ties.is_empty() {
-        return Ok(Structure::Column(column));
+        return Ok(column);
     }
     let row = match column.row() {
         Ok(row) => row,
@@ -360,7 +359,7 @@ pub(super) fn tied_column(
         Err(error) => wrong(error.to_string()),
     };
     match stands {
-        Ok(true) => Ok(Structure::Column(column)),
+        Ok(true) => Ok(column),
         Ok(false) => Err(table.wrong("tie", PULLS_OVER)),
         Err(wrong) => Err(table.wrong("column", wrong)),
     }

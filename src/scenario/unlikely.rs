@@ -2,10 +2,11 @@
 
 use std::ops::RangeInclusive;
 
+use super::bounds::LIKELY_EMBRACE_DEG;
+use super::structure::bounds_m;
 use super::{Form, Ground, PulseGround, Scaling, Scenario, Series, Structure};
 use crate::argument::{plain, short};
 use crate::dynamics::model::Model;
-use crate::mechanics::blocks::Row;
 use crate::mechanics::sway::Sway;
 
 /// The strongest recorded ground accelerations are a little above 2 g, and those below the lower limit move no masonry. A value outside is
@@ -21,8 +22,6 @@ const RADIUS_M: f64 = 100.0;
 const THICKNESS_M: f64 = 5.0;
 /// More than the size of any column or arch on piers.
 const SIZE_M: f64 = 200.0;
-/// A full circle in radians is less than this; as degrees that is almost nothing.
-pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;
 /// Gravity on Earth, from the equator to the poles.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=9.85;
 /// Offset of a record relative to its peak.
@@ -173,26 +172,14 @@ impl Structure {
                     .collect()
             }
             Self::Masonry(masonry) => {
-                let longest_m = extents_m(masonry.row()).into_iter().fold(0.0, f64::max);
+                let [low_m, high_m] = bounds_m(masonry.row());
+                let longest_m = (high_m - low_m).max();
                 long("the structure measures", longest_m, SIZE_M)
                     .into_iter()
                     .collect()
             }
         }
     }
-}
-
-/// Width and height of a row.
-fn extents_m(row: &Row) -> [f64; 2] {
-    let points = || row.outlines_m().iter().flatten();
-    [0, 1].map(|axis| {
-        let (least, most) = points()
-            .map(|point| point[axis])
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
-                (least.min(x), most.max(x))
-            });
-        most - least
-    })
 }
 
 /// Warns that a length is larger than usual, and names a unit in which it would be usual.

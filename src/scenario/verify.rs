@@ -34,11 +34,11 @@ use std::path::Path;
 use serde::Serialize;
 use serde::ser::{SerializeMap as _, Serializer};
 
+use super::bounds::MAGNITUDE;
 use super::listing::{Listing, serialize_layout};
 use super::record::{Format, LineFault, Series, faulty, read_numbers};
 use super::relation::Relation::{OneOf, Together};
 use super::rule::{Because, Number, OneOrMore, Text, above, one_of, within};
-use super::structure::MAGNITUDE;
 use super::table::{Reading, Reported, Table};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};

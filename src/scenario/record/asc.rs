@@ -2,151 +2,73 @@
 //!
 //! A header of lines `KEY: value`, followed by the accelerations or velocities, one per line.
 
-use super::layout::{Contents, evenly};
-use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Recorded, Unit, number, sample};
-use crate::argument::{plain, short};
+use std::collections::HashMap;
+
+use super::samples::{Contents, LineFault, Values, checked_step, number};
+use super::unit::{Recorded, Unit};
 use crate::scenario::error::excerpt;
 
 /// Number of lines that may make up the header.
 const MAX_HEADER_LINES: usize = 200;
 
-/// The contents of the header, each with its line from 1.
-#[derive(Default)]
-struct Header {
-    step_s: Option<(usize, f64)>,
-    count: Option<(usize, f64)>,
-    unit: Option<(usize, Unit)>,
-    /// The last line.
-    line: usize,
-}
-
 /// Reads the samples; the first is at time zero.
 pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFault> {
-    let header = Header::parse(text, quantity)?;
-    let missing = |key: &str| LineFault {
-        line: header.line.max(1),
-        message: format!("the header has no {key} up to here: is this an ASC file?"),
-    };
-    let (step_line, step_s) = header
-        .step_s
-        .ok_or_else(|| missing("SAMPLING_INTERVAL_S"))?;
-    let (_, unit) = header.unit.ok_or_else(|| missing("UNITS"))?;
-    let mut accelerations = Vec::new();
-    let mut last_line = header.line.max(1);
-    for (index, line) in text.lines().enumerate().skip(header.line) {
-        for word in line.split_whitespace() {
-            last_line = index + 1;
-            let fault = |message| LineFault {
-                line: last_line,
-                message,
-            };
-            if accelerations.len() == MAX_SAMPLES {
-                return Err(fault(format!(
-                    "more than {MAX_SAMPLES} samples, too many for a record"
-                )));
-            }
-            accelerations.push(sample(word).map_err(fault)?);
+    const STEP: &str = "SAMPLING_INTERVAL_S";
+    let (mut header, mut last) = (HashMap::new(), 0);
+    for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
+        if let Some((key, value)) = line.split_once(':') {
+            header.insert(key.trim(), (number, value.trim()));
+            last = number;
+        } else if !line.trim().is_empty() {
+            break;
         }
     }
-    let found = accelerations.len();
-    if let Some((line, count)) = header.count
-        && count != found as f64
-    {
-        return Err(LineFault {
-            line: last_line,
-            message: format!(
-                "the number of samples is {found}: line {line} announces {} (NDATA)",
-                plain(count)
-            ),
-        });
+    let needed = |key: &str| {
+        let missing = || format!("the header has no {key} up to here: is this an ASC file?");
+        let found = header.get(key).copied();
+        found.ok_or_else(|| LineFault::on(last.max(1))(missing()))
+    };
+    if let Some((line, held)) = header.get("DATA_TYPE") {
+        check_quantity(held, quantity).map_err(LineFault::on(*line))?;
     }
-    if found < 2 {
-        return Err(LineFault {
-            line: last_line,
-            message: format!("the number of samples is {found}; must be at least 2"),
-        });
+    let (step_line, step) = needed(STEP)?;
+    let step_s = number(step).and_then(|step_s| checked_step(STEP, step_s));
+    let step_s = step_s.map_err(LineFault::on(step_line))?;
+    let (line, written) = needed("UNITS")?;
+    let unit = read_unit(written, quantity).map_err(LineFault::on(line))?;
+    let values = Values::below(text, last, str::split_whitespace)?;
+    if let Some((line, count)) = header.get("NDATA") {
+        let count = number(count).map_err(LineFault::on(*line))?;
+        values.check_count((*line, count), "NDATA")?;
     }
-    let samples = evenly(step_s, accelerations).map_err(|wrong| LineFault {
-        line: step_line,
-        message: format!("SAMPLING_INTERVAL_S and the number of samples {wrong}"),
-    })?;
-    Ok(Contents {
-        samples,
-        unit,
-        wrapped: false,
-    })
+    Ok(Contents::new(values.evenly(step_s, step_line, STEP)?, unit))
 }
 
-impl Header {
-    fn parse(text: &str, quantity: Recorded) -> Result<Self, LineFault> {
-        let mut header = Self::default();
-        for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
-            let Some((key, value)) = line.split_once(':') else {
-                if line.trim().is_empty() {
-                    continue;
-                }
-                break;
-            };
-            header.line = index + 1;
-            header
-                .take(key.trim(), value.trim(), quantity)
-                .map_err(|message| LineFault {
-                    line: index + 1,
-                    message,
-                })?;
-        }
-        Ok(header)
-    }
+fn read_unit(written: &str, quantity: Recorded) -> Result<Unit, String> {
+    let wrong = match Unit::written(written) {
+        Some(unit) if unit.quantity() == quantity => return Ok(unit),
+        Some(unit) => format!(", {}", unit.other_quantity()),
+        None => "; must be one of acceleration or velocity, such as cm/s^2".to_owned(),
+    };
+    Err(format!("the unit is {}{wrong}", excerpt(written)))
+}
 
-    fn take(&mut self, key: &str, value: &str, quantity: Recorded) -> Result<(), String> {
-        let line = self.line;
-        match key {
-            "SAMPLING_INTERVAL_S" => {
-                let step_s = number(value)?;
-                if step_s < MIN_STEP_S {
-                    return Err(format!(
-                        "SAMPLING_INTERVAL_S is {} s; must be at least {} s",
-                        plain(step_s),
-                        short(MIN_STEP_S)
-                    ));
-                }
-                self.step_s = Some((line, step_s));
-            }
-            "NDATA" => self.count = Some((line, number(value)?)),
-            "UNITS" => {
-                let unit = Unit::written(value).ok_or_else(|| {
-                    format!(
-                        "the unit is {}; must be one of acceleration or velocity, such as cm/s^2",
-                        excerpt(value)
-                    )
-                })?;
-                if unit.quantity() != quantity {
-                    return Err(format!(
-                        "the unit is {}, {}",
-                        excerpt(value),
-                        unit.other_quantity()
-                    ));
-                }
-                self.unit = Some((line, unit));
-            }
-            "DATA_TYPE" if !value.eq_ignore_ascii_case(quantity.name()) => {
-                return Err(format!(
-                    "the file holds {}; must be {} history{}",
-                    excerpt(value),
-                    match quantity {
-                        Recorded::Acceleration => "an acceleration",
-                        Recorded::Velocity => "a velocity",
-                    },
-                    match value {
-                        "VELOCITY" => ", unless you give `quantity = \"velocity\"`",
-                        _ => "",
-                    }
-                ));
-            }
-            _ => {}
-        }
-        Ok(())
+fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
+    if held.eq_ignore_ascii_case(quantity.name()) {
+        return Ok(());
     }
+    let wanted = match quantity {
+        Recorded::Acceleration => "an acceleration history",
+        Recorded::Velocity => "a velocity history",
+    };
+    let unless = match held {
+        "VELOCITY" => ", unless you give `quantity = \"velocity\"`",
+        _ => "",
+    };
+    Err(format!(
+        "the file holds {}; must be {wanted}{unless}",
+        excerpt(held)
+    ))
 }
 
 #[cfg(test)]

@@ -4,9 +4,9 @@
 //! many wordings. Accelerations follow, in units of gravity unless a line says otherwise, or velocities. Fortran wrote
 //! them several to a line, in fixed width, so that a minus sign may be all that separates two of them.
 
-use super::layout::{Contents, too_long};
-use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Recorded, Unit, number, sample};
-use crate::argument::{plain, short};
+use super::samples::{Contents, LineFault, MAX_SAMPLES, Values, checked_step, number};
+use super::unit::{Recorded, Unit};
+use crate::argument::plain;
 use crate::scenario::error::excerpt;
 
 /// The header is searched up to this line.
@@ -21,55 +21,14 @@ pub(super) fn parse(
     quantity: Recorded,
 ) -> Result<Contents, LineFault> {
     let header = Header::parse(text, unit, quantity)?;
-    let Some(unit) = unit.or(header.unit).or(match quantity {
-        Recorded::Acceleration => Some(Unit::Gravity),
-        Recorded::Velocity => None,
-    }) else {
-        return Err(LineFault {
-            line: header.line,
-            message: "the header names no unit up to here; give `unit`: what the velocities are in"
-                .to_owned(),
-        });
-    };
-    let mut samples = Vec::new();
-    let mut last_line = header.line;
-    for (index, line) in text.lines().enumerate().skip(header.line) {
-        for word in words(line) {
-            last_line = index + 1;
-            let fault = |message| LineFault {
-                line: last_line,
-                message,
-            };
-            if samples.len() == header.count {
-                let message = format!(
-                    "`{}` is one value too many: line {} announces {} (NPTS)",
-                    excerpt(word),
-                    header.line,
-                    header.count
-                );
-                return Err(fault(message));
-            }
-            let value = sample(word).map_err(fault)?;
-            // Counts below 2^53 are exact.
-            samples.push((samples.len() as f64 * header.step_s, value));
-        }
-    }
-    if samples.len() < header.count {
-        return Err(LineFault {
-            line: last_line,
-            message: format!(
-                "the file ends after {} values: line {} announces {} (NPTS)",
-                samples.len(),
-                header.line,
-                header.count
-            ),
-        });
-    }
-    Ok(Contents {
-        samples,
-        unit,
-        wrapped: false,
-    })
+    let gravity = Some(Unit::Gravity).filter(|_| quantity == Recorded::Acceleration);
+    let unit = unit.or(header.unit).or(gravity);
+    let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
+    let unit = unit.ok_or_else(|| LineFault::on(header.line)(missing))?;
+    let values = Values::below(text, header.line, words)?;
+    values.check_count((header.line, header.count), "NPTS")?;
+    let samples = values.evenly(header.step_s, header.line, "DT")?;
+    Ok(Contents::new(samples, unit))
 }
 
 /// The numbers of a line as written, even where only a sign separates them.
@@ -100,7 +59,7 @@ struct Header {
     /// Its last line, from 1.
     line: usize,
     /// Number of samples.
-    count: usize,
+    count: f64,
     step_s: f64,
     /// The unit of the samples, if the header names it.
     unit: Option<Unit>,
@@ -119,31 +78,23 @@ impl Header {
         let mut items = Vec::new();
         let mut unit = None;
         for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
-            let line_number = index + 1;
             let end = line.char_indices().nth(MAX_HEADER_LINE_CHARS);
             let line = end.map_or(line, |(end, _)| &line[..end]);
-            let fault = |message: String| {
-                Err(LineFault {
-                    line: line_number,
-                    message,
-                })
-            };
+            let fault = |message: String| Err(LineFault::on(index + 1)(message));
             if let Some(what) = wrong_quantity(line, quantity) {
                 return fault(what);
             }
             if let Some(named) = unit_named(line) {
                 unit = Unit::written(named).or(known);
-                if unit.is_none() {
-                    return fault(format!(
-                        "the unit is {}; give `unit`: what the samples are in",
-                        excerpt(named)
-                    ));
-                }
-                if let (Some(unit), None) = (unit, known)
-                    && unit.quantity() != quantity
-                {
-                    let other = unit.other_quantity();
-                    return fault(format!("the unit is {}, {other}", excerpt(named)));
+                let wrong = match unit {
+                    None => "; give `unit`: what the samples are in".to_owned(),
+                    Some(unit) if known.is_none() && unit.quantity() != quantity => {
+                        format!(", {}", unit.other_quantity())
+                    }
+                    Some(_) => String::new(),
+                };
+                if !wrong.is_empty() {
+                    return fault(format!("the unit is {}{wrong}", excerpt(named)));
                 }
             }
             let here = Item::all(line);
@@ -157,7 +108,7 @@ impl Header {
                     let Some((count, step_s)) = values(&items) else {
                         return fault("gives no numbers for NPTS and DT".to_owned());
                     };
-                    return Self::checked(line_number, count, step_s, unit).or_else(fault);
+                    return Self::checked(index + 1, count, step_s, unit).or_else(fault);
                 }
                 (true, false) if here.contains(&Item::Count) => {}
                 (true, false) => {
@@ -171,31 +122,17 @@ impl Header {
         } else {
             "the header has no DT (time step) up to here"
         };
-        Err(LineFault {
-            line,
-            message: message.to_owned(),
-        })
+        Err(LineFault::on(line)(message))
     }
 
     fn checked(line: usize, count: f64, step_s: f64, unit: Option<Unit>) -> Result<Self, String> {
-        if !(step_s.is_finite() && step_s >= MIN_STEP_S) {
+        let step_s = checked_step("DT", step_s)?;
+        if !(count.fract() == 0.0 && (2.0..=MAX_SAMPLES as f64).contains(&count)) {
+            let count = plain(count);
             return Err(format!(
-                "DT is {} s; must be at least {} s",
-                plain(step_s),
-                short(MIN_STEP_S)
+                "NPTS is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
             ));
         }
-        let max_count = MAX_SAMPLES as f64;
-        if !(count.fract() == 0.0 && (2.0..=max_count).contains(&count)) {
-            return Err(format!(
-                "NPTS is {}; must be a whole number from 2 to {MAX_SAMPLES}",
-                plain(count)
-            ));
-        }
-        if (count - 1.0) * step_s > MAX_TIME_S {
-            return Err(format!("NPTS and DT {}", too_long((count - 1.0) * step_s)));
-        }
-        let count = count as usize;
         Ok(Self {
             line,
             count,

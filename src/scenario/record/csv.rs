@@ -7,8 +7,10 @@ use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::layout::{COLUMN_NUMBER, Contents, Decimal, TableColumn, TableLayout, Times, evenly};
-use super::{LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, in_range, number};
+use super::layout::{COLUMN_NUMBER, Decimal, TableColumn, TableLayout, Times};
+use super::samples::{
+    Contents, LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, Values, in_range, number,
+};
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
@@ -18,18 +20,18 @@ use crate::scenario::error::excerpt;
 /// the columns; it must if a column is chosen by name.
 pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Contents, LineFault> {
     let table = without_first(text, layout.skip_rows);
-    let contents = |samples, wrapped| Contents {
-        samples,
-        unit: layout.unit,
-        wrapped,
-    };
     if let (Times::Step(step_s), None) = (&layout.times, &layout.acceleration_column)
         && (layout.wrapped || wrapped::is_shown(text, &table, layout))
     {
-        let samples = wrapped::parse(&table, *step_s, layout.decimal)?;
-        return Ok(contents(samples, true));
+        return Ok(Contents {
+            wrapped: true,
+            ..Contents::new(
+                wrapped::parse(&table, *step_s, layout.decimal)?,
+                layout.unit,
+            )
+        });
     }
-    Ok(contents(parse_columns(&table, layout)?, false))
+    Ok(Contents::new(parse_columns(&table, layout)?, layout.unit))
 }
 
 /// Reads a table with one sample per row.
@@ -40,67 +42,39 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
     };
     let columns = Columns::find(layout, &first)?;
     let unit_s = columns.time_unit_s(&first);
-    let mut step_s = None;
-    let mut samples: Samples = Vec::new();
-    let mut last_line = first.line;
+    let (mut times_s, mut values) = (Vec::new(), Values::default());
+    values.line = first.line;
     let (header, mut next) = if columns.has_names {
         (Some(first), rows.next()?)
     } else {
         (None, Some(first))
     };
     while let Some(row) = next {
-        last_line = row.line;
-        let fault = |message| row.fault(message);
-        if let Some(header) = &header
-            && samples.is_empty()
-        {
+        let is_first = values.values.is_empty();
+        if let Some(header) = header.as_ref().filter(|_| is_first) {
             rows.check_names(header, &row, columns.by_name)?;
         }
-        let values = columns.values(&row);
-        let [time_s, acceleration] = values.map_err(|message| {
-            let hint = if samples.is_empty() {
-                rows.where_they_begin(|row| columns.values(row).is_ok())
-            } else {
-                String::new()
-            };
-            fault(format!("{message}{hint}"))
+        let [time_s, value] = columns.values(&row).map_err(|message| {
+            let hint = is_first.then(|| rows.where_they_begin(|row| columns.values(row).is_ok()));
+            row.fault(message + &hint.unwrap_or_default())
         })?;
-        columns.check_count(&row).map_err(fault)?;
-        if samples.len() == MAX_SAMPLES {
-            return Err(fault(format!(
-                "more than {MAX_SAMPLES} samples, too many for a record"
-            )));
+        columns.check_count(&row).map_err(LineFault::on(row.line))?;
+        values.push(row.line, value)?;
+        if columns.time.is_some() {
+            let time_s = time_s * unit_s;
+            check_time(time_s, times_s.last().copied()).map_err(LineFault::on(row.line))?;
+            times_s.push(time_s);
         }
-        let time_s = match &layout.times {
-            Times::Step(step) => {
-                step_s = Some(*step);
-                0.0
-            }
-            Times::Column(_) => {
-                let time_s = time_s * unit_s;
-                check_time(time_s, samples.last().map(|sample| sample.0)).map_err(fault)?;
-                time_s
-            }
-        };
-        samples.push((time_s, acceleration));
         next = rows.next()?;
     }
-    let fault = |message| LineFault {
-        line: last_line,
-        message,
-    };
-    if samples.len() < 2 {
-        return Err(fault(format!(
-            "the number of samples is {}; must be at least 2",
-            samples.len()
-        )));
-    }
-    match step_s {
-        None => Ok(samples),
-        Some(step_s) => {
-            let accelerations = samples.into_iter().map(|sample| sample.1).collect();
-            evenly(step_s, accelerations)
-                .map_err(|wrong| fault(format!("`dt_s` and the number of samples {wrong}")))
+    match layout.times {
+        Times::Step(step_s) => {
+            let line = values.line;
+            values.evenly(step_s, line, "`dt_s`")
+        }
+        Times::Column(_) => {
+            values.check_enough()?;
+            Ok(times_s.into_iter().zip(values.values).collect())
         }
     }
 }
@@ -108,10 +82,8 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
 /// Reports that a table has no rows.
 fn nothing(text: &str) -> LineFault {
     let lines_that_are_not = |line: &&str| line.is_empty();
-    LineFault {
-        line: text.lines().take_while(lines_that_are_not).count().max(1),
-        message: "there are no samples".to_owned(),
-    }
+    let line = text.lines().take_while(lines_that_are_not).count();
+    LineFault::on(line.max(1))("there are no samples")
 }
 
 /// The text with its first lines blanked out, so that the others keep their numbers.
@@ -213,7 +185,7 @@ impl Columns {
     /// Time, or zero if the table has none, and acceleration.
     fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
         let value = |index: usize| match row.cells().nth(index) {
-            Some(cell) => self.number(cell),
+            Some(cell) => self.decimal.number(cell),
             None => Err(self.no_column(index, row)),
         };
         let time_s = self.time.map_or(Ok(0.0), value)?;
@@ -250,10 +222,6 @@ impl Columns {
             "there is no column {place} in `{}`{hint}",
             excerpt(row.text)
         )
-    }
-
-    fn number(&self, cell: &str) -> Result<f64, String> {
-        self.decimal.number(cell)
     }
 }
 
@@ -370,11 +338,7 @@ impl<'a> Rows<'a> {
             let read = self.reader.read_record(&mut record);
             let end = self.reader.position();
             let line = usize::try_from(end.line() - 1).unwrap_or(usize::MAX);
-            let fault = |error: ::csv::Error| LineFault {
-                line,
-                message: error.to_string(),
-            };
-            if !read.map_err(fault)? {
+            if !read.map_err(|error| LineFault::on(line)(error.to_string()))? {
                 return Ok(None);
             }
             let end = usize::try_from(end.byte()).unwrap_or(usize::MAX);
@@ -434,10 +398,7 @@ impl Row<'_> {
     }
 
     fn fault(&self, message: String) -> LineFault {
-        LineFault {
-            line: self.line,
-            message,
-        }
+        LineFault::on(self.line)(message)
     }
 }
 

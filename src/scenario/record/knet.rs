@@ -4,8 +4,8 @@
 //! Whole numbers follow, several to a line. Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are
 //! accelerations in gal, including the offset of the instrument.
 
-use super::layout::{Contents, evenly};
-use super::{LineFault, MAX_SAMPLES, MIN_STEP_S, Unit, number, sample};
+use super::samples::{Contents, LineFault, MIN_STEP_S, Values, number};
+use super::unit::Unit;
 use crate::argument::{plain, short};
 use crate::scenario::error::excerpt;
 
@@ -17,123 +17,72 @@ const SCALE: &str = "Scale Factor";
 const DURATION: &str = "Duration Time(s)";
 const LAST: &str = "Memo.";
 
-/// The contents of the header.
-#[derive(Default)]
-struct Header {
-    step_s: Option<f64>,
-    /// Converts the whole numbers to gal.
-    scale: Option<f64>,
-    /// The duration, with its line from 1.
-    duration_s: Option<(usize, f64)>,
-}
-
 /// Reads the samples; the first is at time zero.
 pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
-    let (header, header_lines) = Header::parse(text)?;
-    let missing = |key: &str| LineFault {
-        line: header_lines,
-        message: format!("the header has no {key} up to here: is this a file of K-NET?"),
+    let mut header: Vec<&str> = text.lines().take(MAX_HEADER_LINES).collect();
+    let end = header.iter().position(|line| line.starts_with(LAST));
+    header.truncate(end.map_or(header.len(), |end| end + 1));
+    let lines = header.len();
+    let missing = |key: &str| {
+        let message = format!("there is no {key} up to here: is this a file of K-NET?");
+        LineFault::on(lines.max(1))(message)
     };
-    let step_s = header.step_s.ok_or_else(|| missing(FREQUENCY))?;
-    let scale = header.scale.ok_or_else(|| missing(SCALE))?;
-    let mut accelerations = Vec::new();
-    let mut last_line = header_lines;
-    for (index, line) in text.lines().enumerate().skip(header_lines) {
-        for word in line.split_whitespace() {
-            last_line = index + 1;
-            let fault = |message| LineFault {
-                line: last_line,
-                message,
-            };
-            if accelerations.len() == MAX_SAMPLES {
-                return Err(fault(format!(
-                    "more than {MAX_SAMPLES} samples, too many for a record"
-                )));
-            }
-            accelerations.push(scale * sample(word).map_err(fault)?);
+    end.ok_or_else(|| missing(LAST))?;
+    // Lines from 1, with the values after a name.
+    let find = |key: &str| {
+        let at = header.iter().rposition(|line| line.starts_with(key))?;
+        Some((at + 1, header[at][key.len()..].trim()))
+    };
+    let (line, frequency) = find(FREQUENCY).ok_or_else(|| missing(FREQUENCY))?;
+    let step_s = read_step(frequency).map_err(LineFault::on(line))?;
+    let (line, scale) = find(SCALE).ok_or_else(|| missing(SCALE))?;
+    let scale = read_scale(scale).map_err(LineFault::on(line))?;
+    let mut values = Values::below(text, lines, str::split_whitespace)?;
+    values.values.iter_mut().for_each(|value| *value *= scale);
+    // The header gives the duration in whole seconds.
+    if let Some((line, duration)) = find(DURATION) {
+        let duration_s = number(duration).map_err(LineFault::on(line))?;
+        let count = values.values.len();
+        let lasts_s = count as f64 * step_s;
+        if (lasts_s - duration_s).abs() > 1.0 {
+            let [lasts_s, duration_s] = [lasts_s, duration_s].map(plain);
+            return Err(values.fault(format!(
+                "the file ends after {count} samples, {lasts_s} s: line {line} announces {duration_s} s ({DURATION})"
+            )));
         }
     }
-    let count = accelerations.len();
-    let fault = |message| LineFault {
-        line: last_line,
-        message,
-    };
-    if count < 2 {
-        return Err(fault(format!(
-            "the number of samples is {count}; must be at least 2"
-        )));
-    }
-    let samples = evenly(step_s, accelerations)
-        .map_err(|wrong| fault(format!("{FREQUENCY} and the number of samples {wrong}")))?;
-    // The header gives the duration in whole seconds.
-    let lasts_s = count as f64 * step_s;
-    if let Some((line, duration_s)) = header.duration_s
-        && (lasts_s - duration_s).abs() > 1.0
-    {
-        return Err(fault(format!(
-            "the file ends after {count} samples, {} s: line {line} announces {} s ({DURATION})",
-            plain(lasts_s),
-            plain(duration_s)
-        )));
-    }
-    Ok(Contents {
-        samples,
-        unit: Unit::CentimetrePerS2,
-        wrapped: false,
-    })
+    let last = values.line;
+    let samples = values.evenly(step_s, last, FREQUENCY)?;
+    Ok(Contents::new(samples, Unit::CentimetrePerS2))
 }
 
-impl Header {
-    /// The header, and its number of lines.
-    fn parse(text: &str) -> Result<(Self, usize), LineFault> {
-        let mut header = Self::default();
-        for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
-            if line.starts_with(LAST) {
-                return Ok((header, index + 1));
-            }
-            header.take(index + 1, line).map_err(|message| LineFault {
-                line: index + 1,
-                message,
-            })?;
-        }
-        Err(LineFault {
-            line: text.lines().take(MAX_HEADER_LINES).count().max(1),
-            message: format!("there is no {LAST} up to here: is this a file of K-NET?"),
-        })
+fn read_step(frequency: &str) -> Result<f64, String> {
+    let frequency_hz = number(frequency.trim_end_matches("Hz").trim_end())?;
+    let step_s = 1.0 / frequency_hz;
+    if step_s.is_finite() && step_s >= MIN_STEP_S {
+        return Ok(step_s);
     }
+    let [given, most] = [plain(frequency_hz), short(1.0 / MIN_STEP_S)];
+    Err(format!(
+        "{FREQUENCY} is {given}; must be above 0 and at most {most}"
+    ))
+}
 
-    fn take(&mut self, line_number: usize, line: &str) -> Result<(), String> {
-        let after = |key: &str| line.strip_prefix(key).map(str::trim);
-        if let Some(value) = after(FREQUENCY) {
-            let frequency_hz = number(value.trim_end_matches("Hz").trim_end())?;
-            let step_s = 1.0 / frequency_hz;
-            if !(step_s.is_finite() && step_s >= MIN_STEP_S) {
-                return Err(format!(
-                    "{FREQUENCY} is {}; must be above 0 and at most {}",
-                    plain(frequency_hz),
-                    short(1.0 / MIN_STEP_S)
-                ));
-            }
-            self.step_s = Some(step_s);
-        } else if let Some(value) = after(SCALE) {
-            let wrong = || {
-                format!(
-                    "the {SCALE} is `{}`; must be like 3920(gal)/6182761",
-                    excerpt(value)
-                )
-            };
-            let (gal, counts) = value.split_once("(gal)/").ok_or_else(wrong)?;
-            let scale = number(gal.trim())? / number(counts.trim())?;
-            // Products with samples of at most 1e12 stay finite.
-            if !(scale > 0.0 && scale <= 1.0) {
-                return Err(wrong());
-            }
-            self.scale = Some(scale);
-        } else if let Some(value) = after(DURATION) {
-            self.duration_s = Some((line_number, number(value)?));
-        }
-        Ok(())
-    }
+/// The factor that converts the whole numbers to gal.
+fn read_scale(scale: &str) -> Result<f64, String> {
+    let parts = scale.split_once("(gal)/");
+    let factor =
+        |(gal, counts): (&str, &str)| Ok::<_, String>(number(gal.trim())? / number(counts.trim())?);
+    // Products with samples of at most 1e12 stay finite.
+    let factor = parts.map(factor).transpose()?;
+    let factor = factor.filter(|factor| (0.0..=1.0).contains(factor) && *factor > 0.0);
+    let wrong = || {
+        format!(
+            "the {SCALE} is `{}`; must be like 3920(gal)/6182761",
+            excerpt(scale)
+        )
+    };
+    factor.ok_or_else(wrong)
 }
 
 #[cfg(test)]

@@ -6,11 +6,10 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::unit::AnyUnit;
-use super::{LineFault, MAX_TIME_S, MIN_STEP_S, Samples, Unit, asc, at2, csv, knet};
+use super::samples::{MAX_TIME_S, MIN_STEP_S};
+use super::unit::{AnyUnit, Recorded, Unit};
 use crate::scenario::document::Node;
 use crate::scenario::rule::{Count, Rule, Switch, one_of, within};
-use crate::scenario::source::not_plain;
 use crate::scenario::table::Table;
 
 named! {
@@ -24,18 +23,6 @@ named! {
         Knet = "knet",
         /// A table with a column of samples and one of times, or with samples at even steps.
         Csv = "csv",
-    }
-}
-
-named! {
-    /// The quantity that the samples of a record measure.
-    #[derive(Default)]
-    pub enum Recorded {
-        /// Accelerations, joined by straight lines.
-        #[default]
-        Acceleration = "acceleration",
-        /// Velocities, joined by straight lines: the acceleration is constant between samples.
-        Velocity = "velocity",
     }
 }
 
@@ -158,18 +145,6 @@ impl From<Form> for Layout {
     }
 }
 
-/// The contents of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Contents {
-    /// Times in s, at least a microsecond apart, and accelerations or velocities. There are from 2 to 1 800 000 samples,
-    /// with magnitudes up to 1e12.
-    pub samples: Vec<(f64, f64)>,
-    /// The unit of the samples.
-    pub unit: Unit,
-    /// Whether a row of a table holds several samples.
-    pub wrapped: bool,
-}
-
 pub(super) const COLUMN_NUMBER: Count = Count {
     range: 1..=10_000,
     why: "the first column",
@@ -221,33 +196,6 @@ impl Format {
 }
 
 impl Layout {
-    /// The contents of a file, from its bytes.
-    ///
-    /// # Errors
-    ///
-    /// The first fault in the bytes.
-    pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
-        let text = legible(bytes)?;
-        let mut contents = match &self.form {
-            Form::At2 { unit } => at2::parse(&text, *unit, self.quantity),
-            Form::Asc => asc::parse(&text, self.quantity),
-            Form::Knet => knet::parse(&text),
-            Form::Csv(layout) => csv::parse(&text, layout),
-        }?;
-        let unit = contents.unit;
-        if unit.quantity() != self.quantity {
-            return Err(LineFault {
-                line: 1,
-                message: format!("the unit is {:?}, {}", unit.name(), unit.other_quantity()),
-            });
-        }
-        if self.remove_mean {
-            let mean = mean(&contents.samples);
-            contents.samples.iter_mut().for_each(|s| s.1 -= mean);
-        }
-        Ok(contents)
-    }
-
     /// Reads the keys that describe files of this format; `None`: the format is unknown, which is a fault elsewhere.
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
@@ -346,30 +294,6 @@ impl Layout {
     }
 }
 
-/// The text of a file. Headers may be in any encoding that has its digits where ASCII has them.
-pub(super) fn legible(bytes: &[u8]) -> Result<String, LineFault> {
-    if let Some(wrong) = not_plain(bytes) {
-        return Err(LineFault {
-            line: 1,
-            message: wrong.to_owned(),
-        });
-    }
-    let text = String::from_utf8_lossy(bytes);
-    Ok(text.trim_start_matches('\u{feff}').to_owned())
-}
-
-/// The mean over time of samples joined by straight lines.
-pub(super) fn mean(samples: &[(f64, f64)]) -> f64 {
-    let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
-        return 0.0;
-    };
-    let areas = samples.windows(2).map(|pair| {
-        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
-        0.5 * (a0 + a1) * (t1 - t0)
-    });
-    areas.sum::<f64>() / (last.0 - first.0)
-}
-
 /// Name or number of a column.
 struct AnyColumn;
 
@@ -394,26 +318,4 @@ impl Rule for AnyColumn {
     fn schema(&self) -> Value {
         json!({ "anyOf": [{ "type": "string" }, COLUMN_NUMBER.schema()] })
     }
-}
-
-/// Samples with times at even steps, which must not last too long; the error continues the key that sets the step.
-pub(super) fn evenly(step_s: f64, accelerations: Vec<f64>) -> Result<Samples, String> {
-    // Counts below 2^53 are exact.
-    let time_s = |index: usize| index as f64 * step_s;
-    let last_s = time_s(accelerations.len().saturating_sub(1));
-    if last_s > MAX_TIME_S {
-        return Err(too_long(last_s));
-    }
-    let samples = accelerations.into_iter().enumerate();
-    Ok(samples.map(|(index, a)| (time_s(index), a)).collect())
-}
-
-/// Reports that a record is too long.
-pub(super) fn too_long(last_s: f64) -> String {
-    use crate::argument::{plain, short};
-    format!(
-        "make a record of {} s; at most {} s are allowed",
-        plain(last_s),
-        short(MAX_TIME_S)
-    )
 }

@@ -27,6 +27,7 @@ mod at2;
 mod csv;
 mod knet;
 mod layout;
+mod samples;
 mod unit;
 
 use std::borrow::Cow;
@@ -36,36 +37,26 @@ use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use layout::{
-    Contents, Decimal, Form, Format, Layout, Recorded, TableColumn, TableLayout, Times,
-};
+pub use layout::{Decimal, Form, Format, Layout, TableColumn, TableLayout, Times};
+use samples::MAX_TIME_S;
+pub use samples::{Contents, LineFault};
 use serde::Serialize;
-pub use unit::Unit;
+pub use unit::{Recorded, Unit};
 
 use super::assignment::Assignment;
-use super::error::{ScenarioErrors, excerpt};
-use super::ground::{MAX_ACCELERATION_G, free_fall};
+use super::error::ScenarioErrors;
 use super::relation::Relation;
 use super::rule::{Number, Text, above, one_of, within};
 use super::shown;
+use super::source::not_plain;
 use super::table::{self, Reading, Reported, Table};
 use crate::argument::{plain, short};
 use crate::dynamics::ground::GroundMotion;
 
-/// Times in s, and accelerations or velocities.
-type Samples = Vec<(f64, f64)>;
-
 /// Largest file.
 const MAX_BYTES: u64 = 64 << 20;
-/// Largest number of samples: an hour at 500 Hz.
-const MAX_SAMPLES: usize = 1_800_000;
-/// Times of a record are at most this far from zero.
-const MAX_TIME_S: f64 = 1e6;
-/// Smallest spacing of samples: a jump may take a microsecond.
-const MIN_STEP_S: f64 = 1e-6;
-/// Largest sample in any unit: no product or square derived from it leaves the range of an `f64`.
-const MAX_SAMPLE: f64 = 1e12;
-
+/// Largest acceleration of the ground: beyond it the unit must be wrong.
+pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const SCALE: Number = within(&(-1e6..=1e6));
 pub(super) const PEAK_G: Number = above(0.0, MAX_ACCELERATION_G);
 const START_S: Number = within(&(0.0..=MAX_TIME_S));
@@ -244,11 +235,9 @@ impl Series {
     /// The unscaled samples of a file; the error continues the name of the file.
     pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
         let path = folder.join(&file);
-        match read_contents(&path, &layout) {
-            Ok(contents) => Ok(Self::new(file, layout, contents)),
-            Err(FileFault::Unreadable(wrong)) => Err(wrong),
-            Err(FileFault::Line(fault)) => Err(faulty(&path, &fault)),
-        }
+        let contents = layout.parse(&read_bytes(&path)?);
+        let contents = contents.map_err(|fault| faulty(&path, &fault))?;
+        Ok(Self::new(file, layout, contents))
     }
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
@@ -286,14 +275,13 @@ impl Series {
             Ok(Layout::read(table, format))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
-        match read_contents(path, &layout) {
-            Ok(contents) => Ok(Self::new(name, layout, contents)),
-            Err(FileFault::Unreadable(wrong)) => Err(ScenarioErrors::unreadable(&name, wrong)),
-            Err(FileFault::Line(LineFault { line, message })) => {
-                let place = format!("{name}:{line}");
-                Err(ScenarioErrors::unreadable(&place, message))
-            }
-        }
+        let bytes = read_bytes(path).map_err(|wrong| ScenarioErrors::unreadable(&name, wrong))?;
+        let contents = layout
+            .parse(&bytes)
+            .map_err(|LineFault { line, message }| {
+                ScenarioErrors::unreadable(&format!("{name}:{line}"), message)
+            })?;
+        Ok(Self::new(name, layout, contents))
     }
 
     /// The name of its file, made safe to show.
@@ -411,7 +399,7 @@ impl Series {
     /// Mean of the scaled accelerations over the time of the record, in units of gravity.
     #[must_use]
     pub fn mean_g(&self, gravity_m_s2: f64) -> f64 {
-        layout::mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
+        mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
     fn read(
@@ -469,42 +457,61 @@ impl Series {
     }
 }
 
-/// A fault on a line of a record's file.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LineFault {
-    /// Line, from 1.
-    pub line: usize,
-    /// The offending value, and what is allowed instead.
-    pub message: String,
-}
-
-impl fmt::Display for LineFault {
-    /// `line: message`, which follows the name of the file and a colon.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.line, self.message)
+impl Layout {
+    /// The contents of a file, from its bytes.
+    ///
+    /// # Errors
+    ///
+    /// The first fault in the bytes.
+    pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
+        let text = legible(bytes)?;
+        let mut contents = match &self.form {
+            Form::At2 { unit } => at2::parse(&text, *unit, self.quantity),
+            Form::Asc => asc::parse(&text, self.quantity),
+            Form::Knet => knet::parse(&text),
+            Form::Csv(layout) => csv::parse(&text, layout),
+        }?;
+        let unit = contents.unit;
+        if unit.quantity() != self.quantity {
+            let other = unit.other_quantity();
+            return Err(LineFault::on(1)(format!(
+                "the unit is {:?}, {other}",
+                unit.name()
+            )));
+        }
+        if self.remove_mean {
+            let mean = mean(&contents.samples);
+            contents.samples.iter_mut().for_each(|s| s.1 -= mean);
+        }
+        Ok(contents)
     }
 }
 
-impl std::error::Error for LineFault {}
-
-/// Why samples cannot be read from a file.
-enum FileFault {
-    /// The file does not exist, or is too large; the text continues its name.
-    Unreadable(String),
-    /// Its contents are wrong.
-    Line(LineFault),
+/// The text of a file. Headers may be in any encoding that has its digits where ASCII has them.
+fn legible(bytes: &[u8]) -> Result<String, LineFault> {
+    if let Some(wrong) = not_plain(bytes) {
+        return Err(LineFault::on(1)(wrong));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    Ok(text.trim_start_matches('\u{feff}').to_owned())
 }
 
-/// Reads the samples of a file, or tells what is wrong with it.
-fn read_contents(path: &Path, layout: &Layout) -> Result<Contents, FileFault> {
-    let bytes = read_bytes(path).map_err(FileFault::Unreadable)?;
-    layout.parse(&bytes).map_err(FileFault::Line)
+/// The mean over time of samples joined by straight lines.
+fn mean(samples: &[(f64, f64)]) -> f64 {
+    let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
+        return 0.0;
+    };
+    let areas = samples.windows(2).map(|pair| {
+        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
+        0.5 * (a0 + a1) * (t1 - t0)
+    });
+    areas.sum::<f64>() / (last.0 - first.0)
 }
 
 /// Rows of this many numbers in a file, each with its line; or the first fault. The first row may hold names.
 pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
-    let numbers = layout::legible(&bytes).and_then(|text| csv::numbers(&text));
+    let numbers = legible(&bytes).and_then(|text| csv::numbers(&text));
     numbers.map_err(|fault| faulty(path, &fault))
 }
 
@@ -530,35 +537,13 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// A finite number as programs write it; Fortran's `D` may begin the exponent.
-fn number(word: &str) -> Result<f64, String> {
-    // The library would also take "inf" and "nan".
-    let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
-    let value = if word.len() <= 60 && word.chars().all(numeric) {
-        word.replace(['d', 'D'], "e").parse::<f64>().ok()
-    } else {
-        None
-    };
-    value
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| format!("`{}` is not a finite number", excerpt(word)))
-}
-
-/// A sample as programs write it.
-fn sample(word: &str) -> Result<f64, String> {
-    in_range(number(word)?)
-}
-
-/// Refuses a sample that is out of range.
-fn in_range(value: f64) -> Result<f64, String> {
-    if value.abs() <= MAX_SAMPLE {
-        return Ok(value);
-    }
-    Err(format!(
-        "`{}` is out of range; samples must be at most {} in magnitude",
-        plain(value),
-        short(MAX_SAMPLE)
-    ))
+/// Says that a vertical acceleration is impossible for a structure that rests on the ground.
+pub(super) fn free_fall(time_s: f64) -> String {
+    format!(
+        "makes the ground fall as fast as a free body at {} s, where it no longer carries the \
+         structure; vertical accelerations must stay above -1 g",
+        plain(time_s)
+    )
 }
 
 #[cfg(test)]
@@ -575,7 +560,7 @@ mod tests {
         .into()
     }
 
-    pub(super) fn parse(text: &str, layout: &Layout) -> Result<Samples, LineFault> {
+    pub(super) fn parse(text: &str, layout: &Layout) -> Result<Vec<(f64, f64)>, LineFault> {
         layout
             .parse(text.as_bytes())
             .map(|contents| contents.samples)

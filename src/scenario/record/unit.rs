@@ -2,9 +2,20 @@
 
 use serde_json::{Value, json};
 
-use super::layout::Recorded;
 use crate::scenario::document::Node;
 use crate::scenario::rule::{OneOf, Rule, one_of};
+
+named! {
+    /// The quantity that the samples of a record measure.
+    #[derive(Default)]
+    pub enum Recorded {
+        /// Accelerations, joined by straight lines.
+        #[default]
+        Acceleration = "acceleration",
+        /// Velocities, joined by straight lines: the acceleration is constant between samples.
+        Velocity = "velocity",
+    }
+}
 
 named! {
     /// Unit of the samples in a file.

@@ -1,26 +1,24 @@
 //! The structure on the ground: an arch, blocks, or `[column]`.
 
-mod caption;
 mod dimensions;
-mod origin;
+mod words;
 
-pub(crate) use caption::four_digits;
+pub(super) use dimensions::bounds_m;
 pub use dimensions::{Dimension, DimensionSide, metres};
 
 use std::f64::consts::FRAC_PI_2;
-use std::ops::Bound::{Excluded, Included};
 
 use serde::Serialize;
 use thiserror::Error;
 
+use super::bounds::{JOINT_DEG, LIKELY_EMBRACE_DEG, MAGNITUDE, VOUSSOIRS};
+use super::hinges::Hinges;
 use super::masonry::{self, Additions};
-use super::motion::Hinges;
 use super::relation::Relation::{AtMostOne, OneOf};
-use super::rule::{Count, List, Number, Switch, within};
+use super::rule::{Count, List, Switch};
 use super::span::Circular;
 use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
-use super::unlikely::LIKELY_EMBRACE_DEG;
 use crate::argument::{plain, rounded_up, short};
 use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
 use crate::dynamics::model::MechanismModel;
@@ -35,19 +33,6 @@ use crate::mechanics::masonry::{Carried, CircularArch, Masonry, PlacedLoad, Shap
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::Tie;
-
-/// Range of lengths and densities.
-pub(super) const MAGNITUDE: Number = within(&arch::MAGNITUDE);
-pub(super) const THICKNESS_RATIO: Number = Number(
-    Included(arch::MIN_THICKNESS_RATIO),
-    Excluded(arch::THICKNESS_RATIO_BOUND),
-);
-pub(super) const EMBRACE_DEG: Number = within(&arch::EMBRACE_DEG);
-const JOINT_DEG: Number = within(&(0.0..=*arch::EMBRACE_DEG.end()));
-pub(super) const VOUSSOIRS: Count = Count {
-    range: arch::VOUSSOIRS,
-    why: "four hinges need four joints",
-};
 
 /// The structure that stands on the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -100,7 +85,7 @@ impl Structure {
         let structure = match read {
             Read::Arch(arch) => Self::Arch(arch),
             Read::Column(column) if beside.is_ties_at_most() => {
-                tie::tied_column(table, &ties, column, gravity_m_s2)?
+                Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
             Read::Column(_) => {
                 return Err(beside.refused(table, "applies to an arch, not to a column"));

@@ -1,7 +1,7 @@
 //! Tables whose rows hold several consecutive samples.
 
-use super::super::layout::{Decimal, TableLayout, evenly};
-use super::super::{LineFault, MAX_SAMPLES, Samples, in_range};
+use super::super::layout::{Decimal, TableLayout};
+use super::super::samples::{LineFault, Samples, Values, in_range};
 use super::{Row, Rows, names_column, nothing};
 
 /// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
@@ -55,41 +55,33 @@ fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)
 /// Reads the samples of all rows. A first row without any number holds the names.
 pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Result<Samples, LineFault> {
     let mut rows = Rows::new(table, decimal);
-    let mut samples = Vec::new();
-    let mut last = nothing(table);
+    let mut values = Values::default();
     let mut is_first = true;
     while let Some(row) = rows.next()? {
-        last.line = row.line;
+        values.line = row.line;
         if std::mem::take(&mut is_first) && has_no_number(&row, decimal) {
             continue;
         }
         for cell in row.cells().take(row.count()) {
             let value = decimal.number(cell).and_then(in_range);
             let value = value.map_err(|message| {
-                let hint = if samples.is_empty() {
+                let hint = if values.values.is_empty() {
                     rows.where_they_begin(|row| is_of_numbers(row, decimal))
                 } else {
                     String::new()
                 };
-                row.fault(format!("{message}{hint}"))
+                row.fault(message + &hint)
             })?;
-            if samples.len() == MAX_SAMPLES {
-                return Err(row.fault(format!(
-                    "more than {MAX_SAMPLES} samples, too many for a record"
-                )));
-            }
-            samples.push(value);
+            values.push(row.line, value)?;
         }
     }
-    let fault = |message| LineFault { message, ..last };
-    match samples.len() {
-        0 => Err(last),
-        1 => Err(fault(
-            "the number of samples is 1; must be at least 2".to_owned(),
-        )),
-        _ => evenly(step_s, samples)
-            .map_err(|wrong| fault(format!("`dt_s` and the number of samples {wrong}"))),
+    let line = values.line;
+    if values.values.is_empty() {
+        let empty = nothing(table);
+        let line = if line > 0 { line } else { empty.line };
+        return Err(LineFault { line, ..empty });
     }
+    values.evenly(step_s, line, "`dt_s`")
 }
 
 fn is_of_numbers(row: &Row<'_>, decimal: Decimal) -> bool {

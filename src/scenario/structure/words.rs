@@ -1,15 +1,46 @@
-//! The frame of reference of a structure, and where its ties are in it, in words.
+//! A structure in words: its dimensions, its frame of reference, and where its ties are in it.
 
-use super::{Structure, metres};
+use super::Structure;
+use super::dimensions::{circular, metres};
 use crate::mechanics::arch::{Arch, MeasuredAt};
-use crate::mechanics::masonry::Shape;
+use crate::mechanics::masonry::{FillLevel, Masonry, Shape};
 use crate::mechanics::tie::Tie;
 
 impl Structure {
+    /// The structure in words, with properties that its drawing does not show.
+    #[must_use]
+    pub fn described(&self) -> String {
+        let (depth_m, density_kg_m3) = self.depth_and_density();
+        let mut parts = Vec::new();
+        match self {
+            Self::Arch(arch) => {
+                let thick_m = arch.mean_radius_m() * arch.thickness_ratio();
+                let [degrees, thick] = [arch.embrace_deg(), thick_m].map(metres);
+                parts.push(format!(
+                    "circular arch of {degrees} degrees, {thick} m thick"
+                ));
+                parts.extend(arch.voussoirs().map(|count| format!("{count} voussoirs")));
+                parts.extend(measured(arch));
+            }
+            Self::Column(_) => parts.push("column".to_owned()),
+            Self::Masonry(masonry) => parts.extend(of_masonry(masonry)),
+        }
+        let [depth, density] = [depth_m, density_kg_m3].map(metres);
+        parts.push(format!("{depth} m deep, {density} kg/m3"));
+        parts.push(self.origin());
+        parts.extend(self.ties_in_words());
+        parts.join("; ")
+    }
+
     /// Where the coordinates x and y are zero. Ties, loads, points and results use this frame.
     #[must_use]
     pub fn origin(&self) -> String {
-        if let Some(arch) = self.circular_shape() {
+        let circular = match self {
+            Self::Arch(arch) => Some(arch),
+            Self::Column(_) => None,
+            Self::Masonry(masonry) => circular(masonry),
+        };
+        if let Some(arch) = circular {
             let springing_m = springing_m(arch);
             let place = if springing_m > 0.0 {
                 format!(
@@ -54,18 +85,46 @@ impl Structure {
         ties.map(|(index, tie)| format!("tie {} {}", index + 1, place(tie, springing_m)))
             .collect()
     }
+}
 
-    /// The circular arch, alone or with what stands or lies beside it.
-    fn circular_shape(&self) -> Option<&Arch> {
-        match self {
-            Self::Arch(arch) => Some(arch),
-            Self::Column(_) => None,
-            Self::Masonry(masonry) => match masonry.shape() {
-                Shape::Circular(circular) => Some(&circular.arch),
-                _ => None,
-            },
-        }
-    }
+/// Where its span and rise are measured, if the scenario gives them.
+fn measured(arch: &Arch) -> Option<String> {
+    let line = arch.measured_at()?;
+    Some(format!("span and rise {}", line.in_words()))
+}
+
+fn of_masonry(masonry: &Masonry) -> Vec<String> {
+    let name = match masonry.shape() {
+        Shape::Circular(_) => "circular arch",
+        Shape::PointedArch(_) => "pointed arch",
+        Shape::EllipticArch(_) => "elliptic arch",
+        Shape::BasketArch(_) => "basket-handle arch",
+        Shape::Blocks(_) => "blocks",
+    };
+    let thick = masonry.springings().map(|[left, _]| {
+        let thick_m = (left.extrados_m - left.intrados_m).norm();
+        format!(", {} m thick", metres(thick_m))
+    });
+    let mut parts = vec![format!("{name}{}", thick.unwrap_or_default())];
+    parts.extend(circular(masonry).and_then(measured));
+    parts.push(format!("{} blocks", masonry.row().blocks().len()));
+    parts.extend(masonry.fill.map(|fill| {
+        let (height_m, line) = match fill.level {
+            FillLevel::AboveSpringing(height_m) => (height_m, "springing"),
+            FillLevel::AboveCrown(height_m) => (height_m, "crown"),
+        };
+        let [height, density] = [height_m, fill.density_kg_m3].map(metres);
+        format!("fill to {height} m above the {line}, {density} kg/m3")
+    }));
+    parts.extend(masonry.loads.iter().map(|load| {
+        let [mass, width, x] = [load.mass_kg, load.width_m, load.x_m].map(metres);
+        let over = match load.width_m {
+            0.0 => String::new(),
+            _ => format!(" over {width} m"),
+        };
+        format!("load of {mass} kg{over} at x = {x} m")
+    }));
+    parts
 }
 
 /// Height of the intrados of the springings above the centre of the circle, in metres; rounding of a semicircle counts as zero.

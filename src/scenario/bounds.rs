@@ -1,0 +1,21 @@
+//! Ranges of the dimensions of structures.
+
+use std::ops::Bound::{Excluded, Included};
+
+use super::rule::{Count, Number, within};
+use crate::mechanics::arch;
+
+/// Range of lengths and densities.
+pub(super) const MAGNITUDE: Number = within(&arch::MAGNITUDE);
+pub(super) const THICKNESS_RATIO: Number = Number(
+    Included(arch::MIN_THICKNESS_RATIO),
+    Excluded(arch::THICKNESS_RATIO_BOUND),
+);
+pub(super) const EMBRACE_DEG: Number = within(&arch::EMBRACE_DEG);
+pub(super) const JOINT_DEG: Number = within(&(0.0..=*arch::EMBRACE_DEG.end()));
+pub(super) const VOUSSOIRS: Count = Count {
+    range: arch::VOUSSOIRS,
+    why: "four hinges need four joints",
+};
+/// A full circle in radians is less than this; as degrees that is almost nothing.
+pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;

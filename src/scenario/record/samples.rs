@@ -1,0 +1,195 @@
+//! Samples as files hold them: numbers on lines, at times or at even steps.
+
+use std::fmt;
+
+use super::unit::Unit;
+use crate::argument::{plain, short};
+use crate::scenario::error::excerpt;
+
+/// Times in s, and accelerations or velocities.
+pub(super) type Samples = Vec<(f64, f64)>;
+
+/// Largest number of samples: an hour at 500 Hz.
+pub(super) const MAX_SAMPLES: usize = 1_800_000;
+/// Times of a record are at most this far from zero.
+pub(super) const MAX_TIME_S: f64 = 1e6;
+/// Smallest spacing of samples: a jump may take a microsecond.
+pub(super) const MIN_STEP_S: f64 = 1e-6;
+/// Largest sample in any unit: no product or square derived from it leaves the range of an `f64`.
+pub(super) const MAX_SAMPLE: f64 = 1e12;
+
+/// The contents of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contents {
+    /// Times in s, at least a microsecond apart, and accelerations or velocities. There are from 2 to 1 800 000 samples,
+    /// with magnitudes up to 1e12.
+    pub samples: Vec<(f64, f64)>,
+    /// The unit of the samples.
+    pub unit: Unit,
+    /// Whether a row of a table holds several samples.
+    pub wrapped: bool,
+}
+
+impl Contents {
+    pub(super) const fn new(samples: Samples, unit: Unit) -> Self {
+        Self {
+            samples,
+            unit,
+            wrapped: false,
+        }
+    }
+}
+
+/// A fault on a line of a record's file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineFault {
+    /// Line, from 1.
+    pub line: usize,
+    /// The offending value, and what is allowed instead.
+    pub message: String,
+}
+
+impl LineFault {
+    /// Makes faults of this line.
+    pub(in crate::scenario) fn on<M: Into<String>>(line: usize) -> impl Fn(M) -> Self + Copy {
+        move |message| Self {
+            line,
+            message: message.into(),
+        }
+    }
+}
+
+impl fmt::Display for LineFault {
+    /// `line: message`, which follows the name of the file and a colon.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.line, self.message)
+    }
+}
+
+impl std::error::Error for LineFault {}
+
+/// Numbers of a file, one after another.
+#[derive(Default)]
+pub(super) struct Values {
+    pub(super) values: Vec<f64>,
+    /// The line of the last one, from 1.
+    pub(super) line: usize,
+}
+
+impl Values {
+    /// The samples below a header of so many lines, as `words` finds them in a line.
+    pub(super) fn below<'t, W: Iterator<Item = &'t str>>(
+        text: &'t str,
+        header_lines: usize,
+        words: impl Fn(&'t str) -> W,
+    ) -> Result<Self, LineFault> {
+        let mut values = Self {
+            line: header_lines.max(1),
+            ..Self::default()
+        };
+        for (index, line) in text.lines().enumerate().skip(header_lines) {
+            for word in words(line) {
+                let value = number(word).and_then(in_range);
+                values.push(index + 1, value.map_err(LineFault::on(index + 1))?)?;
+            }
+        }
+        Ok(values)
+    }
+
+    /// Adds a sample of a line.
+    pub(super) fn push(&mut self, line: usize, value: f64) -> Result<(), LineFault> {
+        self.line = line;
+        if self.values.len() == MAX_SAMPLES {
+            return Err(self.fault(format!(
+                "more than {MAX_SAMPLES} samples, too many for a record"
+            )));
+        }
+        self.values.push(value);
+        Ok(())
+    }
+
+    /// A fault on the line of the last number.
+    pub(super) fn fault(&self, message: impl Into<String>) -> LineFault {
+        LineFault::on(self.line)(message)
+    }
+
+    /// Refuses a number of samples that is not the one announced by a line of the header.
+    pub(super) fn check_count(
+        &self,
+        (line, count): (usize, f64),
+        key: &str,
+    ) -> Result<(), LineFault> {
+        let found = self.values.len();
+        if count == found as f64 {
+            return Ok(());
+        }
+        let announced = plain(count);
+        Err(self.fault(format!(
+            "the number of samples is {found}: line {line} announces {announced} ({key})"
+        )))
+    }
+
+    /// Refuses fewer samples than make a record.
+    pub(super) fn check_enough(&self) -> Result<(), LineFault> {
+        match self.values.len() {
+            found @ ..2 => Err(self.fault(format!(
+                "the number of samples is {found}; must be at least 2"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// The samples at even steps, the first at time zero, if they make a record; the key on this line sets the step.
+    pub(super) fn evenly(self, step_s: f64, line: usize, key: &str) -> Result<Samples, LineFault> {
+        self.check_enough()?;
+        // Counts below 2^53 are exact.
+        let time_s = |index: usize| index as f64 * step_s;
+        let last_s = time_s(self.values.len() - 1);
+        if last_s > MAX_TIME_S {
+            return Err(LineFault::on(line)(format!(
+                "{key} and the number of samples make a record of {} s; at most {} s are allowed",
+                plain(last_s),
+                short(MAX_TIME_S)
+            )));
+        }
+        let samples = self.values.into_iter().enumerate();
+        Ok(samples
+            .map(|(index, value)| (time_s(index), value))
+            .collect())
+    }
+}
+
+/// Refuses a step that is too short.
+pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
+    if step_s >= MIN_STEP_S {
+        return Ok(step_s);
+    }
+    let (step, least) = (plain(step_s), short(MIN_STEP_S));
+    Err(format!("{key} is {step} s; must be at least {least} s"))
+}
+
+/// A finite number as programs write it; Fortran's `D` may begin the exponent.
+pub(super) fn number(word: &str) -> Result<f64, String> {
+    // The library would also take "inf" and "nan".
+    let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
+    let value = if word.len() <= 60 && word.chars().all(numeric) {
+        word.replace(['d', 'D'], "e").parse::<f64>().ok()
+    } else {
+        None
+    };
+    value
+        .filter(|value| value.is_finite())
+        .ok_or_else(|| format!("`{}` is not a finite number", excerpt(word)))
+}
+
+/// Refuses a sample that is out of range.
+pub(super) fn in_range(value: f64) -> Result<f64, String> {
+    if value.abs() <= MAX_SAMPLE {
+        return Ok(value);
+    }
+    Err(format!(
+        "`{}` is out of range; samples must be at most {} in magnitude",
+        plain(value),
+        short(MAX_SAMPLE)
+    ))
+}
