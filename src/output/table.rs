@@ -178,14 +178,13 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
 mod tests {
     use super::*;
 
+    type Row = (String, [f64; 2]);
+
     fn written(number: f64, text: &str) -> Result<String, OutputError> {
         let columns = [
-            column("a", |row: &(String, [f64; 2])| row.0.clone()),
-            numbers(
-                ["b", "c\"d"].map(String::from),
-                |row: &(String, [f64; 2])| &row.1,
-            ),
-            column("e", |row| row.1[0]),
+            column("a", |row: &Row| row.0.clone()),
+            numbers(["b", "c\"d"].map(String::from), |row: &Row| &row.1),
+            column("e", |row: &Row| row.1[0]),
         ];
         // Much more text than is buffered.
         let mut rows: Vec<_> = (0..10_000)

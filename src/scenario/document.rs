@@ -1,10 +1,11 @@
-//! A parsed TOML text: its values with their places, whether they come from the text, an assignment or a program.
+//! A parsed TOML text: its values, and their places, whether they come from the text, an assignment or a program.
 
-use std::fmt;
+use std::collections::HashMap;
+use std::mem;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -13,176 +14,104 @@ use super::error::{Fault, excerpt};
 use super::toml_text::inline;
 
 /// The place of a value: bytes of the text with this number. Text 0 is the scenario's; the others are those of the assignments, in
-/// their order. A value without text has an empty range.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// their order.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Span {
     pub(super) text: usize,
     pub(super) range: Range<usize>,
+    /// The offset of its key.
+    pub(super) key: usize,
 }
 
-/// A value with its place.
-#[derive(Clone, Debug)]
-pub(super) struct Entry {
-    pub(super) value: Node,
-    pub(super) span: Span,
-}
+/// The places of values by their paths, such as `/load/0/mass_kg`. A value that a program gives has none.
+type Spans = HashMap<String, Span>;
 
-/// The entries of a table in the order of the file, each with its key and the offset of that key.
-pub(super) type Tree = Vec<(String, usize, Entry)>;
+/// The entries of a table in the order of the file. A number that is not finite is kept as its text, and a date, which no key takes, as null.
+pub(super) type Entries = Map<String, Value>;
 
 /// Values that lie deeper than this are dropped: no key is so deep.
 const DEEPEST: usize = 16;
 
-/// A TOML value.
-#[derive(Clone, Debug)]
-pub(super) enum Node {
-    Text(String),
-    Whole(i128),
-    Number(f64),
-    Boolean(bool),
-    /// A date or a time, which no key takes.
-    Date(String),
-    Array(Vec<Entry>),
-    Table(Tree),
-}
-
-/// The entry of a table with this key.
-pub(super) fn entry<'t>(tree: &'t Tree, key: &str) -> Option<&'t Entry> {
-    let mut entries = tree.iter();
-    entries.find_map(|(name, _, entry)| (name == key).then_some(entry))
-}
-
-impl Entry {
-    fn parsed(value: Spanned<DeValue<'_>>, text: usize, depth: usize) -> Self {
-        let range = value.span();
-        Self {
-            value: Node::parsed(value.into_inner(), text, depth + 1),
-            span: Span { text, range },
-        }
-    }
-
-    /// A value that a program gives.
-    pub(super) fn given(value: Node) -> Self {
-        Self {
-            value,
-            span: Span::default(),
-        }
-    }
-
-    /// The table that it is.
-    pub(super) fn as_table(&self) -> Option<&Tree> {
-        match &self.value {
-            Node::Table(tree) => Some(tree),
-            _ => None,
-        }
+/// The kind of a value in messages.
+pub(super) fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Null => "a date or time",
+        Value::Bool(_) => "a boolean",
+        Value::Number(number) if number.is_f64() => "a number with a fraction",
+        Value::Number(_) => "a whole number",
+        Value::String(_) => "a string",
+        Value::Array(_) => "an array",
+        Value::Object(_) => "a table",
     }
 }
 
-impl Node {
-    fn parsed(value: DeValue<'_>, text: usize, depth: usize) -> Self {
-        match value {
-            DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => Self::Array(Vec::new()),
-            DeValue::String(string) => Self::Text(string.into_owned()),
-            // A number beyond this type is beyond all bounds as well.
-            DeValue::Integer(whole) => Self::Whole(
-                i128::from_str_radix(whole.as_str(), whole.radix()).unwrap_or(i128::MAX),
-            ),
-            DeValue::Float(number) => Self::Number(number.as_str().parse().unwrap_or(f64::NAN)),
-            DeValue::Boolean(value) => Self::Boolean(value),
-            DeValue::Datetime(date) => Self::Date(date.to_string()),
-            DeValue::Array(elements) => {
-                let elements = elements.into_iter();
-                Self::Array(
-                    elements
-                        .map(|one| Entry::parsed(one, text, depth))
-                        .collect(),
+/// A number as JSON; whole numbers may stand for counts.
+fn number_of(number: f64) -> Value {
+    if number.fract() == 0.0 && number.abs() < 1e15 {
+        #[expect(clippy::cast_possible_truncation, reason = "a whole number below 1e15")]
+        return Value::from(number as i64);
+    }
+    Value::from(number)
+}
+
+/// A value of a text, whose place and those of the values in it are added to `spans`.
+fn parsed(
+    spans: &mut Spans,
+    path: &str,
+    (key, value): (usize, Spanned<DeValue<'_>>),
+    text: usize,
+    depth: usize,
+) -> Value {
+    let range = value.span();
+    spans.insert(path.to_owned(), Span { text, range, key });
+    match value.into_inner() {
+        DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => Value::Array(Vec::new()),
+        DeValue::String(string) => Value::from(string),
+        // A number beyond this type is beyond the bounds of all counts.
+        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).map_or_else(
+            |_| whole.as_str().parse().unwrap_or(f64::MAX).into(),
+            Value::from,
+        ),
+        DeValue::Float(number) => match number.as_str().parse::<f64>() {
+            Ok(finite) if finite.is_finite() => Value::from(finite),
+            _ => Value::from(number.as_str()),
+        },
+        DeValue::Boolean(value) => Value::from(value),
+        DeValue::Datetime(_) => Value::Null,
+        DeValue::Array(elements) => {
+            let elements = elements.into_iter().enumerate();
+            let parsed = elements.map(|(index, element)| {
+                parsed(
+                    spans,
+                    &format!("{path}/{index}"),
+                    (0, element),
+                    text,
+                    depth + 1,
                 )
-            }
-            DeValue::Table(table) => Self::Table(parsed_tree(table, text, depth)),
+            });
+            parsed.collect()
         }
-    }
-
-    /// A number; whole numbers may stand for counts.
-    pub(super) fn of_number(number: f64) -> Self {
-        if number.fract() == 0.0 && number.abs() < 1e15 {
-            #[expect(clippy::cast_possible_truncation, reason = "a whole number below 1e15")]
-            return Self::Whole(number as i128);
-        }
-        Self::Number(number)
-    }
-
-    /// The value of a scenario written as JSON.
-    pub(super) fn of_json(value: &Value) -> Self {
-        match value {
-            Value::Null => Self::Table(Tree::new()),
-            Value::Bool(value) => Self::Boolean(*value),
-            Value::Number(number) => match number.as_i64() {
-                Some(whole) => Self::Whole(whole.into()),
-                None => Self::Number(number.as_f64().unwrap_or(f64::NAN)),
-            },
-            Value::String(text) => Self::Text(text.clone()),
-            Value::Array(elements) => {
-                let elements = elements.iter().map(Self::of_json);
-                Self::Array(elements.map(Entry::given).collect())
-            }
-            Value::Object(table) => {
-                let entries = table.iter();
-                let entries = entries
-                    .map(|(key, value)| (key.clone(), 0, Entry::given(Self::of_json(value))));
-                Self::Table(entries.collect())
-            }
-        }
-    }
-
-    /// The value as JSON.
-    pub(super) fn to_json(&self) -> Value {
-        match self {
-            Self::Text(text) | Self::Date(text) => Value::from(text.as_str()),
-            #[expect(
-                clippy::cast_possible_truncation,
-                reason = "beyond this type it is an error"
-            )]
-            Self::Whole(whole) => Value::from(*whole as i64),
-            Self::Number(number) => Value::from(*number),
-            Self::Boolean(value) => Value::from(*value),
-            Self::Array(elements) => elements.iter().map(|one| one.value.to_json()).collect(),
-            Self::Table(tree) => {
-                let entries = tree.iter();
-                let entries = entries.map(|(key, _, entry)| (key.clone(), entry.value.to_json()));
-                Value::Object(entries.collect())
-            }
-        }
-    }
-
-    /// The kind of the value in messages.
-    pub(super) const fn kind(&self) -> &'static str {
-        match self {
-            Self::Text(_) => "a string",
-            Self::Whole(_) => "a whole number",
-            Self::Number(_) => "a number with a fraction",
-            Self::Boolean(_) => "a boolean",
-            Self::Date(_) => "a date or time",
-            Self::Array(_) => "an array",
-            Self::Table(_) => "a table",
-        }
+        DeValue::Table(table) => Value::Object(parsed_table(spans, path, table, text, depth + 1)),
     }
 }
 
-impl fmt::Display for Node {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&inline(&self.to_json()))
-    }
-}
-
-fn parsed_tree(table: DeTable<'_>, text: usize, depth: usize) -> Tree {
-    let entries = table.into_iter();
-    let entries = entries.map(|(key, value)| {
-        let offset = key.span().start;
-        (
-            key.into_inner().into_owned(),
-            offset,
-            Entry::parsed(value, text, depth),
-        )
+fn parsed_table(
+    spans: &mut Spans,
+    path: &str,
+    table: DeTable<'_>,
+    text: usize,
+    depth: usize,
+) -> Entries {
+    let entries = table.into_iter().map(|(key, value)| {
+        let (offset, key) = (key.span().start, key.into_inner().into_owned());
+        let value = parsed(
+            spans,
+            &format!("{path}/{key}"),
+            (offset, value),
+            text,
+            depth,
+        );
+        (key, value)
     });
     entries.collect()
 }
@@ -190,7 +119,8 @@ fn parsed_tree(table: DeTable<'_>, text: usize, depth: usize) -> Tree {
 /// A TOML text with assignments into it.
 #[derive(Debug, Default)]
 pub(super) struct Document<'a> {
-    pub(super) root: Tree,
+    pub(super) root: Entries,
+    pub(super) spans: Spans,
     /// The text, and then that of each assignment.
     texts: Vec<&'a str>,
     /// The parts of the text that are not TOML. A key that occurs there may have been given, so it is not reported as missing.
@@ -221,12 +151,14 @@ impl<'a> Document<'a> {
                 if let Some(fault) = not_a_scenario(&legible, &faults) {
                     return Err(vec![fault]);
                 }
+                let (mut spans, folder) = (Spans::new(), folder.to_owned());
                 return Ok(Self {
-                    root: parsed_tree(root.into_inner(), 0, 0),
+                    root: parsed_table(&mut spans, "", root.into_inner(), 0, 0),
+                    spans,
                     texts: vec![text],
                     unread,
                     faults,
-                    folder: folder.to_owned(),
+                    folder,
                 });
             };
             let offset = start(&first);
@@ -249,11 +181,10 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// A document that a program gives as JSON.
-    pub(super) fn of_json(value: &Value, folder: &Path) -> Self {
-        let root = match Node::of_json(value) {
-            Node::Table(root) => root,
-            _ => Tree::new(),
+    /// A document that a program gives.
+    pub(super) fn of_json(root: Value, folder: &Path) -> Self {
+        let Value::Object(root) = root else {
+            return Self::default();
         };
         Self {
             root,
@@ -268,8 +199,9 @@ impl<'a> Document<'a> {
             self.texts.push(&assignment.text);
             let text = self.texts.len() - 1;
             let (value, _) = DeTable::parse_recoverable(&assignment.text);
-            let value = parsed_tree(value.into_inner(), text, 0);
-            if let Err(message) = put(&mut self.root, value, assignment.depth) {
+            let mut spans = Spans::new();
+            let value = parsed_table(&mut spans, "", value.into_inner(), text, 0);
+            if let Err(message) = self.put(value, &spans, assignment.depth) {
                 self.faults.push(Fault::new(text, 0, message));
             }
         }
@@ -277,30 +209,43 @@ impl<'a> Document<'a> {
 
     /// Puts a number at the place that a key such as `load.2.mass_kg` names.
     pub(super) fn put_number(&mut self, key: &[&str], number: f64) -> Result<(), String> {
-        let value = Entry::given(Node::of_number(number));
-        let value = key.iter().rev().fold(value, |inner, part| {
-            Entry::given(Node::Table(vec![((*part).to_owned(), 0, inner)]))
+        let value = key.iter().rev().fold(number_of(number), |inner, part| {
+            Value::Object(Map::from_iter([((*part).to_owned(), inner)]))
         });
-        match value.value {
-            Node::Table(value) => put(&mut self.root, value, key.len()),
+        match value {
+            Value::Object(value) => self.put(value, &Spans::new(), key.len()),
             _ => Ok(()),
         }
     }
 
-    /// The text of an entry, as a message quotes it.
-    pub(super) fn quote(&self, entry: &Entry) -> String {
-        if entry.span.range.is_empty() {
-            return excerpt(&entry.value.to_string());
+    /// Puts the value of the only key of `new`, which lies `depth` tables deep, at its place, and the places of values with it.
+    fn put(&mut self, new: Entries, spans: &Spans, depth: usize) -> Result<(), String> {
+        let mut root = Value::Object(mem::take(&mut self.root));
+        let put = replace(
+            &mut self.spans,
+            &mut root,
+            ["", ""],
+            (Value::Object(new), spans),
+            depth,
+        );
+        if let Value::Object(root) = root {
+            self.root = root;
         }
-        excerpt(&self.texts[entry.span.text][entry.span.range.clone()])
+        put
     }
 
-    /// Whether an entry is an array of tables `[[key]]`. Its span is the first of their headers.
-    pub(super) fn is_array_of_tables(&self, key: &str, entry: &Entry) -> bool {
-        let Span { text, range } = entry.span.clone();
-        let text = self.texts.get(text);
-        matches!(entry.value, Node::Array(_))
-            && text.is_some_and(|text| text[range] == format!("[[{key}]]"))
+    /// The text of a value, as a message quotes it.
+    pub(super) fn quote(&self, path: &str, value: &Value) -> String {
+        match self.spans.get(path) {
+            Some(span) => excerpt(&self.texts[span.text][span.range.clone()]),
+            None => excerpt(&inline(value)),
+        }
+    }
+
+    /// Whether a value is an array of tables `[[key]]`. Its span is the first of their headers.
+    pub(super) fn is_array_of_tables(&self, path: &str, key: &str) -> bool {
+        let span = self.spans.get(path);
+        span.is_some_and(|span| self.texts[span.text][span.range.clone()] == format!("[[{key}]]"))
     }
 }
 
@@ -342,41 +287,49 @@ fn faulty_part(text: &str, offset: usize) -> Range<usize> {
     start..end
 }
 
-/// Puts the value of the only key of `assignment`, which lies `depth` tables deep, at the same place in `tree`.
-fn put(tree: &mut Tree, assignment: Tree, depth: usize) -> Result<(), String> {
-    for (key, offset, value) in assignment {
-        match tree.iter_mut().find(|(name, ..)| *name == key) {
-            Some((_, _, known)) => replace(known, &key, value, depth)?,
-            None => tree.push((key, offset, value)),
+/// Replaces the known value by a new one, `depth` tables deep. Both have their paths. Entries of lists are counted from 1.
+fn replace(
+    known_spans: &mut Spans,
+    known: &mut Value,
+    [path, new_path]: [&str; 2],
+    (new, spans): (Value, &Spans),
+    depth: usize,
+) -> Result<(), String> {
+    match (known, new) {
+        (Value::Object(known), Value::Object(inner)) if depth > 0 => {
+            for (key, value) in inner {
+                let paths = [path, new_path].map(|path| format!("{path}/{key}"));
+                let paths = paths.each_ref().map(String::as_str);
+                let known = known.entry(key).or_insert(Value::Null);
+                replace(known_spans, known, paths, (value, spans), depth - 1)?;
+            }
         }
-    }
-    Ok(())
-}
-
-/// Replaces the known value by a new one, `depth` tables deep. Entries of lists are counted from 1.
-fn replace(known: &mut Entry, name: &str, new: Entry, depth: usize) -> Result<(), String> {
-    match (&mut known.value, new.value) {
-        (Node::Table(known), Node::Table(inner)) if depth > 1 => put(known, inner, depth - 1),
-        (Node::Array(entries), Node::Table(inner)) if depth > 1 => {
+        (Value::Array(entries), Value::Object(inner)) if depth > 0 => {
             let count = entries.len();
-            for (number, _, value) in inner {
-                let place = number.parse::<usize>().ok();
-                let entry = place.and_then(|place| entries.get_mut(place.checked_sub(1)?));
-                let Some(entry) = entry else {
+            for (number, value) in inner {
+                let index = number
+                    .parse()
+                    .ok()
+                    .and_then(|place: usize| place.checked_sub(1));
+                let entry = index.and_then(|index| Some((index, entries.get_mut(index)?)));
+                let Some((index, known)) = entry else {
+                    let name = path.rsplit('/').next().unwrap_or_default();
                     return Err(format!(
                         "`{name}` is a list, whose entries are `{name}.1` to `{name}.{count}`: `{name}.{number}` is none"
                     ));
                 };
-                replace(entry, &format!("{name}.{number}"), value, depth - 1)?;
+                let paths = [format!("{path}/{index}"), format!("{new_path}/{number}")];
+                let paths = paths.each_ref().map(String::as_str);
+                replace(known_spans, known, paths, (value, spans), depth - 1)?;
             }
-            Ok(())
         }
-        (_, value) => {
-            *known = Entry {
-                value,
-                span: new.span,
-            };
-            Ok(())
+        (known, new) => {
+            *known = new;
+            known_spans.extend(spans.iter().filter_map(|(inner, span)| {
+                let inner = inner.strip_prefix(new_path)?;
+                Some((format!("{path}{inner}"), span.clone()))
+            }));
         }
     }
+    Ok(())
 }

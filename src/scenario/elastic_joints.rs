@@ -44,33 +44,24 @@ const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ElasticTable {
     /// Stiffness of a joint per area, against penetration.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal_stiffness_gpa_m: Option<f64>,
     /// The same against slip.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub shear_stiffness_gpa_m: Option<f64>,
     /// Young's modulus of the blocks, from which the stiffness can be derived instead.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub stone_modulus_gpa: Option<f64>,
     /// Young's modulus of the mortar.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mortar_modulus_gpa: Option<f64>,
     /// Thickness of the mortar.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub mortar_thickness_m: Option<f64>,
     /// Coulomb's coefficient; without it joints never slip permanently.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
     /// Damping forces are this time multiplied by the rates of the elastic forces.
     pub damping_time_s: f64,
     /// Stress at which joints crush.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub compressive_strength_mpa: Option<f64>,
     /// Number of points that carry the stress; without it the whole joint does.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub contact_points: Option<usize>,
     /// The longest time step.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
     /// Where the supports have gone before time begins, by `[supports]`.
     #[serde(skip)]

@@ -1,7 +1,7 @@
 //! How the ground moves: `[ground.<kind>]`.
 
 use nalgebra::Vector2;
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde::{Serialize, Serializer};
 
 use super::error::ScenarioErrors;
 use super::record::{MAX_ACCELERATION_G, Record, Series, free_fall};
@@ -98,19 +98,18 @@ impl Ground {
 impl Serialize for Ground {
     /// Writes a table named after the kind.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(1))?;
         match self {
-            Self::Pulse(pulse) => map.serialize_entry(pulse.kind.name(), pulse)?,
-            Self::Record(record) => map.serialize_entry(RECORD, record)?,
+            Self::Pulse(pulse) => serializer.collect_map([(pulse.kind.name(), pulse)]),
+            Self::Record(record) => serializer.collect_map([(RECORD, record)]),
         }
-        map.end()
     }
 }
 
 /// A pulse of ground acceleration as read; before and after it the ground velocity is constant.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PulseGround {
     /// Shape of the pulse.
+    #[serde(skip)]
     pub(crate) kind: Pulse,
     /// Peak acceleration, positive to the right, in -1000 to 1000.
     pub(crate) amplitude_g: f64,
@@ -121,18 +120,12 @@ pub struct PulseGround {
     pub(crate) duration_s: f64,
     /// When the pulse starts, in 0 to 1e6.
     pub(crate) start_s: f64,
-    /// Length of a wave train in periods, from `gamma` (above 1 and at most 100) or `cycles` (1 to 100).
-    pub(crate) cycles: f64,
+    /// Length of a wave train in periods, as most of their sources call it: above 1 and at most 100.
+    pub(crate) gamma: Option<f64>,
+    /// Length of a windowed sine in periods, in 1 to 100.
+    pub(crate) cycles: Option<f64>,
     /// Phase of a wave train, in -360 to 360.
-    pub(crate) phase_deg: f64,
-}
-
-/// The key for the length of a wave train, named as in its source, and its range.
-const fn cycles_key(kind: Pulse) -> (&'static str, &'static Number) {
-    match kind {
-        Pulse::WindowedSine => ("cycles", &CYCLES),
-        _ => ("gamma", &GAMMA),
-    }
+    pub(crate) phase_deg: Option<f64>,
 }
 
 impl PulseGround {
@@ -145,9 +138,10 @@ impl PulseGround {
     /// The pulse without its amplitudes.
     #[must_use]
     pub fn shape(&self) -> PulseShape {
+        let default = WaveTrain::default();
         let train = WaveTrain {
-            cycles: self.cycles,
-            phase_rad: self.phase_deg.to_radians(),
+            cycles: self.gamma.or(self.cycles).unwrap_or(default.cycles),
+            phase_rad: self.phase_deg.map_or(default.phase_rad, f64::to_radians),
         };
         self.kind
             .lasting_s(self.duration_s)
@@ -168,20 +162,18 @@ impl PulseGround {
         kind: Pulse,
         gravity_m_s2: Option<f64>,
     ) -> Reading<(Self, GroundMotion)> {
-        let mut pulse = Self {
+        let (is_train, periods) = (kind.is_wave_train(), WaveTrain::default().cycles);
+        let has_cycles = kind == Pulse::WindowedSine;
+        let pulse = Self {
             kind,
             amplitude_g: table.required("amplitude_g", &AMPLITUDE_G),
             vertical_amplitude_g: table.or("vertical_amplitude_g", &AMPLITUDE_G, 0.0),
             duration_s: table.required("duration_s", &DURATION_S),
             start_s: table.or("start_s", &within(&(0.0..=1e6)), 0.0),
-            cycles: WaveTrain::default().cycles,
-            phase_deg: 0.0,
+            gamma: (is_train && !has_cycles).then(|| table.or("gamma", &GAMMA, periods)),
+            cycles: has_cycles.then(|| table.or("cycles", &CYCLES, periods)),
+            phase_deg: is_train.then(|| table.or("phase_deg", &within(&(-360.0..=360.0)), 0.0)),
         };
-        if kind.is_wave_train() {
-            let (key, range) = cycles_key(kind);
-            pulse.cycles = table.or(key, range, pulse.cycles);
-            pulse.phase_deg = table.or("phase_deg", &within(&(-360.0..=360.0)), 0.0);
-        }
         table.sound()?;
         // Whether the ground falls freely does not depend on gravity, whose value may itself be faulty.
         let gravity_m_s2 = gravity_m_s2.unwrap_or(1.0);
@@ -190,20 +182,5 @@ impl PulseGround {
             None => Ok((pulse, motion)),
             Some(time_s) => Err(table.wrong("vertical_amplitude_g", free_fall(time_s))),
         }
-    }
-}
-
-impl Serialize for PulseGround {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("amplitude_g", &self.amplitude_g)?;
-        map.serialize_entry("vertical_amplitude_g", &self.vertical_amplitude_g)?;
-        map.serialize_entry("duration_s", &self.duration_s)?;
-        map.serialize_entry("start_s", &self.start_s)?;
-        if self.kind.is_wave_train() {
-            map.serialize_entry(cycles_key(self.kind).0, &self.cycles)?;
-            map.serialize_entry("phase_deg", &self.phase_deg)?;
-        }
-        map.end()
     }
 }

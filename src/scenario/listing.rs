@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component as PathPart, Path, PathBuf};
 
 use glob::MatchOptions;
-use serde::ser::{Error as _, SerializeMap};
+use serde_json::{Map, Value};
 
 use super::record::{Form, Format, Layout, Series};
 use super::shown;
@@ -83,32 +83,27 @@ impl Listing {
     }
 }
 
-/// Writes the keys that tell how the records are read.
-pub(super) fn serialize_layout<'a, M: SerializeMap>(
-    map: &mut M,
+/// The keys that tell how these records are read.
+pub(super) fn layout_keys<'a>(
     records: impl Iterator<Item = &'a Series> + Clone,
-) -> Result<(), M::Error> {
+) -> Map<String, Value> {
     let mut layouts = records.map(|series| &series.layout);
-    // If the formats differ, the file extensions told them apart.
-    if let Some(first) = layouts.clone().next()
-        && layouts
-            .clone()
-            .all(|layout| layout.format() == first.format())
-    {
-        map.serialize_entry("format", &first.format())?;
-    }
     // All tables share the same keys; without a table, AT2 files may share a unit.
-    let telling = layouts
+    let tables = layouts
         .clone()
-        .find(|layout| layout.format() == Format::Csv)
-        .or_else(|| layouts.next());
-    let keys = serde_json::to_value(telling).map_err(M::Error::custom)?;
-    for (key, value) in keys.as_object().into_iter().flatten() {
-        if key != "format" {
-            map.serialize_entry(key, value)?;
-        }
+        .find(|layout| layout.format() == Format::Csv);
+    let Some(telling) = tables.or_else(|| layouts.clone().next()) else {
+        return Map::new();
+    };
+    let keys = serde_json::to_value(telling).ok();
+    let mut keys = keys
+        .and_then(|keys| keys.as_object().cloned())
+        .unwrap_or_default();
+    // If the formats differ, the file extensions told them apart.
+    if layouts.any(|layout| layout.format() != telling.format()) {
+        keys.shift_remove("format");
     }
-    Ok(())
+    keys
 }
 
 /// All files that match the patterns, sorted by name, each once.

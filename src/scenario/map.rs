@@ -10,7 +10,8 @@
 //! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
 //! `repeat = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
 
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
@@ -231,14 +232,9 @@ fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), St
 impl Serialize for Map {
     /// Writes the two sequences, named by what varies, and `repeat` if it is set.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for axis in [&self.x, &self.y] {
-            map.serialize_entry(&axis.key, &axis.sequence)?;
-        }
-        if self.repeat {
-            map.serialize_entry(REPEAT, &true)?;
-        }
-        map.end()
+        let axes = [&self.x, &self.y].map(|axis| (&*axis.key, json!(axis.sequence)));
+        let repeat = self.repeat.then(|| (REPEAT, json!(true)));
+        serializer.collect_map(axes.into_iter().chain(repeat))
     }
 }
 

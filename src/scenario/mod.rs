@@ -648,19 +648,13 @@ impl Scenario {
     /// Reading the text of a valid scenario gives an equal scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        match self.to_json() {
-            Value::Object(table) => toml_text(&table),
-            _ => unreachable!("a scenario is a table"),
-        }
+        toml_text(&self.to_json())
     }
 
     /// The scenario as TOML text, as [`Scenario::to_toml`] gives it, and when the simulation ends by default.
     #[must_use]
     pub fn to_resolved_toml(&self) -> String {
-        match self.to_resolved_json() {
-            Value::Object(table) => toml_text(&table),
-            _ => unreachable!("a scenario is a table"),
-        }
+        toml_text(&self.to_resolved_json())
     }
 
     /// The scenario as JSON, as [`Scenario::to_json`] gives it, and when the simulation ends by default.
@@ -740,6 +734,18 @@ impl Scenario {
             let value = given.cloned().unwrap_or(value);
             (key, value)
         });
-        Value::Object(all.filter(|(_, value)| !value.is_null()).collect())
+        given(Value::Object(all.collect()))
+    }
+}
+
+/// A value without the keys that have no value.
+fn given(value: Value) -> Value {
+    match value {
+        Value::Object(table) => {
+            let some = table.into_iter().filter(|(_, value)| !value.is_null());
+            Value::Object(some.map(|(key, value)| (key, given(value))).collect())
+        }
+        Value::Array(values) => values.into_iter().map(given).collect(),
+        value => value,
     }
 }

@@ -9,7 +9,7 @@
 //! file = "right.at2"
 //! ```
 
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
+use serde::Serialize;
 
 use super::hinges::Hinges;
 use super::record::{Record, Series};
@@ -26,14 +26,17 @@ const SLOWEST_M_S: f64 = 1.0;
 const RECORD: &str = "record";
 
 /// How the ground under the right foot moves.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum RightFoot {
     /// As the left foot, later by this time in seconds. Negative: the right foot starts earlier.
+    #[serde(rename = "delay_s")]
     Late(f64),
     /// As the left foot, later by the distance between the feet over this velocity in m/s. Negative: the wave travels to the left, and the right
     /// foot starts earlier.
+    #[serde(rename = "apparent_velocity_m_s")]
     Wave(f64),
     /// By a record of its own.
+    #[serde(rename = "record")]
     Record(Box<Record>),
 }
 
@@ -133,19 +136,5 @@ impl RightFoot {
             };
         };
         left.with_delayed_right_foot(delay_s).expect(IN_RANGE)
-    }
-}
-
-impl Serialize for RightFoot {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(1))?;
-        match self {
-            Self::Late(delay_s) => map.serialize_entry("delay_s", delay_s)?,
-            Self::Wave(velocity_m_s) => {
-                map.serialize_entry("apparent_velocity_m_s", velocity_m_s)?
-            }
-            Self::Record(record) => map.serialize_entry(RECORD, record)?,
-        }
-        map.end()
     }
 }

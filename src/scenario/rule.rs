@@ -5,20 +5,18 @@ use std::ops::{Bound, RangeBounds as _, RangeInclusive};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::document::{Entry, Node};
+use super::document::kind;
 use super::error::excerpt;
 use crate::argument::short;
 
 /// A rule for a value.
 pub(super) trait Rule {
     /// The type it is read as.
-    type Value: Serialize;
+    type Read: Serialize;
     /// The rule in words.
     fn allowed(&self) -> String;
     /// The value, or what is wrong with it.
-    fn read(&self, value: &Node) -> Result<Self::Value, String>;
-    /// Any value that follows the rule: it stands for one that is missing or wrong, and nothing is computed from it.
-    fn stand_in(&self) -> Self::Value;
+    fn read(&self, value: &Value) -> Result<Self::Read, String>;
     /// The rule as a JSON schema.
     fn schema(&self) -> Value;
 }
@@ -49,7 +47,7 @@ impl Number {
 }
 
 impl Rule for Number {
-    type Value = f64;
+    type Read = f64;
 
     fn allowed(&self) -> String {
         if let (Bound::Included(low), Bound::Included(high)) = (self.0, self.1) {
@@ -71,25 +69,15 @@ impl Rule for Number {
         format!("a number {}", bounds.join(" and "))
     }
 
-    fn read(&self, value: &Node) -> Result<f64, String> {
-        #[expect(clippy::cast_precision_loss, reason = "as for a number with a point")]
-        let x = match value {
-            Node::Number(number) => *number,
-            Node::Whole(whole) => *whole as f64,
-            _ => return Err(format!("is {}", value.kind())),
-        };
-        match x {
-            x if !x.is_finite() => Err("is not finite".to_owned()),
-            x if self.contains(x) => Ok(x),
-            _ => Err("is out of range".to_owned()),
-        }
-    }
-
-    fn stand_in(&self) -> f64 {
-        match (self.0, self.1) {
-            (Bound::Included(low), _) => low,
-            (_, Bound::Included(high)) => high,
-            _ => 1.0,
+    fn read(&self, value: &Value) -> Result<f64, String> {
+        let is_finite = |text: &String| text.parse::<f64>().map_or(true, f64::is_finite);
+        match value {
+            Value::Number(number) => number
+                .as_f64()
+                .filter(|x| self.contains(*x))
+                .ok_or("is out of range".to_owned()),
+            Value::String(text) if !is_finite(text) => Err("is not finite".to_owned()),
+            _ => Err(format!("is {}", kind(value))),
         }
     }
 
@@ -113,26 +101,22 @@ impl Rule for Number {
 pub(super) struct List<'a, R>(pub(super) &'a R);
 
 impl<R: Rule> Rule for List<'_, R> {
-    type Value = Vec<R::Value>;
+    type Read = Vec<R::Read>;
 
     fn allowed(&self) -> String {
         format!("an array, each element {}", self.0.allowed())
     }
 
-    fn read(&self, value: &Node) -> Result<Self::Value, String> {
-        let Node::Array(elements) = value else {
-            return Err(format!("is {}", value.kind()));
+    fn read(&self, value: &Value) -> Result<Self::Read, String> {
+        let Value::Array(elements) = value else {
+            return Err(format!("is {}", kind(value)));
         };
-        let read = |(index, element): (usize, &Entry)| {
+        let read = |(index, element): (usize, &Value)| {
             let place = index + 1;
             let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
-            self.0.read(&element.value).map_err(wrong)
+            self.0.read(element).map_err(wrong)
         };
         elements.iter().enumerate().map(read).collect()
-    }
-
-    fn stand_in(&self) -> Self::Value {
-        Vec::new()
     }
 
     fn schema(&self) -> Value {
@@ -144,22 +128,18 @@ impl<R: Rule> Rule for List<'_, R> {
 pub(super) struct OneOrMore<'a, R>(pub(super) &'a R);
 
 impl<R: Rule> Rule for OneOrMore<'_, R> {
-    type Value = Vec<R::Value>;
+    type Read = Vec<R::Read>;
 
     fn allowed(&self) -> String {
         format!("{} or an array of at least one", self.0.allowed())
     }
 
-    fn read(&self, value: &Node) -> Result<Self::Value, String> {
+    fn read(&self, value: &Value) -> Result<Self::Read, String> {
         match value {
-            Node::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
-            Node::Array(_) => List(self.0).read(value),
+            Value::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
+            Value::Array(_) => List(self.0).read(value),
             _ => Ok(vec![self.0.read(value)?]),
         }
-    }
-
-    fn stand_in(&self) -> Self::Value {
-        Vec::new()
     }
 
     fn schema(&self) -> Value {
@@ -172,21 +152,14 @@ impl<R: Rule> Rule for OneOrMore<'_, R> {
 pub(super) struct Switch;
 
 impl Rule for Switch {
-    type Value = bool;
+    type Read = bool;
 
     fn allowed(&self) -> String {
         "true or false".to_owned()
     }
 
-    fn read(&self, value: &Node) -> Result<bool, String> {
-        match value {
-            Node::Boolean(value) => Ok(*value),
-            _ => Err(format!("is {}", value.kind())),
-        }
-    }
-
-    fn stand_in(&self) -> bool {
-        false
+    fn read(&self, value: &Value) -> Result<bool, String> {
+        value.as_bool().ok_or_else(|| format!("is {}", kind(value)))
     }
 
     fn schema(&self) -> Value {
@@ -202,24 +175,21 @@ pub(super) struct Count {
 }
 
 impl Rule for Count {
-    type Value = usize;
+    type Read = usize;
 
     fn allowed(&self) -> String {
         let (low, high) = (self.range.start(), self.range.end());
         format!("a whole number from {low} ({}) to {high}", self.why)
     }
 
-    fn read(&self, value: &Node) -> Result<usize, String> {
-        let Node::Whole(whole) = value else {
-            return Err(format!("is {}", value.kind()));
-        };
-        let count = usize::try_from(*whole).ok();
-        let count = count.filter(|count| self.range.contains(count));
-        count.ok_or_else(|| "is out of range".to_owned())
-    }
-
-    fn stand_in(&self) -> usize {
-        *self.range.start()
+    fn read(&self, value: &Value) -> Result<usize, String> {
+        let count = value.as_u64().and_then(|whole| usize::try_from(whole).ok());
+        let is_whole = value.is_i64() || value.as_f64().is_some_and(|number| number.abs() > 9e18);
+        match count.filter(|count| self.range.contains(count)) {
+            Some(count) => Ok(count),
+            None if is_whole => Err("is out of range".to_owned()),
+            None => Err(format!("is {}", kind(value))),
+        }
     }
 
     fn schema(&self) -> Value {
@@ -231,21 +201,15 @@ impl Rule for Count {
 pub(super) struct Text;
 
 impl Rule for Text {
-    type Value = String;
+    type Read = String;
 
     fn allowed(&self) -> String {
         "a string".to_owned()
     }
 
-    fn read(&self, value: &Node) -> Result<String, String> {
-        match value {
-            Node::Text(text) => Ok(text.clone()),
-            _ => Err(format!("is {}", value.kind())),
-        }
-    }
-
-    fn stand_in(&self) -> String {
-        String::new()
+    fn read(&self, value: &Value) -> Result<String, String> {
+        let text = value.as_str().map(str::to_owned);
+        text.ok_or_else(|| format!("is {}", kind(value)))
     }
 
     fn schema(&self) -> Value {
@@ -271,24 +235,20 @@ impl<T: Copy> OneOf<T> {
 }
 
 impl<T: Copy + Serialize> Rule for OneOf<T> {
-    type Value = T;
+    type Read = T;
 
     fn allowed(&self) -> String {
         let names: Vec<_> = self.names().iter().map(|s| format!("{s:?}")).collect();
         format!("one of {}", names.join(", "))
     }
 
-    fn read(&self, value: &Node) -> Result<T, String> {
-        let Node::Text(text) = value else {
-            return Err(format!("is {}", value.kind()));
+    fn read(&self, value: &Value) -> Result<T, String> {
+        let Value::String(text) = value else {
+            return Err(format!("is {}", kind(value)));
         };
         let mut all = self.all.iter().copied();
         all.find(|&one| (self.name)(one) == text)
             .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
-    }
-
-    fn stand_in(&self) -> T {
-        self.all[0]
     }
 
     fn schema(&self) -> Value {
@@ -300,18 +260,14 @@ impl<T: Copy + Serialize> Rule for OneOf<T> {
 pub(super) struct Because(pub(super) Number, pub(super) &'static str);
 
 impl Rule for Because {
-    type Value = f64;
+    type Read = f64;
 
     fn allowed(&self) -> String {
         format!("{} ({})", self.0.allowed(), self.1)
     }
 
-    fn read(&self, value: &Node) -> Result<f64, String> {
+    fn read(&self, value: &Value) -> Result<f64, String> {
         self.0.read(value)
-    }
-
-    fn stand_in(&self) -> f64 {
-        self.0.stand_in()
     }
 
     fn schema(&self) -> Value {

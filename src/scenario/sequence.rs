@@ -3,7 +3,6 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::document::Node;
 use super::rule::{Count, List, Number, Rule, one_of};
 use super::table::{Reading, Table};
 use crate::argument::short;
@@ -41,7 +40,7 @@ pub enum Sequence {
 struct Ascending<'a>(&'a Number);
 
 impl Rule for Ascending<'_> {
-    type Value = Vec<f64>;
+    type Read = Vec<f64>;
 
     fn allowed(&self) -> String {
         format!(
@@ -50,8 +49,8 @@ impl Rule for Ascending<'_> {
         )
     }
 
-    fn read(&self, value: &Node) -> Result<Vec<f64>, String> {
-        if let Node::Whole(_) | Node::Number(_) = value {
+    fn read(&self, value: &Value) -> Result<Vec<f64>, String> {
+        if value.is_number() {
             return Err("is a single number".to_owned());
         }
         let values = List(self.0).read(value)?;
@@ -62,10 +61,6 @@ impl Rule for Ascending<'_> {
         } else {
             Err("does not ascend".to_owned())
         }
-    }
-
-    fn stand_in(&self) -> Vec<f64> {
-        Vec::new()
     }
 
     fn schema(&self) -> Value {

@@ -13,7 +13,6 @@ use crate::dynamics::model::Request;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Simulation {
     /// Longest time to simulate, in 1e-6 to 1e6; if `None`, the default of [`Simulation::end_s`], which follows the ground motion.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// Time between rows of the output, at least 1e-6 and at most the time to simulate.
     pub output_step_s: f64,

@@ -15,7 +15,7 @@
 
 use serde::ser::{Serialize, SerializeMap as _, Serializer};
 
-use super::listing::{Listing, serialize_layout};
+use super::listing::{Listing, layout_keys};
 use super::record::{self, Component, Format, Record, Scaling, Series};
 use super::relation::Relation;
 use super::rule::{Number, OneOrMore, Switch, Text, above, within};
@@ -167,7 +167,9 @@ impl Serialize for Suite {
         let mut map = serializer.serialize_map(None)?;
         let files: Vec<_> = self.records.iter().map(|series| &series.file).collect();
         map.serialize_entry(RECORDS, &files)?;
-        serialize_layout(&mut map, self.records.iter())?;
+        for (key, value) in layout_keys(self.records.iter()) {
+            map.serialize_entry(&key, &value)?;
+        }
         map.serialize_entry(self.measure.name(), &self.levels)?;
         map.serialize_entry("both_signs", &self.both_signs)?;
         map.serialize_entry(SPECTRAL_PERIOD_S, &self.spectral.period_s)?;

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::assignment::Assignment;
-use super::document::{Document, Entry, Node, Tree, entry};
+use super::document::{Document, Entries, Span, kind};
 use super::error::{Fault, excerpt};
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
@@ -113,7 +113,9 @@ pub(super) struct Table<'a> {
     name: String,
     /// The text with its header, and the offset of that header.
     place: (usize, usize),
-    entries: &'a Tree,
+    /// Its path in the document.
+    path: String,
+    entries: &'a Entries,
     document: &'a Document<'a>,
     /// The keys, and whether each is read as a table.
     known: Vec<(String, bool)>,
@@ -125,10 +127,11 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    fn new(name: String, entries: &'a Tree, document: &'a Document<'a>) -> Self {
+    fn new(name: String, entries: &'a Entries, document: &'a Document<'a>) -> Self {
         Self {
             name,
             place: (0, 0),
+            path: String::new(),
             entries,
             document,
             known: Vec::new(),
@@ -175,7 +178,7 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that must be given.
-    pub(super) fn required<R: Rule>(&mut self, key: &str, rule: &R) -> R::Value {
+    pub(super) fn required<R: Rule<Read: Default>>(&mut self, key: &str, rule: &R) -> R::Read {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
             description.required.push(key.to_owned());
@@ -184,20 +187,20 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that was read as `value`, and that others make necessary.
-    pub(super) fn needed<R: Rule>(
+    pub(super) fn needed<R: Rule<Read: Default>>(
         &mut self,
         key: &str,
         rule: &R,
-        value: Option<R::Value>,
-    ) -> R::Value {
+        value: Option<R::Read>,
+    ) -> R::Read {
         if !self.may_give(&[key]) {
             self.wrong_itself(format!("lacks `{key}`: give {}", rule.allowed()));
         }
-        value.unwrap_or_else(|| rule.stand_in())
+        value.unwrap_or_default()
     }
 
     /// The value of a key that can be left out, or `default`.
-    pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Value) -> R::Value {
+    pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Read) -> R::Read {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
             description.properties[key]["default"] = json!(default);
@@ -206,11 +209,11 @@ impl<'a> Table<'a> {
     }
 
     /// The value of a key that can be left out.
-    pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Value> {
+    pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Read> {
         if let Some(description) = &mut self.description {
             description.add(key, rule.schema());
         }
-        match rule.read(&self.entry(key, false)?.value) {
+        match rule.read(self.entry(key, false)?) {
             Ok(value) => Some(value),
             Err(wrong) => {
                 self.wrong(key, format!("{wrong}; must be {}", rule.allowed()));
@@ -244,11 +247,11 @@ impl<'a> Table<'a> {
                 Ok(None)
             };
         };
-        if entry.as_table().is_none() {
-            let wrong = format!("is {}; must be a table", entry.value.kind());
-            return Err(self.wrong(key, wrong));
-        }
-        self.descend(key, Some(entry), read).map(Some)
+        let Value::Object(entries) = entry else {
+            return Err(self.wrong(key, format!("is {}; must be a table", kind(entry))));
+        };
+        self.descend(key, Some((format!("{}/{key}", self.path), entries)), read)
+            .map(Some)
     }
 
     /// The tables of an array `[[key]]` that are right, each read by `read`; empty if not given.
@@ -269,20 +272,19 @@ impl<'a> Table<'a> {
             }
             return Vec::new();
         };
-        let Node::Array(elements) = &entry.value else {
-            let wrong = format!(
-                "is {}; must be an array of tables: write [[{key}]]",
-                entry.value.kind()
-            );
+        let Value::Array(elements) = entry else {
+            let kind = kind(entry);
+            let wrong = format!("is {kind}; must be an array of tables: write [[{key}]]");
             self.wrong(key, wrong);
             return Vec::new();
         };
         let mut tables = Vec::new();
         for (index, element) in elements.iter().enumerate() {
-            if element.as_table().is_some() {
-                tables.extend(self.descend(key, Some(element), &read));
+            if let Value::Object(entries) = element {
+                let path = format!("{}/{key}/{index}", self.path);
+                tables.extend(self.descend(key, Some((path, entries)), &read));
             } else {
-                let wrong = format!("is {}; must be a table", element.value.kind());
+                let wrong = format!("is {}; must be a table", kind(element));
                 self.wrong_element(key, index, wrong);
             }
         }
@@ -306,29 +308,29 @@ impl<'a> Table<'a> {
         if self.description.is_some() {
             return vec!["table.key".to_owned()];
         }
-        let keys = self.entries.iter().map(|(key, ..)| key);
+        let keys = self.entries.keys();
         keys.filter(|key| key.contains('.')).cloned().collect()
     }
 
     /// A value as the file gives it, if it does.
     pub(super) fn as_given(&self, key: &str) -> Option<Value> {
-        Some(entry(self.entries, key)?.value.to_json())
+        self.entries.get(key).cloned()
     }
 
     /// Whether the file gives a table for the key.
     pub(super) fn gives_table(&self, key: &str) -> bool {
-        entry(self.entries, key).is_some_and(|entry| entry.as_table().is_some())
+        self.entries.get(key).is_some_and(Value::is_object)
     }
 
     /// Whether the file gives the key.
     pub(super) fn gives(&self, key: &str) -> bool {
-        entry(self.entries, key).is_some()
+        self.entries.contains_key(key)
     }
 
     /// Whether a table inside this one gives the key.
     pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
-        let inner = entry(self.entries, table).and_then(Entry::as_table);
-        inner.is_some_and(|inner| entry(inner, key).is_some())
+        let inner = self.entries.get(table);
+        inner.is_some_and(|inner| inner.get(key).is_some())
     }
 
     /// Whether the file gives one of the keys, or has lines that are not TOML and name one.
@@ -347,8 +349,13 @@ impl<'a> Table<'a> {
 
     /// The place of the value that the file gives for a key.
     pub(super) fn place(&self, key: &str) -> Option<(usize, usize)> {
-        let span = &entry(self.entries, key)?.span;
-        Some((span.text, span.range.start))
+        self.place_of(&format!("{}/{key}", self.path))
+    }
+
+    /// The place of the value with this path.
+    fn place_of(&self, path: &str) -> Option<(usize, usize)> {
+        let Span { text, range, .. } = self.document.spans.get(path)?;
+        Some((*text, range.start))
     }
 
     /// Whether the keys are collected for a description.
@@ -399,29 +406,33 @@ impl<'a> Table<'a> {
         key: &str,
         message: impl fmt::Display,
     ) -> Reported {
-        let mut place = self.place;
-        let mut found = entry(self.entries, key).filter(|_| tables.is_empty());
-        let mut entries = self.entries;
+        let mut around = vec![(self.path.clone(), self.entries)];
         for table in tables {
-            let Some(outer) = entry(entries, table) else {
+            let (path, entries) = &around[around.len() - 1];
+            let Some(Value::Object(inner)) = entries.get(*table) else {
                 break;
             };
-            place = (outer.span.text, outer.span.range.start);
-            let Some(inner) = outer.as_table() else {
-                break;
-            };
-            entries = inner;
-            found = entry(entries, key).or(found);
+            around.push((format!("{path}/{table}"), inner));
         }
-        let Some(found) = found else {
-            return self.fault(place, format!("`{key}` {message}"));
+        let innermost = around.last().and_then(|(path, _)| self.place_of(path));
+        // With nested tables, only those are searched.
+        let mut searched = around.iter().skip(tables.len().min(1)).rev();
+        let found = searched.find_map(|(path, entries)| {
+            let value = entries.get(key)?;
+            Some((format!("{path}/{key}"), value))
+        });
+        let Some((path, value)) = found else {
+            return self.fault(
+                innermost.unwrap_or(self.place),
+                format!("`{key}` {message}"),
+            );
         };
-        let message = match &found.value {
-            Node::Table(_) => format!("table `{key}` {message}"),
-            _ if self.document.is_array_of_tables(key, found) => format!("`[[{key}]]` {message}"),
-            _ => format!("`{key} = {}` {message}", self.document.quote(found)),
+        let message = match value {
+            Value::Object(_) => format!("table `{key}` {message}"),
+            _ if self.document.is_array_of_tables(&path, key) => format!("`[[{key}]]` {message}"),
+            _ => format!("`{key} = {}` {message}", self.document.quote(&path, value)),
         };
-        self.fault((found.span.text, found.span.range.start), message)
+        self.fault(self.place_of(&path).unwrap_or_default(), message)
     }
 
     /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
@@ -432,15 +443,13 @@ impl<'a> Table<'a> {
         index: usize,
         message: impl fmt::Display,
     ) -> Reported {
-        let element = match entry(self.entries, key).map(|entry| &entry.value) {
-            Some(Node::Array(elements)) => elements.get(index),
-            _ => None,
-        };
+        let element = self.entries.get(key).and_then(|value| value.get(index));
         let Some(element) = element else {
             return self.wrong(key, message);
         };
-        let value = self.document.quote(element);
-        let place = (element.span.text, element.span.range.start);
+        let path = format!("{}/{key}/{index}", self.path);
+        let value = self.document.quote(&path, element);
+        let place = self.place_of(&path).unwrap_or_default();
         self.fault(place, format!("`{value}` in `{key}` {message}"))
     }
 
@@ -462,32 +471,31 @@ impl<'a> Table<'a> {
     }
 
     /// The entry of a key, if the file gives it.
-    fn entry(&mut self, key: &str, is_table: bool) -> Option<&'a Entry> {
+    fn entry(&mut self, key: &str, is_table: bool) -> Option<&'a Value> {
         if !self.known.iter().any(|(known, _)| known == key) {
             self.known.push((key.to_owned(), is_table));
         }
-        let entry = entry(self.entries, key);
+        let entry = self.entries.get(key);
         self.is_partial |= entry.is_none() && self.may_give(&[key]);
         entry
     }
 
-    /// Reads the table that an entry holds, or an empty one.
+    /// Reads the table with this path and these entries, or an empty one.
     fn descend<T>(
         &mut self,
         key: &str,
-        entry: Option<&Entry>,
+        table: Option<(String, &Entries)>,
         read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
     ) -> Reading<T> {
-        let empty = Tree::new();
+        let empty = Entries::new();
         let name = match self.name.strip_suffix(']') {
             Some(parent) => format!("{parent}.{key}]"),
             None => format!("[{key}]"),
         };
-        let entries = entry.and_then(Entry::as_table).unwrap_or(&empty);
+        let (path, entries) = table.unwrap_or((String::new(), &empty));
         let mut table = Table {
-            place: entry.map_or(self.place, |entry| {
-                (entry.span.text, entry.span.range.start)
-            }),
+            place: self.place_of(&path).unwrap_or(self.place),
+            path,
             description: self.description.as_ref().map(|_| Description::default()),
             ..Table::new(name, entries, self.document)
         };
@@ -509,7 +517,7 @@ impl<'a> Table<'a> {
             return;
         }
         let known: Vec<&str> = self.known.iter().map(|(key, _)| key.as_str()).collect();
-        for (key, offset, entry) in self.entries {
+        for key in self.entries.keys() {
             if !known.contains(&key.as_str()) {
                 let mut replaced = REPLACED.iter();
                 let replaced = replaced.find(|(table, old, _)| self.name == *table && key == old);
@@ -523,8 +531,9 @@ impl<'a> Table<'a> {
                         known.join(", ")
                     ),
                 };
-                self.faults
-                    .push(Fault::new(entry.span.text, *offset, message));
+                let span = self.document.spans.get(&format!("{}/{key}", self.path));
+                let (text, offset) = span.map_or((0, 0), |span| (span.text, span.key));
+                self.faults.push(Fault::new(text, offset, message));
             }
         }
     }

@@ -49,42 +49,30 @@ named! {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieTable {
     /// Between what it is, where that has a name.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub between: Option<Between>,
     /// At which height, if it is level between the intrados on both sides.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
     /// Its first end, where both are given.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from_m: Option<[f64; 2]>,
     /// The block of that end, from 1 on; 0 is the ground.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub from_block: Option<usize>,
     /// Its second end.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub to_m: Option<[f64; 2]>,
     /// The block of that end.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub to_block: Option<usize>,
     /// Area of its section.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub area_mm2: Option<f64>,
     /// Young's modulus.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub modulus_gpa: Option<f64>,
     /// Force for each metre that it is stretched, instead of both.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_n_m: Option<f64>,
     /// What it pulls with in the undeformed structure.
     pub prestress_n: f64,
     /// What it pulls with at most.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub yield_force_n: Option<f64>,
     /// The same by its section.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub yield_stress_mpa: Option<f64>,
     /// Strain at which it breaks.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub breaks_at_strain: Option<f64>,
 }
 

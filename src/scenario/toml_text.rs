@@ -6,9 +6,9 @@ use super::shown::is_hidden;
 
 /// The text of a table and of all tables in it. A table with the key `from` or `deviation` describes a spread; it is
 /// written in one line.
-pub(crate) fn toml_text(table: &Map<String, Value>) -> String {
+pub(crate) fn toml_text(table: &Value) -> String {
     let mut text = String::new();
-    write_table(&mut text, "", table);
+    write_table(&mut text, "", table.as_object().unwrap_or(&Map::new()));
     text
 }
 

@@ -11,8 +11,8 @@
 //! Every number that is a key of another table may be uncertain. A sample gives each of them a value, from one point of
 //! a Sobol sequence with Owen scrambling.
 
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
-use serde_json::{Map, Value, json};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
 
 use super::Scenario;
 use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
@@ -34,7 +34,8 @@ named! {
 }
 
 /// How the values of a number are spread.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Spread {
     /// Uniformly over a range.
     Range {
@@ -69,16 +70,18 @@ pub struct UncertainKey {
 }
 
 /// The uncertain numbers of a scenario, and how many samples are taken.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Uncertain {
-    /// The numbers, at least one, in the order of the file.
-    pub keys: Vec<UncertainKey>,
     /// The number of samples, at least 1.
     pub samples: usize,
     /// The seed of the scrambling.
     pub seed: u32,
     /// Whether total indices are asked for, which take further samples.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub total_indices: bool,
+    /// The numbers, at least one, in the order of the file.
+    #[serde(flatten, serialize_with = "by_key")]
+    pub keys: Vec<UncertainKey>,
 }
 
 /// No more samples than the sequence has points.
@@ -169,34 +172,9 @@ fn cut_normal(part: f64) -> f64 {
     middle(low, high)
 }
 
-impl Serialize for UncertainKey {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.spread {
-            Spread::Range { from, to, spacing } => {
-                json!({ "from": from, "to": to, "spacing": spacing.name() })
-            }
-            Spread::About {
-                deviation,
-                distribution,
-            } => json!({ "deviation": deviation, "distribution": distribution.name() }),
-        }
-        .serialize(serializer)
-    }
-}
-
-impl Serialize for Uncertain {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        map.serialize_entry("samples", &self.samples)?;
-        map.serialize_entry("seed", &self.seed)?;
-        if self.total_indices {
-            map.serialize_entry(TOTAL_INDICES, &true)?;
-        }
-        for key in &self.keys {
-            map.serialize_entry(&key.key, key)?;
-        }
-        map.end()
-    }
+/// Writes each key with its spread.
+fn by_key<S: Serializer>(keys: &[UncertainKey], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(keys.iter().map(|key| (&key.key, key.spread)))
 }
 
 const TABLE: &str = "uncertain";

@@ -23,7 +23,7 @@ impl Scenario {
             }
         }
         make_room(&mut resolved, values);
-        let mut document = Document::of_json(&resolved, &self.files.folder);
+        let mut document = Document::of_json(resolved, &self.files.folder);
         for (key, value) in values {
             let parts = parts(key);
             return Err(match parts[..] {

@@ -35,7 +35,7 @@ use serde::Serialize;
 use serde::ser::{SerializeMap as _, Serializer};
 
 use super::bounds::MAGNITUDE;
-use super::listing::{Listing, serialize_layout};
+use super::listing::{Listing, layout_keys};
 use super::record::{Format, LineFault, Series, faulty, read_numbers};
 use super::relation::Relation::{OneOf, Together};
 use super::rule::{Because, Number, OneOrMore, Text, above, one_of, within};
@@ -201,8 +201,8 @@ impl Serialize for Records {
             }
         }
         let all = self.slv.iter().chain(&self.slc);
-        if all.clone().next().is_some() {
-            serialize_layout(&mut map, all)?;
+        for (key, value) in layout_keys(all) {
+            map.serialize_entry(&key, &value)?;
         }
         map.end()
     }

@@ -403,7 +403,7 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'short.at2'",
             "6:8",
-            "short.at2:3: the file ends after 2 values",
+            "short.at2:3: the number of samples is 2: line 2 announces 3 (NPTS)",
         ),
         (
             "file = 'none.at2'",

@@ -83,7 +83,6 @@ pub struct Arch {
     embrace_deg: f64,
     depth_m: f64,
     density_kg_m3: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
     voussoirs: Option<usize>,
     /// The line whose span and rise are its dimensions in drawings; `None`: the middle line, and captions give the mean radius.
     #[serde(skip)]

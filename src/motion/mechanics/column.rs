@@ -121,9 +121,7 @@ pub struct Column {
     width_m: f64,
     depth_m: f64,
     density_kg_m3: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
     drum_heights_m: Option<Vec<f64>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,

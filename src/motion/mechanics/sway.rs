@@ -5,7 +5,9 @@ use crate::mechanics::geometry::profile::Profile;
 
 named! {
     /// Direction in which a mechanism carries the structure.
+    #[derive(Default)]
     pub enum Sway {
+        #[default]
         /// Towards +x, as started by a ground acceleration towards -x.
         Right = "right",
         /// Towards -x, as started by a ground acceleration towards +x.

@@ -28,14 +28,14 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFaul
         let found = header.get(key).copied();
         found.ok_or_else(|| LineFault::on(last.max(1))(missing()))
     };
-    if let Some((line, held)) = header.get("DATA_TYPE") {
-        check_quantity(held, quantity).map_err(LineFault::on(*line))?;
-    }
     let (step_line, step) = needed(STEP)?;
     let step_s = number(step).and_then(|step_s| checked_step(STEP, step_s));
     let step_s = step_s.map_err(LineFault::on(step_line))?;
     let (line, written) = needed("UNITS")?;
     let unit = read_unit(written, quantity).map_err(LineFault::on(line))?;
+    if let Some((line, held)) = header.get("DATA_TYPE") {
+        check_quantity(held, quantity).map_err(LineFault::on(*line))?;
+    }
     let values = Values::below(text, last, str::split_whitespace)?;
     if let Some((line, count)) = header.get("NDATA") {
         let count = number(count).map_err(LineFault::on(*line))?;

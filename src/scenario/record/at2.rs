@@ -296,14 +296,18 @@ mod tests {
     fn faults_of_at2_files_have_lines() {
         let fault = |text: &str, line, words| assert_fault(text, &AT2, line, words);
         let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
-        fault(&format!("{head}1 2\n3 4\n"), 6, "`4` is one value too many");
+        fault(
+            &format!("{head}1 2\n3 4\n"),
+            6,
+            "samples is 4: line 4 announces 3",
+        );
         fault(&format!("{head}1 2\n3\n\n.5\n"), 8, "line 4 announces 3");
         fault(
             &format!("{head}1 2\n"),
             5,
-            "ends after 2 values: line 4 announces 3",
+            "number of samples is 2: line 4 announces 3",
         );
-        fault(head, 4, "ends after 0 values");
+        fault(head, 4, "number of samples is 0");
         fault(&format!("{head}1\nabc"), 6, "`abc` is not a finite number");
         for word in ["nan", "inf", "1e999", "****", "-", "1.2.3"] {
             fault(&format!("{head}1\n{word}"), 6, "is not a finite number");
@@ -321,7 +325,11 @@ mod tests {
         fault(&format!("{head}1\n1e308"), 6, "`1e308` is out of range");
         fault("NPTS= 5, DT= 0", 1, "DT is 0 s");
         fault("NPTS= 5, DT= -.1", 1, "DT is -0.1 s");
-        fault("NPTS= 5, DT= 1e6", 1, "record of 4e6 s; at most 1e6 s");
+        fault(
+            "NPTS= 3, DT= 1e6\n1 2 3",
+            1,
+            "record of 2e6 s; at most 1e6 s",
+        );
         fault(
             "A\nVELOCITY TIME HISTORY IN UNITS OF CM/S",
             2,

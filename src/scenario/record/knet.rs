@@ -39,6 +39,7 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
     let scale = read_scale(scale).map_err(LineFault::on(line))?;
     let mut values = Values::below(text, lines, str::split_whitespace)?;
     values.values.iter_mut().for_each(|value| *value *= scale);
+    values.check_enough()?;
     // The header gives the duration in whole seconds.
     if let Some((line, duration)) = find(DURATION) {
         let duration_s = number(duration).map_err(LineFault::on(line))?;

@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
 use super::unit::{AnyUnit, Recorded, Unit};
-use crate::scenario::document::Node;
 use crate::scenario::rule::{Count, Rule, Switch, one_of, within};
 use crate::scenario::table::Table;
 
@@ -67,7 +66,6 @@ pub struct TableLayout {
     pub times: Times,
     /// The column of accelerations or velocities. `None`: there is only one such column, or a row holds several samples
     /// and the table shows that.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub acceleration_column: Option<TableColumn>,
     /// Whether a row holds several consecutive samples, even if the table does not show it. Used only with even steps and if
     /// no column is chosen.
@@ -109,7 +107,6 @@ pub enum Form {
     /// An AT2 file.
     At2 {
         /// Unit of its samples; `None`: the unit that its header names, or gravity.
-        #[serde(skip_serializing_if = "Option::is_none")]
         unit: Option<Unit>,
     },
     /// An ASC file, whose header gives everything.
@@ -298,21 +295,17 @@ impl Layout {
 struct AnyColumn;
 
 impl Rule for AnyColumn {
-    type Value = TableColumn;
+    type Read = TableColumn;
 
     fn allowed(&self) -> String {
         format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
     }
 
-    fn read(&self, value: &Node) -> Result<TableColumn, String> {
+    fn read(&self, value: &Value) -> Result<TableColumn, String> {
         match value {
-            Node::Text(name) => Ok(TableColumn::Name(name.clone())),
+            Value::String(name) => Ok(TableColumn::Name(name.clone())),
             _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
         }
-    }
-
-    fn stand_in(&self) -> TableColumn {
-        TableColumn::Number(1)
     }
 
     fn schema(&self) -> Value {

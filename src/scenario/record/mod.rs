@@ -146,7 +146,6 @@ pub struct Record {
     /// Time in the simulation at time zero of the files, in 0 to 1e6.
     pub start_s: f64,
     /// The record of the vertical component, if `main` is the horizontal one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub vertical: Option<Series>,
 }
 

@@ -2,7 +2,6 @@
 
 use serde_json::{Value, json};
 
-use crate::scenario::document::Node;
 use crate::scenario::rule::{OneOf, Rule, one_of};
 
 named! {
@@ -19,7 +18,9 @@ named! {
 
 named! {
     /// Unit of the samples in a file.
+    #[derive(Default)]
     pub enum Unit {
+        #[default]
         /// Gravity of the simulation.
         Gravity = "g",
         /// Metres per second squared.
@@ -88,22 +89,18 @@ pub(super) struct AnyUnit;
 const NAMES: OneOf<Unit> = one_of(Unit::ALL, Unit::name);
 
 impl Rule for AnyUnit {
-    type Value = Unit;
+    type Read = Unit;
 
     fn allowed(&self) -> String {
         format!("{} or \"gal\"", NAMES.allowed())
     }
 
-    fn read(&self, value: &Node) -> Result<Unit, String> {
+    fn read(&self, value: &Value) -> Result<Unit, String> {
         let written = match value {
-            Node::Text(text) => Unit::written(text),
+            Value::String(text) => Unit::written(text),
             _ => None,
         };
         written.map_or_else(|| NAMES.read(value), Ok)
-    }
-
-    fn stand_in(&self) -> Unit {
-        Unit::Gravity
     }
 
     fn schema(&self) -> Value {

@@ -185,7 +185,7 @@ fn command(map: &OverturningMap<'_>) -> String {
         inner[key] = Value::String(place.clone());
         places.push(place);
     }
-    let mut text = table.as_object().map_or(String::new(), toml_text);
+    let mut text = toml_text(&table);
     for place in places {
         // Numbers need no quotation marks.
         text = text.replace(&format!("= \"{place}\""), &format!("= {place}"));

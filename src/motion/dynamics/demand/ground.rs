@@ -7,7 +7,9 @@ use crate::argument::{ArgumentError, short};
 
 named! {
     /// Subsoil category (Tab. 3.2.II).
+    #[derive(Default)]
     pub enum Soil {
+        #[default]
         /// Rock, or very stiff soil.
         A = "A",
         /// Soft rock, dense coarse or very stiff fine soil.

@@ -40,13 +40,10 @@ pub struct FreeHinges {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RowOptions {
     /// The longest step, in seconds (1e-9 to 1); if `None`, it follows the size of the row.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_s: Option<f64>,
     /// Landings that crowd within this time, in seconds, are taken as one; if `None`, a thirtieth of the longest step.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub shortest_step_s: Option<f64>,
     /// Coulomb's coefficient of friction at every joint, in 0.001 to 1000; if `None`, joints do not slip.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
 }
 

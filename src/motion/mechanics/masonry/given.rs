@@ -27,7 +27,7 @@ pub struct GivenBlocks {
     #[serde(rename = "joints")]
     pub joints_file: String,
     /// File of the outlines.
-    #[serde(rename = "outlines", skip_serializing_if = "Option::is_none")]
+    #[serde(rename = "outlines")]
     pub outlines_file: Option<String>,
     /// The supports of the row.
     pub supports: Supports,

@@ -186,7 +186,6 @@ pub struct Masonry {
     #[serde(skip_serializing_if = "Piers::are_none")]
     pub piers: Piers,
     /// The fill above it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub fill: Option<Fill>,
     /// The masses on its extrados.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]

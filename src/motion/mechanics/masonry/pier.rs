@@ -13,10 +13,8 @@ use crate::mechanics::sway::Sway;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Piers {
     /// Under the left springing.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub left: Option<Pier>,
     /// Under the right springing.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub right: Option<Pier>,
 }
 
@@ -39,7 +37,6 @@ pub struct Pier {
     /// Number of blocks, one on top of the other.
     pub blocks: usize,
     /// Density in kg/m3; `None`: that of the arch.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub density_kg_m3: Option<f64>,
     /// Whether it stands on a pedestal as wide as its base, off which it falls if it slips too far; else on ground that extends
     /// beyond the base.
