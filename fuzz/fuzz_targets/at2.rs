@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::Form;
+use archrock::scenario::{Format, Layout};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|contents: &[u8]| common::check(&Form::At2 { unit: None }.into(), contents));
+fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::At2), contents));

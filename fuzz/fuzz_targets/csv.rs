@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::{Decimal, Form, TableColumn, TableLayout, Times, Unit};
+use archrock::scenario::{Decimal, Layout, TableColumn, Times, Unit};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {
@@ -20,7 +20,7 @@ fuzz_target!(|input: &[u8]| {
     } else {
         Times::Step(0.01)
     };
-    let layout = Form::Csv(TableLayout {
+    let layout = Layout {
         skip_rows: usize::from(settings >> 4 & 3),
         decimal: if settings & 128 == 0 {
             Decimal::Point
@@ -32,7 +32,7 @@ fuzz_target!(|input: &[u8]| {
             .filter(|column| *column != TableColumn::Number(2)),
         // Counts where no column is chosen.
         wrapped: settings & 4 != 0,
-        ..TableLayout::new(times, Unit::Gravity)
-    });
-    common::check(&layout.into(), contents);
+        ..Layout::table(times, Unit::Gravity)
+    };
+    common::check(&layout, contents);
 });

@@ -9,7 +9,7 @@ use archrock::dynamics::model::Request;
 use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
-use archrock::scenario::{Form, Format, Layout, Recorded, Scenario, Series};
+use archrock::scenario::{Format, Layout, Recorded, Scenario, Series};
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;
@@ -250,12 +250,12 @@ fn record_text(series: &Series, intensity: &Intensity) -> String {
 
 /// The format and the unit of a record.
 fn kind(series: &Series) -> String {
-    let format = match series.layout.form {
-        Form::At2 { .. } => "AT2 file (PEER)",
-        Form::Asc => "ASC file (ESM)",
-        Form::Knet => "file of K-NET",
-        Form::Csv(_) if series.wrapped => "table with several samples a row",
-        Form::Csv(_) => "table",
+    let format = match series.layout.format {
+        Format::At2 => "AT2 file (PEER)",
+        Format::Asc => "ASC file (ESM)",
+        Format::Knet => "file of K-NET",
+        Format::Csv if series.wrapped => "table with several samples a row",
+        Format::Csv => "table",
     };
     let quantity = match series.layout.quantity {
         Recorded::Acceleration => "accelerations",

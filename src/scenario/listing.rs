@@ -6,7 +6,7 @@ use std::path::{Component as PathPart, Path, PathBuf};
 use glob::MatchOptions;
 use serde_json::{Map, Value};
 
-use super::record::{Form, Format, Layout, Series};
+use super::record::{Format, Layout, Series};
 use super::shown;
 use super::table::{Reading, Table};
 
@@ -60,17 +60,12 @@ impl Listing {
         let layout = self.layout;
         let read = |listed: Listed| {
             let Listed { key, file, .. } = listed;
-            let layout = Layout {
-                form: match listed.format {
-                    format if format == layout.format() => layout.form.clone(),
-                    Format::At2 => Form::At2 { unit: None },
-                    Format::Asc => Form::Asc,
-                    Format::Knet => Form::Knet,
-                    Format::Csv => layout.form.clone(),
-                },
-                ..layout.clone()
-            };
-            let series = Series::of_file(table.folder(), file.clone(), layout)
+            let mut own = layout.clone();
+            if listed.format != layout.format {
+                own = Layout::new(listed.format);
+                (own.quantity, own.remove_mean) = (layout.quantity, layout.remove_mean);
+            }
+            let series = Series::of_file(table.folder(), file.clone(), own)
                 .and_then(|series| accept(&series).map(|()| (key, series)));
             if let Err(wrong) = &series {
                 let wrong = format!("names {}, which {wrong}", shown(&file));
@@ -89,9 +84,7 @@ pub(super) fn layout_keys<'a>(
 ) -> Map<String, Value> {
     let mut layouts = records.map(|series| &series.layout);
     // All tables share the same keys; without a table, AT2 files may share a unit.
-    let tables = layouts
-        .clone()
-        .find(|layout| layout.format() == Format::Csv);
+    let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
     let Some(telling) = tables.or_else(|| layouts.clone().next()) else {
         return Map::new();
     };
@@ -100,7 +93,7 @@ pub(super) fn layout_keys<'a>(
         .and_then(|keys| keys.as_object().cloned())
         .unwrap_or_default();
     // If the formats differ, the file extensions told them apart.
-    if layouts.any(|layout| layout.format() != telling.format()) {
+    if layouts.any(|layout| layout.format != telling.format) {
         keys.shift_remove("format");
     }
     keys

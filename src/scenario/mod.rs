@@ -84,8 +84,8 @@ pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
 pub use motion::Motion;
 pub use record::{
-    Component, Contents, Decimal, Form, Format, Layout, LineFault, Record, Recorded, Sampling,
-    Scaling, Series, TableColumn, TableLayout, Times, Unit,
+    Component, Contents, Decimal, Format, Layout, LineFault, Record, Recorded, Sampling, Scaling,
+    Series, TableColumn, Times, Unit,
 };
 pub use right_foot::RightFoot;
 use rule::Text;

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::bounds::LIKELY_EMBRACE_DEG;
 use super::structure::bounds_m;
-use super::{Form, Ground, PulseGround, Scaling, Scenario, Series, Structure};
+use super::{Format, Ground, PulseGround, Scaling, Scenario, Series, Structure};
 use crate::argument::{plain, short};
 use crate::dynamics::model::Model;
 use crate::mechanics::sway::Sway;
@@ -219,7 +219,7 @@ impl Series {
             ));
         }
         let mean_g = self.mean_g(gravity_m_s2);
-        if self.layout.form == Form::Knet && mean_g.abs() > OFFSET * peak_g {
+        if self.layout.format == Format::Knet && mean_g.abs() > OFFSET * peak_g {
             unlikely.push(format!(
                 "{name} has a mean of {} g, the offset of the instrument: give `remove_mean = true` to take it off",
                 plain(mean_g)

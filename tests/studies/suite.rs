@@ -13,7 +13,7 @@ use crate::common::results::{Row, Table, json, named, texts};
 use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
-use archrock::scenario::{Form, Layout, Measure, Scenario};
+use archrock::scenario::{Format, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
 use archrock::studies::suite::Heading;
 use archrock::studies::suite::{CaseRow, SuiteFragility};
@@ -54,7 +54,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn samples(path: &Path) -> Vec<(f64, f64)> {
-    let layout = Layout::from(Form::At2 { unit: None });
+    let layout = Layout::new(Format::At2);
     layout.parse(&fs::read(path).unwrap()).unwrap().samples
 }
 

@@ -74,10 +74,10 @@ fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Contents, Form, Layout, Recorded, Unit};
+    use crate::scenario::record::{Contents, Format, Layout, Recorded, Unit};
 
     fn asc() -> Layout {
-        Form::Asc.into()
+        Layout::new(Format::Asc)
     }
 
     const FILE: &str = "EVENT_NAME: A: B\nEVENT_ID: XX-2009-0009\nSAMPLING_INTERVAL_S: 0.005000\nNDATA: 3\n\

@@ -226,13 +226,9 @@ fn unit_named(line: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::{assert_fault, parse};
-    use crate::scenario::record::{Form, Layout, Recorded, Unit};
+    use crate::scenario::record::{Format, Layout, Recorded, Unit};
 
-    const AT2: Layout = Layout {
-        form: Form::At2 { unit: None },
-        quantity: Recorded::Acceleration,
-        remove_mean: false,
-    };
+    const AT2: Layout = Layout::new(Format::At2);
 
     #[test]
     fn headers_of_all_wordings_are_read() {
@@ -348,7 +344,10 @@ mod tests {
     fn accelerations_may_be_in_other_units() {
         let unit = |header: &str, key: Option<Unit>| {
             let text = format!("A\n{header}\nNPTS= 2, DT= .01\n1 2\n");
-            let layout = Layout::from(Form::At2 { unit: key });
+            let layout = Layout {
+                unit: key,
+                ..Layout::new(Format::At2)
+            };
             layout.parse(text.as_bytes()).unwrap().unit
         };
         for (header, named) in [
@@ -371,7 +370,8 @@ mod tests {
     fn velocities_are_read_where_they_are_announced() {
         let velocities = |unit| Layout {
             quantity: Recorded::Velocity,
-            ..Layout::from(Form::At2 { unit })
+            unit,
+            ..Layout::new(Format::At2)
         };
         let text = "A\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01\n1 2\n";
         let contents = velocities(None).parse(text.as_bytes()).unwrap();

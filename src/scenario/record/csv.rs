@@ -7,7 +7,7 @@ use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::layout::{COLUMN_NUMBER, Decimal, TableColumn, TableLayout, Times};
+use super::layout::{COLUMN_NUMBER, Decimal, Layout, TableColumn, Times};
 use super::samples::{
     Contents, LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, Values, in_range, number,
 };
@@ -18,29 +18,29 @@ use crate::scenario::error::excerpt;
 ///
 /// Blank lines and lines that begin with `#` are skipped. The first of the other lines may hold the names of
 /// the columns; it must if a column is chosen by name.
-pub(super) fn parse(text: &str, layout: &TableLayout) -> Result<Contents, LineFault> {
+pub(super) fn parse(text: &str, layout: &Layout) -> Result<Contents, LineFault> {
     let table = without_first(text, layout.skip_rows);
-    if let (Times::Step(step_s), None) = (&layout.times, &layout.acceleration_column)
+    let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
+        return Err(LineFault::on(1)("a table needs its times and its unit"));
+    };
+    if let (Times::Step(step_s), None) = (times, &layout.acceleration_column)
         && (layout.wrapped || wrapped::is_shown(text, &table, layout))
     {
         return Ok(Contents {
             wrapped: true,
-            ..Contents::new(
-                wrapped::parse(&table, *step_s, layout.decimal)?,
-                layout.unit,
-            )
+            ..Contents::new(wrapped::parse(&table, *step_s, layout.decimal)?, unit)
         });
     }
-    Ok(Contents::new(parse_columns(&table, layout)?, layout.unit))
+    Ok(Contents::new(parse_columns(&table, layout, times)?, unit))
 }
 
 /// Reads a table with one sample per row.
-fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault> {
+fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Result<Samples, LineFault> {
     let mut rows = Rows::new(text, layout.decimal);
     let Some(first) = rows.next()? else {
         return Err(nothing(text));
     };
-    let columns = Columns::find(layout, &first)?;
+    let columns = Columns::find(layout, times, &first)?;
     let unit_s = columns.time_unit_s(&first);
     let (mut times_s, mut values) = (Vec::new(), Values::default());
     values.line = first.line;
@@ -67,7 +67,7 @@ fn parse_columns(text: &str, layout: &TableLayout) -> Result<Samples, LineFault>
         }
         next = rows.next()?;
     }
-    match layout.times {
+    match *times {
         Times::Step(step_s) => {
             let line = values.line;
             values.evenly(step_s, line, "`dt_s`")
@@ -133,11 +133,11 @@ struct Columns {
 }
 
 impl Columns {
-    fn find(layout: &TableLayout, first: &Row<'_>) -> Result<Self, LineFault> {
+    fn find(layout: &Layout, times: &Times, first: &Row<'_>) -> Result<Self, LineFault> {
         let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
         let index =
             |column: &TableColumn| column.index(&names).map_err(|message| first.fault(message));
-        let time = match &layout.times {
+        let time = match times {
             Times::Column(column) => Some(column),
             Times::Step(_) => None,
         };
@@ -429,19 +429,13 @@ impl TableColumn {
 mod tests {
     use crate::scenario::record::tests::parse;
     use crate::scenario::record::tests::{assert_fault, csv_layout};
-    use crate::scenario::record::{Decimal, Form, Layout, TableColumn, TableLayout, Times, Unit};
-
-    fn csv(layout: TableLayout) -> Layout {
-        Form::Csv(layout).into()
-    }
+    use crate::scenario::record::{Decimal, Layout, TableColumn, Times, Unit};
 
     #[test]
     fn tables_of_all_kinds_are_read() {
-        let columns = |time, acceleration| {
-            csv(TableLayout {
-                acceleration_column: Some(acceleration),
-                ..TableLayout::new(Times::Column(time), Unit::Gravity)
-            })
+        let columns = |time, acceleration| Layout {
+            acceleration_column: Some(acceleration),
+            ..Layout::table(Times::Column(time), Unit::Gravity)
         };
         let name = |name: &str| TableColumn::Name(name.to_owned());
         let number = TableColumn::Number;
@@ -501,17 +495,17 @@ mod tests {
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
         fault("t,a\n0,1\n", 2, "number of samples is 1");
         // A first row that holds one proper number is not a header.
-        assert_fault("0,1x\n1,2\n", &csv(numbered()), 1, "`1x`");
+        assert_fault("0,1x\n1,2\n", &numbered(), 1, "`1x`");
     }
 
     /// Times in the first column and accelerations in the second.
-    fn numbered() -> TableLayout {
-        TableLayout::new(Times::Column(TableColumn::Number(1)), Unit::Gravity)
+    fn numbered() -> Layout {
+        Layout::table(Times::Column(TableColumn::Number(1)), Unit::Gravity)
     }
 
     #[test]
     fn columns_may_be_parted_by_blanks() {
-        let layout = csv(numbered());
+        let layout = numbered();
         for text in [
             "0 1\n0.5 -2\n",
             "  0.0     1.0E+00\n  0.5    -2.0E+00  \n",
@@ -526,10 +520,10 @@ mod tests {
                 "{text}"
             );
         }
-        let named = csv(TableLayout {
+        let named = Layout {
             acceleration_column: Some(TableColumn::Name("acc".to_owned())),
             ..numbered()
-        });
+        };
         let text = "time  acc\n0 1\n0.5 -2\n";
         assert_eq!(parse(text, &named), Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
         // A name with a blank in it would count as two.
@@ -539,7 +533,7 @@ mod tests {
 
     #[test]
     fn a_single_column_has_even_steps() {
-        let layout = |step_s| csv(TableLayout::new(Times::Step(step_s), Unit::Gravity));
+        let layout = |step_s| Layout::table(Times::Step(step_s), Unit::Gravity);
         for text in [
             "1\n-2\n3\n",
             "acc in g\n1\n-2\n3",
@@ -560,26 +554,24 @@ mod tests {
         fault("1\n", 1, "number of samples is 1");
         let message =
             "there is no column 2 in `1`; if the file has accelerations only, give `dt_s`";
-        assert_fault("1\n2\n", &csv(numbered()), 1, message);
+        assert_fault("1\n2\n", &numbered(), 1, message);
     }
 
     #[test]
     fn lines_before_the_table_are_skipped_and_hinted_at() {
         let text = "Station X; 12.5 E\nDate; 2009\n\nt; a\n0; 1\n0.5; -2\n";
-        let skipping = |skip_rows| {
-            csv(TableLayout {
-                skip_rows,
-                ..numbered()
-            })
+        let skipping = |skip_rows| Layout {
+            skip_rows,
+            ..numbered()
         };
         let expected = Ok(vec![(0.0, 1.0), (0.5, -2.0)]);
         assert_eq!(parse(text, &skipping(3)), expected);
         assert_eq!(parse(text, &skipping(4)), expected);
-        let named = csv(TableLayout {
+        let named = Layout {
             acceleration_column: Some(TableColumn::Name("a".to_owned())),
             skip_rows: 3,
             ..numbered()
-        });
+        };
         assert_eq!(parse(text, &named), expected);
         assert_fault(
             text,
@@ -596,10 +588,10 @@ mod tests {
 
     #[test]
     fn decimal_commas_are_read_where_they_are_announced() {
-        let comma = csv(TableLayout {
+        let comma = Layout {
             decimal: Decimal::Comma,
             ..numbered()
-        });
+        };
         for text in [
             "0,0;1,0\n0,5;-2,0\n",
             "t\ta\n0\t1,0\n,5\t-2E0\n",
@@ -614,7 +606,7 @@ mod tests {
         }
         assert_fault("0;1\n1;1,2,3", &comma, 2, "`1,2,3` is not a finite number");
         assert_fault("0;1\n1;1.2,3", &comma, 2, "`1.2,3` is not a finite number");
-        let point = csv(numbered());
+        let point = numbered();
         assert_fault("0;1\n1;1,2", &point, 2, "give `decimal = \"comma\"`");
     }
 }

@@ -89,7 +89,7 @@ fn read_scale(scale: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Form, Layout, Unit};
+    use crate::scenario::record::{Format, Layout, Unit};
 
     const FILE: &str = "Origin Time       2024/01/02 03:04:05\nLat.              37.0\nStation Code      XXX001\n\
                         Record Time       2024/01/02 03:04:06\nSampling Freq(Hz) 4Hz\nDuration Time(s)  3\n\
@@ -98,7 +98,7 @@ mod tests {
                         -12  0 8003     8003\n";
 
     fn knet() -> Layout {
-        Form::Knet.into()
+        Layout::new(Format::Knet)
     }
 
     #[test]

@@ -58,72 +58,30 @@ pub enum Times {
     Step(f64),
 }
 
-/// How a table is read. Semicolons, tabs, commas or blanks separate its columns.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TableLayout {
-    /// Times.
-    #[serde(flatten)]
-    pub times: Times,
-    /// The column of accelerations or velocities. `None`: there is only one such column, or a row holds several samples
-    /// and the table shows that.
-    pub acceleration_column: Option<TableColumn>,
-    /// Whether a row holds several consecutive samples, even if the table does not show it. Used only with even steps and if
-    /// no column is chosen.
-    #[serde(skip_serializing_if = "is_default")]
-    pub wrapped: bool,
-    /// The unit of the samples.
-    pub unit: Unit,
-    /// Lines before the table.
-    #[serde(skip_serializing_if = "is_default")]
-    pub skip_rows: usize,
-    /// How numbers are written.
-    #[serde(skip_serializing_if = "is_default")]
-    pub decimal: Decimal,
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
-}
-
-impl TableLayout {
-    /// A table that begins on the first line, with decimal points, whose acceleration column need not be chosen.
-    #[must_use]
-    pub const fn new(times: Times, unit: Unit) -> Self {
-        Self {
-            times,
-            acceleration_column: None,
-            wrapped: false,
-            unit,
-            skip_rows: 0,
-            decimal: Decimal::Point,
-        }
-    }
-}
-
-/// The format of a file, with its options.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "format", rename_all = "snake_case")]
-pub enum Form {
-    /// An AT2 file.
-    At2 {
-        /// Unit of its samples; `None`: the unit that its header names, or gravity.
-        unit: Option<Unit>,
-    },
-    /// An ASC file, whose header gives everything.
-    Asc,
-    /// A file of K-NET, whose header gives everything.
-    Knet,
-    /// A table.
-    Csv(TableLayout),
-}
-
-/// How a file is read.
+/// How a file is read. Semicolons, tabs, commas or blanks separate the columns of tables.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Layout {
     /// The format of the file.
+    pub format: Format,
+    /// Times of a table; `None` for other formats.
     #[serde(flatten)]
-    pub form: Form,
-    /// The quantity that its samples measure.
+    pub times: Option<Times>,
+    /// The column of accelerations or velocities of a table. `None`: there is only one such column, or a row holds several
+    /// samples and the table shows that.
+    pub acceleration_column: Option<TableColumn>,
+    /// Whether a row of a table holds several consecutive samples, even if the table does not show it. Used only with even steps
+    /// and if no column is chosen.
+    #[serde(skip_serializing_if = "is_default")]
+    pub wrapped: bool,
+    /// Unit of the samples. `None`: the unit that the header names; of an AT2 file that names none, gravity.
+    pub unit: Option<Unit>,
+    /// Lines before a table.
+    #[serde(skip_serializing_if = "is_default")]
+    pub skip_rows: usize,
+    /// How the numbers of a table are written.
+    #[serde(skip_serializing_if = "is_default")]
+    pub decimal: Decimal,
+    /// The quantity that the samples measure.
     #[serde(skip_serializing_if = "is_default")]
     pub quantity: Recorded,
     /// Whether the mean over the time of the record is subtracted from the accelerations.
@@ -131,13 +89,34 @@ pub struct Layout {
     pub remove_mean: bool,
 }
 
-impl From<Form> for Layout {
-    /// Accelerations as the file holds them.
-    fn from(form: Form) -> Self {
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl Layout {
+    /// Accelerations as a file of this format holds them; tables need their times and unit.
+    #[must_use]
+    pub const fn new(format: Format) -> Self {
         Self {
-            form,
+            format,
+            times: None,
+            acceleration_column: None,
+            wrapped: false,
+            unit: None,
+            skip_rows: 0,
+            decimal: Decimal::Point,
             quantity: Recorded::Acceleration,
             remove_mean: false,
+        }
+    }
+
+    /// A table that begins on the first line, with decimal points, whose acceleration column need not be chosen.
+    #[must_use]
+    pub fn table(times: Times, unit: Unit) -> Self {
+        Self {
+            times: Some(times),
+            unit: Some(unit),
+            ..Self::new(Format::Csv)
         }
     }
 }
@@ -200,19 +179,19 @@ impl Layout {
         let time_column = table.optional("time_column", &AnyColumn);
         let acceleration_column = table.optional("acceleration_column", &AnyColumn);
         let wrapped = table.or("wrapped", &Switch, false);
-        let skip_rows = table.or("skip_rows", &SKIPPED, 0);
         let decimals = one_of(Decimal::ALL, Decimal::name);
-        let decimal = table.or("decimal", &decimals, Decimal::Point);
-        let unit = table.optional("unit", &AnyUnit);
         let quantities = one_of(Recorded::ALL, Recorded::name);
-        let quantity = table.or("quantity", &quantities, Recorded::Acceleration);
-        let remove_mean = table.or("remove_mean", &Switch, false);
         let mut layout = Self {
-            form: Form::Asc,
-            quantity,
-            remove_mean,
+            acceleration_column,
+            wrapped,
+            skip_rows: table.or("skip_rows", &SKIPPED, 0),
+            decimal: table.or("decimal", &decimals, Decimal::Point),
+            unit: table.optional("unit", &AnyUnit),
+            quantity: table.or("quantity", &quantities, Recorded::Acceleration),
+            remove_mean: table.or("remove_mean", &Switch, false),
+            ..Self::new(format.unwrap_or(Format::Csv))
         };
-        let Some(format) = format else {
+        let (Some(format), quantity) = (format, layout.quantity) else {
             return layout;
         };
         if format != Format::Csv
@@ -220,7 +199,7 @@ impl Layout {
         {
             table.wrong(key, "applies to `format = \"csv\"` only");
         }
-        if let Some(unit) = unit.filter(|unit| unit.quantity() != quantity) {
+        if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
             table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
         if quantity == Recorded::Velocity {
@@ -228,7 +207,7 @@ impl Layout {
                 let wrong = "does not apply to a file of K-NET, which holds accelerations";
                 table.wrong("quantity", wrong);
             }
-            if remove_mean {
+            if layout.remove_mean {
                 let wrong =
                     "applies to accelerations: a uniform velocity shakes nothing; leave it out";
                 table.wrong("remove_mean", wrong);
@@ -244,33 +223,22 @@ impl Layout {
         if let Some(wrong) = header.filter(|_| table.gives("unit")) {
             table.wrong("unit", wrong);
         }
-        layout.form = match format {
-            Format::At2 => Form::At2 { unit },
-            Format::Asc => Form::Asc,
-            Format::Knet => Form::Knet,
-            Format::Csv => {
-                if dt_s.is_some() && time_column.is_some() {
-                    let wrong = "cannot be combined with `time_column`; give one of them";
-                    table.wrong("dt_s", wrong);
-                }
-                if wrapped && acceleration_column.is_some() {
-                    let wrong = "cannot be combined with `acceleration_column`; give one of them";
-                    table.wrong("wrapped", wrong);
-                } else if wrapped && !table.gives("dt_s") {
-                    let wrong = "needs `dt_s`: rows of several samples have no column of times";
-                    table.wrong("wrapped", wrong);
-                }
-                let column = time_column.unwrap_or(TableColumn::Number(1));
-                Form::Csv(TableLayout {
-                    times: dt_s.map_or(Times::Column(column), Times::Step),
-                    acceleration_column,
-                    wrapped,
-                    unit: table.needed("unit", &AnyUnit, unit),
-                    skip_rows,
-                    decimal,
-                })
+        if format == Format::Csv {
+            if dt_s.is_some() && time_column.is_some() {
+                let wrong = "cannot be combined with `time_column`; give one of them";
+                table.wrong("dt_s", wrong);
             }
-        };
+            if wrapped && layout.acceleration_column.is_some() {
+                let wrong = "cannot be combined with `acceleration_column`; give one of them";
+                table.wrong("wrapped", wrong);
+            } else if wrapped && !table.gives("dt_s") {
+                let wrong = "needs `dt_s`: rows of several samples have no column of times";
+                table.wrong("wrapped", wrong);
+            }
+            let column = time_column.unwrap_or(TableColumn::Number(1));
+            layout.times = Some(dt_s.map_or(Times::Column(column), Times::Step));
+            layout.unit = Some(table.needed("unit", &AnyUnit, layout.unit));
+        }
         layout
     }
 
@@ -278,16 +246,6 @@ impl Layout {
     #[must_use]
     pub fn is_of_tables(key: &str) -> bool {
         TABLE_KEYS.contains(&key) || key == "unit"
-    }
-
-    /// The format of the file.
-    pub(in crate::scenario) const fn format(&self) -> Format {
-        match self.form {
-            Form::At2 { .. } => Format::At2,
-            Form::Asc => Format::Asc,
-            Form::Knet => Format::Knet,
-            Form::Csv(_) => Format::Csv,
-        }
     }
 }
 

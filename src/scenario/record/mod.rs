@@ -37,7 +37,7 @@ use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use layout::{Decimal, Form, Format, Layout, TableColumn, TableLayout, Times};
+pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;
 pub use samples::{Contents, LineFault};
 use serde::Serialize;
@@ -464,11 +464,11 @@ impl Layout {
     /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
         let text = legible(bytes)?;
-        let mut contents = match &self.form {
-            Form::At2 { unit } => at2::parse(&text, *unit, self.quantity),
-            Form::Asc => asc::parse(&text, self.quantity),
-            Form::Knet => knet::parse(&text),
-            Form::Csv(layout) => csv::parse(&text, layout),
+        let mut contents = match self.format {
+            Format::At2 => at2::parse(&text, self.unit, self.quantity),
+            Format::Asc => asc::parse(&text, self.quantity),
+            Format::Knet => knet::parse(&text),
+            Format::Csv => csv::parse(&text, self),
         }?;
         let unit = contents.unit;
         if unit.quantity() != self.quantity {
@@ -552,11 +552,10 @@ mod tests {
 
     pub(super) fn csv_layout() -> Layout {
         let number = TableColumn::Number(1);
-        Form::Csv(TableLayout {
+        Layout {
             acceleration_column: Some(TableColumn::Name("a".to_owned())),
-            ..TableLayout::new(Times::Column(number), Unit::Gravity)
-        })
-        .into()
+            ..Layout::table(Times::Column(number), Unit::Gravity)
+        }
     }
 
     pub(super) fn parse(text: &str, layout: &Layout) -> Result<Vec<(f64, f64)>, LineFault> {
@@ -582,24 +581,24 @@ mod tests {
             let damaged: String = words.concat();
             let text = format!("t,a\n{damaged}");
             for text in [&noise, &damaged, &text] {
-                let blanks = TableLayout {
-                    times: Times::Step(0.01),
+                let blanks = Layout {
+                    times: Some(Times::Step(0.01)),
                     skip_rows: 1,
                     decimal: Decimal::Comma,
-                    ..TableLayout::new(Times::Step(0.01), Unit::Gravity)
+                    ..Layout::table(Times::Step(0.01), Unit::Gravity)
                 };
-                let wrapped = TableLayout {
+                let wrapped = Layout {
                     wrapped: true,
                     skip_rows: 0,
                     ..blanks.clone()
                 };
                 let layouts = [
-                    Form::At2 { unit: None }.into(),
-                    Form::Asc.into(),
-                    Form::Knet.into(),
+                    Layout::new(Format::At2),
+                    Layout::new(Format::Asc),
+                    Layout::new(Format::Knet),
                     csv_layout(),
-                    Form::Csv(blanks).into(),
-                    Form::Csv(wrapped).into(),
+                    blanks,
+                    wrapped,
                 ];
                 for layout in layouts {
                     match parse(text, &layout) {

@@ -1,13 +1,13 @@
 //! Tables whose rows hold several consecutive samples.
 
-use super::super::layout::{Decimal, TableLayout};
+use super::super::layout::{Decimal, Layout};
 use super::super::samples::{LineFault, Samples, Values, in_range};
 use super::{Row, Rows, names_column, nothing};
 
 /// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
 /// shorter; or the total number of samples is given before the table (`text` includes the skipped lines), in a comment or in
 /// the row of names.
-pub(super) fn is_shown(text: &str, table: &str, layout: &TableLayout) -> bool {
+pub(super) fn is_shown(text: &str, table: &str, layout: &Layout) -> bool {
     let Some((names, lengths)) = lengths(table, layout.decimal) else {
         return false;
     };
@@ -96,27 +96,23 @@ fn has_no_number(row: &Row<'_>, decimal: Decimal) -> bool {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::{assert_fault, parse};
-    use crate::scenario::record::{Decimal, Form, Layout, TableColumn, TableLayout, Times, Unit};
+    use crate::scenario::record::{Decimal, Layout, TableColumn, Times, Unit};
 
-    fn table() -> TableLayout {
-        TableLayout::new(Times::Step(0.5), Unit::Gravity)
+    fn table() -> Layout {
+        Layout::table(Times::Step(0.5), Unit::Gravity)
     }
 
-    fn csv(layout: TableLayout) -> Layout {
-        Form::Csv(layout).into()
-    }
-
-    fn wrapped() -> TableLayout {
-        TableLayout {
+    fn wrapped() -> Layout {
+        Layout {
             wrapped: true,
             ..table()
         }
     }
 
     #[track_caller]
-    fn assert_reads(text: &str, layout: TableLayout) {
+    fn assert_reads(text: &str, layout: Layout) {
         let expected = [1.0, -2.0, 3.0, 4.0, 5.0, 6.0];
-        let found = parse(text, &csv(layout)).unwrap();
+        let found = parse(text, &layout).unwrap();
         let times_s = (0..6).map(|i| 0.5 * f64::from(i));
         let expected: Vec<_> = times_s.zip(expected).collect();
         assert_eq!(found, expected, "{text}");
@@ -135,7 +131,7 @@ mod tests {
         ] {
             assert_reads(text, wrapped());
         }
-        let comma = TableLayout {
+        let comma = Layout {
             decimal: Decimal::Comma,
             ..wrapped()
         };
@@ -148,7 +144,7 @@ mod tests {
         assert_reads("1 -2 3 4\n5 6\n", table());
         assert_reads("acceleration in g\n1,-2,3,4,5\n6\n", table());
         // The number of samples is given before them.
-        let skipping = |skip_rows| TableLayout {
+        let skipping = |skip_rows| Layout {
             skip_rows,
             ..table()
         };
@@ -160,8 +156,8 @@ mod tests {
 
     #[test]
     fn columns_are_not_taken_for_samples() {
-        let fault = |text: &str, layout: TableLayout, line, words| {
-            assert_fault(text, &csv(layout), line, words);
+        let fault = |text: &str, layout: Layout, line, words| {
+            assert_fault(text, &layout, line, words);
         };
         let say =
             "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
@@ -177,26 +173,26 @@ mod tests {
             let line = if text.starts_with('#') { 2 } else { 1 };
             fault(text, table(), line, say);
         }
-        let times = TableLayout {
-            times: Times::Column(TableColumn::Number(1)),
+        let times = Layout {
+            times: Some(Times::Column(TableColumn::Number(1))),
             ..table()
         };
         let say = "there are 3 columns: give `acceleration_column`, the one to read; or, if a row holds 3 samples";
         fault("0 -2 3\n4 5 6\n", times.clone(), 1, say);
         // An empty column does not count.
-        assert_eq!(parse("0,1,\n1,2,\n", &csv(times)).unwrap().len(), 2);
+        assert_eq!(parse("0,1,\n1,2,\n", &times).unwrap().len(), 2);
         // A chosen column is read, whatever the length of the last line.
-        let second = TableLayout {
+        let second = Layout {
             acceleration_column: Some(TableColumn::Number(2)),
             ..table()
         };
-        let found = parse("1 -2 3\n4 5\n", &csv(second)).unwrap();
+        let found = parse("1 -2 3\n4 5\n", &second).unwrap();
         assert_eq!(found, [(0.0, -2.0), (0.5, 5.0)]);
     }
 
     #[test]
     fn faults_of_wrapped_tables_have_lines() {
-        let fault = |text: &str, line, words| assert_fault(text, &csv(wrapped()), line, words);
+        let fault = |text: &str, line, words| assert_fault(text, &wrapped(), line, words);
         fault("", 1, "no samples");
         fault("a b\n", 1, "no samples");
         fault("1\n", 1, "number of samples is 1");
