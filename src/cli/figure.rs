@@ -62,8 +62,9 @@ pub struct PanelsOption {
 impl PanelsOption {
     /// The figure with the chosen panels.
     pub fn of(&self, mut figure: Figure) -> Figure {
-        let shown = Panel::ALL.map(|panel| self.panels.contains(&panel));
-        figure.panels = (!self.panels.is_empty()).then_some(shown);
+        for panel in &self.panels {
+            figure.panels.get_or_insert_default()[*panel as usize] = true;
+        }
         figure
     }
 }

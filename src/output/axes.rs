@@ -166,12 +166,7 @@ impl Axes {
     /// The place of a pair of values.
     #[must_use]
     pub fn place(&self, x: f64, y: f64) -> Vector2<f64> {
-        let Frame {
-            left,
-            top,
-            width,
-            height,
-        } = self.frame;
+        let [left, top, width, height] = self.frame.parts();
         Vector2::new(
             left + width * self.x.part(x),
             top + height * (1.0 - self.y.part(y)),
@@ -181,9 +176,7 @@ impl Axes {
     /// Draws frame, ticks and the label of the y axis, above a panel or along the axis.
     pub(crate) fn draw(&self, drawing: &mut Drawing, y_label: &str, is_panel: bool) {
         let widest_px = self.grid(drawing);
-        let Frame {
-            left, top, height, ..
-        } = self.frame;
+        let [left, top, _, height] = self.frame.parts();
         if is_panel {
             let at = Vector2::new(left, top - 7.0);
             return drawing.label(at, Anchor::Start, 0.0, y_label);
@@ -201,12 +194,7 @@ impl Axes {
     fn grid(&self, drawing: &mut Drawing) -> f64 {
         let thin = Stroke::new(color::BLACK, 0.8, "");
         let faint = Stroke::new("#dddddd", 0.6, "");
-        let Frame {
-            left,
-            top,
-            width,
-            height,
-        } = self.frame;
+        let [left, top, width, height] = self.frame.parts();
         let (right, bottom) = (left + width, top + height);
         let mut widest_px: f64 = 0.0;
         // Texts come from below, and none is on another.

@@ -34,51 +34,35 @@ pub(crate) const RIGHT_PX: f64 = 25.0;
 /// No picture has less room than one of 60 mm with text of 8 pt.
 const LEAST_WIDTH_PX: f64 = 60.0 / (MM_PER_PT * TEXT_PT) * TEXT_PX;
 
-/// A panel of the picture of a history.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Panel {
-    /// Acceleration of the ground.
-    Ground,
-    /// Rotations of the bodies.
-    Rotation,
-    /// Open joints.
-    Joints,
-    /// Slips of the joints.
-    Slip,
-    /// Displacements of watched points.
-    Points,
-    /// Energy, over the barrier where that is known.
-    Energy,
-    /// Distance of the line of thrust outside the structure.
-    Thrust,
-}
-
-impl Panel {
-    /// All, from above.
-    pub const ALL: [Self; 7] = [
-        Self::Ground,
-        Self::Rotation,
-        Self::Joints,
-        Self::Slip,
-        Self::Points,
-        Self::Energy,
-        Self::Thrust,
-    ];
-
-    /// Their names, in the same order.
-    const NAMES: [&str; 7] = [
-        "ground", "rotation", "joints", "slip", "points", "energy", "thrust",
-    ];
+named! {
+    /// A panel of the picture of a history, from above.
+    pub enum Panel {
+        /// Acceleration of the ground.
+        Ground = "ground",
+        /// Rotations of the bodies.
+        Rotation = "rotation",
+        /// Open joints.
+        Joints = "joints",
+        /// Slips of the joints.
+        Slip = "slip",
+        /// Displacements of watched points.
+        Points = "points",
+        /// Energy, over the barrier where that is known.
+        Energy = "energy",
+        /// Distance of the line of thrust outside the structure.
+        Thrust = "thrust",
+    }
 }
 
 impl FromStr for Panel {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::NAMES.iter().position(|name| *name == text);
-        found
-            .map(|index| Self::ALL[index])
-            .ok_or_else(|| format!("the panels are {}", Self::NAMES.join(", ")))
+        let found = Self::ALL.iter().find(|panel| panel.name() == text);
+        found.copied().ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|panel| panel.name()).collect();
+            format!("the panels are {}", names.join(", "))
+        })
     }
 }
 

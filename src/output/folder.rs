@@ -299,7 +299,7 @@ impl Folder {
                 .map_err(|error| self.cannot_write(&name)(error.into_error()))?;
             if let Some(stem) = name.strip_suffix(".svg") {
                 for format in PictureFormat::OTHERS {
-                    let other = format!("{stem}.{}", format.extension());
+                    let other = format!("{stem}.{}", format.name());
                     if self.pictures == Some(format) {
                         let converted =
                             converted(&file, format).map_err(self.cannot_write(&other))?;

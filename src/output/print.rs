@@ -6,15 +6,16 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-/// In what a picture is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PictureFormat {
-    /// Lines and texts, for browsers and drawing programs.
-    Svg,
-    /// Lines and texts for print, with fonts embedded.
-    Pdf,
-    /// Pixels: 600 to an inch of print, 2 to a pixel of the screen.
-    Png,
+named! {
+    /// Format of a picture, by the extension of its files.
+    pub enum PictureFormat {
+        /// Lines and texts, for browsers and drawing programs.
+        Svg = "svg",
+        /// Lines and texts for print, with fonts embedded.
+        Pdf = "pdf",
+        /// Pixels: 600 to an inch of print, 2 to a pixel of the screen.
+        Png = "png",
+    }
 }
 
 /// Why a picture is not written in a format.
@@ -42,12 +43,9 @@ impl FromStr for PictureFormat {
     type Err = PrintError;
 
     fn from_str(text: &str) -> Result<Self, PrintError> {
-        let format = match text.to_ascii_lowercase().as_str() {
-            "svg" => Self::Svg,
-            "pdf" => Self::Pdf,
-            "png" => Self::Png,
-            _ => return Err(PrintError::Unknown(text.to_owned())),
-        };
+        let mut all = Self::ALL.iter().copied();
+        let found = all.find(|format| text.eq_ignore_ascii_case(format.name()));
+        let format = found.ok_or_else(|| PrintError::Unknown(text.to_owned()))?;
         if cfg!(feature = "print") || format == Self::Svg {
             Ok(format)
         } else {
@@ -68,16 +66,6 @@ impl PictureFormat {
         match path.extension() {
             Some(extension) => extension.to_string_lossy().parse(),
             None => Ok(Self::Svg),
-        }
-    }
-
-    /// The extension of its files.
-    #[must_use]
-    pub const fn extension(self) -> &'static str {
-        match self {
-            Self::Svg => "svg",
-            Self::Pdf => "pdf",
-            Self::Png => "png",
         }
     }
 

@@ -82,6 +82,13 @@ pub struct Frame {
     pub height: f64,
 }
 
+impl Frame {
+    /// Left, top, width and height.
+    pub(super) const fn parts(&self) -> [f64; 4] {
+        [self.left, self.top, self.width, self.height]
+    }
+}
+
 /// A drawing.
 #[derive(Clone, Debug, Default)]
 pub struct Drawing(String);
@@ -217,12 +224,7 @@ impl Drawing {
 
     /// Adds the shapes of `draw`, clipped to a frame.
     pub fn within(&mut self, frame: &Frame, draw: impl FnOnce(&mut Self)) {
-        let Frame {
-            left,
-            top,
-            width,
-            height,
-        } = frame;
+        let [left, top, width, height] = frame.parts();
         let _ = writeln!(
             self.0,
             "<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" \

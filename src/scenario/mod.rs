@@ -63,8 +63,7 @@ mod verify;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
@@ -73,6 +72,7 @@ use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
 pub use assignment::Assignment;
+use document::Entries;
 pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use free_hinges::FreeTable;
@@ -96,7 +96,7 @@ pub use source::Source;
 use span::Circular;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
-use table::{Reading, Reported, Table};
+use table::{Reading, Table};
 pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
@@ -144,10 +144,10 @@ pub struct Scenario {
     verify: Option<Verify>,
     uncertain: Option<Uncertain>,
     /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
-    as_given: serde_json::Map<String, Value>,
+    as_given: Entries,
     files: InputFiles,
     /// Keys of the shape of a circular arch as they were given, if the file gives its span.
-    given_shape: serde_json::Map<String, Value>,
+    given_shape: Entries,
     /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
 }
@@ -260,7 +260,7 @@ impl Scenario {
     pub fn without_uncertain(self) -> Self {
         Self {
             uncertain: None,
-            as_given: serde_json::Map::new(),
+            as_given: Entries::new(),
             ..self
         }
     }
@@ -333,10 +333,10 @@ impl Scenario {
         let Source { folder, text, .. } = source;
         table::read_text((text, folder), changes.set, |table| {
             let mut scenario = Self::read_table(table, &[], changes)?;
-            let files = &mut scenario.files;
-            files.files.push(InputFile::of_scenario(&source.name, text));
-            files.files.append(&mut table.noted_files());
-            files.folder.clone_from(folder);
+            let mut files = vec![InputFile::of_scenario(&source.name, text)];
+            files.append(&mut table.noted_files());
+            let folder = folder.clone();
+            scenario.files = InputFiles { files, folder };
             Ok(scenario)
         })
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), changes.set, faults))
@@ -349,80 +349,52 @@ impl Scenario {
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let gravity_m_s2 = simulation.as_ref().ok().map(|it| it.gravity_m_s2);
-        let (structure, ties) = match Structure::read(table, hinges, gravity_m_s2) {
-            Ok((structure, ties)) => (Ok(structure), ties),
-            Err(reported) => (Err(reported), Vec::new()),
-        };
-        let mut right_foot = Ok(None);
-        let faults = table.faults();
-        let ground = table.given_table("ground", |table| {
-            right_foot =
-                table.given_table("right", |table| RightFoot::read(table, known, gravity_m_s2));
-            Ground::read(table, known, gravity_m_s2)
-        });
-        let mut unread_ground = None;
-        let is_unread = ground.is_err() || right_foot.is_err();
-        if changes.statics && is_unread && table.forgives_files(faults) {
-            unread_ground = table.as_given("ground");
-            right_foot = Ok(None);
-        }
-        let (ground, ground_motion) = match ground {
-            _ if unread_ground.is_some() => (Err(Reported), GroundMotion::still()),
-            Ok(Some((ground, motion))) => (Ok(Some(ground)), motion),
-            Ok(None) => (Ok(None), GroundMotion::still()),
-            Err(reported) => (Err(reported), GroundMotion::still()),
-        };
+        let built = Structure::read(table, hinges, gravity_m_s2);
+        let structure = built.as_ref().ok().map(|(structure, _)| structure);
+        let shaking = Shaking::read(table, known, gravity_m_s2, changes.statics);
         let motion = motion.complete(table);
-        if let Ok(Some(right_foot)) = &right_foot {
-            right_foot.suits(table, structure.as_ref().ok(), hinges)?;
+        if let Ok(Some(right_foot)) = shaking.as_ref().map(|it| &it.right_foot) {
+            right_foot.suits(table, structure, hinges)?;
         }
-        let initial = table.given_table("initial", |table| {
-            initial::read(table, structure.as_ref().ok(), hinges)
-        });
+        let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
+        let moved_by = motion.as_ref().ok().map(|(motion, _)| motion);
         let map = table.given_table("map", |table| {
-            let motion = motion.as_ref().ok().map(|(motion, _)| motion);
-            Map::read(table, structure.as_ref().ok(), (hinges, motion))
+            Map::read(table, structure, (hinges, moved_by))
         });
         let suite = table.given_table("suite", |table| {
             Suite::read(table, simulation.as_ref().ok())
         });
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
+        let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
         let demand = table.given_table("demand", |table| {
-            let verify = verify.as_ref().ok().cloned().flatten();
-            let factor = verify.unwrap_or_default().confidence_factor;
-            Demand::read(table, factor)
+            Demand::read(table, options.confidence_factor)
         });
         let uncertain = table.given_table("uncertain", Uncertain::read);
         let (verify, demand) = (verify?, demand?);
         if let Some(verify) = &verify {
             verify.suits(table, demand.as_ref())?;
         }
-        let ((motion, ignores_impact), structure) = (motion?, structure?);
-        let until = simulation
-            .as_ref()
-            .map(|simulation| {
-                let end_s = simulation.end_s(ground_motion.end_s(), structure.size_m());
-                (simulation.gravity_m_s2, end_s)
-            })
-            .ok();
+        let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
+        let shaken_s = shaking.as_ref().map_or(0.0, |it| it.motion.end_s());
+        let until = simulation.as_ref().ok().map(|simulation| {
+            let end_s = simulation.end_s(shaken_s, structure.size_m());
+            (simulation.gravity_m_s2, end_s)
+        });
         motion.check(table, &structure, until)?;
         if !ties.is_empty() && table.gives("initial") {
             let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
             return Err(table.wrong("initial", wrong));
         }
-        let given_shape = Circular::given(table);
+        let (given_shape, shaking) = (Circular::given(table), shaking?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
             ties,
             motion,
             ignores_impact,
-            ground: match unread_ground {
-                Some(_) => None,
-                None => ground?,
-            },
-            unread_ground,
-            right_foot: right_foot?,
+            ground: shaking.ground,
+            unread_ground: shaking.unread,
+            right_foot: shaking.right_foot,
             initial: initial?,
             simulation: simulation?,
             map: map?,
@@ -430,21 +402,21 @@ impl Scenario {
             demand,
             verify,
             uncertain: None,
-            as_given: serde_json::Map::new(),
+            as_given: Entries::new(),
             files: InputFiles::default(),
             given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
-        certain.ground_motion = Arc::new(certain.under_both_feet(ground_motion));
+        certain.ground_motion = Arc::new(certain.under_both_feet(shaking.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
         let uncertain = uncertain?.map(|uncertain| {
             let resolved = certain.resolved();
             certain.as_given = uncertain.as_given(table, &resolved);
-            if certain.unread_ground.is_some() {
-                return Ok(uncertain);
+            match certain.unread_ground {
+                Some(_) => Ok(uncertain),
+                None => uncertain.check(table, &certain, &resolved),
             }
-            uncertain.check(table, &certain, &resolved)
         });
         Ok(Self {
             uncertain: uncertain.transpose()?,
@@ -456,28 +428,21 @@ impl Scenario {
     /// checked against the original ground.
     #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
-        let motion = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
+        let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
             ground.motion_under(self.simulation.gravity_m_s2)
         });
         // A record of the right foot goes with the ground that was given beside it.
-        let follows = |right: &&RightFoot| ground.is_some() && right.record().is_none();
-        let right_foot = self.right_foot.as_ref().filter(follows).cloned();
-        let motion = Self {
-            right_foot: right_foot.clone(),
-            ..self.clone()
-        }
-        .under_both_feet(motion);
-        Self {
-            ground,
+        let follows = |right: &RightFoot| ground.is_some() && right.record().is_none();
+        let mut shaken = Self {
+            right_foot: self.right_foot.clone().filter(follows),
             unread_ground: None,
-            right_foot,
             map: None,
             suite: None,
-            uncertain: None,
-            as_given: serde_json::Map::new(),
-            ground_motion: Arc::new(motion),
-            ..self.clone()
-        }
+            ..self.clone().without_uncertain()
+        };
+        shaken.ground_motion = Arc::new(shaken.under_both_feet(left));
+        shaken.ground = ground;
+        shaken
     }
 
     /// This motion of the ground under its left foot, and what that makes of the right one.
@@ -683,58 +648,88 @@ impl Scenario {
     /// The scenario as JSON in which a circular arch has its mean radius, the ratio of its thickness and its embrace angle, whatever keys
     /// the file gives.
     pub(crate) fn resolved(&self) -> Value {
-        fn json(value: &impl Serialize) -> Value {
-            serde_json::to_value(value).expect("a scenario consists of tables of numbers and texts")
-        }
         // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
-        let motion = |row: bool| match self.motion.hinges().has_joints() {
-            has_joints if has_joints == row => (self.motion.table_name(), self.motion.table()),
+        let motion = |of_rows: bool| match self.motion.hinges().has_joints() {
+            has_joints if has_joints == of_rows => (self.motion.table_name(), self.motion.table()),
             _ => ("", Value::Null),
         };
-        let Value::Object(structure) = json(&self.structure) else {
-            unreachable!("a structure is some tables");
-        };
-        let supports = self.motion.supports();
-        let supports = supports.map_or(Value::Null, |movements| json(&movements));
-        let mut ground = match &self.unread_ground {
-            Some(given) => given.clone(),
-            None => json(&self.ground),
-        };
-        if let (Value::Object(ground), Some(right)) = (&mut ground, &self.right_foot) {
-            ground.insert("right".to_owned(), json(right));
+        let mut ground = self.unread_ground.clone();
+        let ground = ground.get_or_insert_with(|| json!(self.ground));
+        if let (Value::Object(ground), Some(right)) = (&mut *ground, &self.right_foot) {
+            ground.insert("right".to_owned(), json!(right));
         }
+        let ties = Some(&self.ties).filter(|ties| !ties.is_empty());
         let tables = [
-            (
-                "tie",
-                if self.ties.is_empty() {
-                    Value::Null
-                } else {
-                    json(&self.ties)
-                },
-            ),
+            ("tie", json!(ties)),
             motion(true),
-            ("supports", supports),
-            ("ground", ground),
+            ("supports", json!(self.motion.supports())),
+            ("ground", ground.take()),
             motion(false),
-            ("initial", json(&self.initial)),
-            ("simulation", json(&self.simulation)),
-            ("map", json(&self.map)),
-            ("suite", json(&self.suite)),
-            ("demand", json(&self.demand)),
-            ("verify", json(&self.verify)),
-            ("uncertain", json(&self.uncertain)),
+            ("initial", json!(self.initial)),
+            ("simulation", json!(self.simulation)),
+            ("map", json!(self.map)),
+            ("suite", json!(self.suite)),
+            ("demand", json!(self.demand)),
+            ("verify", json!(self.verify)),
+            ("uncertain", json!(self.uncertain)),
         ];
-        let tables = tables
-            .into_iter()
-            .map(|(key, table)| (key.to_owned(), table));
-        let title = ("title".to_owned(), json(&self.title));
+        let tables = tables.map(|(key, table)| (key.to_owned(), table));
+        let title = ("title".to_owned(), json!(self.title));
+        let structure = match json!(self.structure) {
+            Value::Object(structure) => structure,
+            _ => Entries::new(),
+        };
         let all = [title].into_iter().chain(structure).chain(tables);
-        let all = all.map(|(key, value)| {
-            let given = self.as_given.get(&key).filter(|_| !value.is_null());
-            let value = given.cloned().unwrap_or(value);
-            (key, value)
+        given(
+            all.map(|(key, value)| match self.as_given.get(&key) {
+                Some(given) if !value.is_null() => (key, given.clone()),
+                _ => (key, value),
+            })
+            .collect(),
+        )
+    }
+}
+
+/// The part of a scenario that is read from `[ground]`.
+struct Shaking {
+    ground: Option<Ground>,
+    right_foot: Option<RightFoot>,
+    /// The motion under the left foot.
+    motion: GroundMotion,
+    /// The table as it was given, if its files are missing or faulty and nothing is to move.
+    unread: Option<Value>,
+}
+
+impl Shaking {
+    fn read(
+        table: &mut Table<'_>,
+        known: &[Series],
+        gravity_m_s2: Option<f64>,
+        statics: bool,
+    ) -> Reading<Self> {
+        let faults = table.faults();
+        let mut right_foot = Ok(None);
+        let ground = table.given_table("ground", |table| {
+            right_foot =
+                table.given_table("right", |table| RightFoot::read(table, known, gravity_m_s2));
+            Ground::read(table, known, gravity_m_s2)
         });
-        given(Value::Object(all.collect()))
+        let is_unread = ground.is_err() || right_foot.is_err();
+        if statics && is_unread && table.forgives_files(faults) {
+            return Ok(Self {
+                ground: None,
+                right_foot: None,
+                motion: GroundMotion::still(),
+                unread: table.as_given("ground"),
+            });
+        }
+        let (ground, motion) = ground?.unzip();
+        Ok(Self {
+            ground,
+            right_foot: right_foot?,
+            motion: motion.unwrap_or_else(GroundMotion::still),
+            unread: None,
+        })
     }
 }
 

@@ -47,38 +47,25 @@ impl Scenario {
     /// The unlikely values; `starts_g` finds the least acceleration that starts the structure, in g.
     fn unlikely_with(&self, starts_g: impl FnOnce() -> Option<f64>) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
+        let of_series = |series: &Series| series.unlikely(gravity_m_s2);
         let mut unlikely = self.structure.unlikely();
-        if !GRAVITY_M_S2.contains(&gravity_m_s2) {
-            unlikely.push(format!(
-                "gravity is {} m/s2, not that of the Earth",
-                plain(gravity_m_s2)
-            ));
-        }
+        unlikely.extend((!GRAVITY_M_S2.contains(&gravity_m_s2)).then(|| {
+            let gravity = plain(gravity_m_s2);
+            format!("gravity is {gravity} m/s2, not that of the Earth")
+        }));
         match &self.ground {
-            Some(Ground::Record(record)) => {
-                unlikely.extend(
-                    record
-                        .series()
-                        .flat_map(|series| series.unlikely(gravity_m_s2)),
-                );
-            }
+            Some(Ground::Record(record)) => unlikely.extend(record.series().flat_map(of_series)),
             Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, starts_g)),
             None => {}
         }
-        if let Some(suite) = &self.suite {
-            let mut records = suite
-                .records
-                .iter()
-                .map(|series| series.unlikely(gravity_m_s2));
-            // A wrong unit is wrong in all tables, so only the first record is described.
-            if let Some(first) = records.find(|unlikely| !unlikely.is_empty()) {
-                let others = records.filter(|unlikely| !unlikely.is_empty()).count();
-                unlikely.extend(first);
-                if others > 0 {
-                    unlikely.push(format!("{others} more records of the suite are like that"));
-                }
-            }
-        }
+        // A wrong unit is wrong in all tables, so only the first record is described.
+        let records = self.suite.iter().flat_map(|suite| &suite.records);
+        let mut records = records.map(of_series).filter(|faults| !faults.is_empty());
+        unlikely.extend(records.next().into_iter().flatten());
+        unlikely.extend(match records.count() {
+            0 => None,
+            others => Some(format!("{others} more records of the suite are like that")),
+        });
         unlikely.extend(self.takes_long());
         unlikely
     }
@@ -88,45 +75,39 @@ impl Scenario {
         pulse: &PulseGround,
         starts_g: impl FnOnce() -> Option<f64>,
     ) -> Option<String> {
-        let peak_g = pulse
-            .amplitude_g
-            .abs()
-            .max(pulse.vertical_amplitude_g.abs());
+        let (along_g, up_g) = (pulse.amplitude_g.abs(), pulse.vertical_amplitude_g.abs());
+        let peak_g = along_g.max(up_g);
         if peak_g > *PEAK_G.end() {
+            let peak = plain(peak_g);
             return Some(format!(
-                "the pulse peaks at {} g: is its amplitude in units of gravity?",
-                plain(peak_g)
+                "the pulse peaks at {peak} g: is its amplitude in units of gravity?"
             ));
         }
         // On springings that have moved the structure stands on three hinges, and a fraction of its own strength starts it.
         if self.motion.supports().is_some() {
             return None;
         }
-        let starts_g = starts_g()?;
-        let times = pulse.amplitude_g.abs() / starts_g;
         // What stands on hinges that ties hold is started by any push.
-        (starts_g > 0.0 && times > PEAK_OVER_INCIPIENT).then(|| {
+        let times = along_g / starts_g().filter(|starts_g| *starts_g > 0.0)?;
+        (times > PEAK_OVER_INCIPIENT).then(|| {
+            let peak = plain(along_g);
             format!(
-                "the pulse peaks at {} g, {times:.0} times what starts the structure: is its amplitude in units of \
-                 gravity?",
-                plain(pulse.amplitude_g.abs())
+                "the pulse peaks at {peak} g, {times:.0} times what starts the structure: is its amplitude in units of gravity?"
             )
         })
     }
 
     /// Warns that a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<String> {
-        let duration_s = self.request().end_s;
-        let begin = format!("the simulation lasts {} s", short(duration_s));
+        let request = self.request();
+        let begin = format!("the simulation lasts {} s", short(request.end_s));
         if !self.motion.hinges().has_joints() {
-            return (duration_s > DURATION_S).then(|| {
+            return (request.end_s > DURATION_S).then(|| {
                 format!("{begin}: unless it rests or overturns before, that takes minutes or more")
             });
         }
-        let longest_s = self
-            .motion
-            .longest_step_s(&self.structure, &self.request())?;
-        let steps = duration_s / longest_s;
+        let longest_s = self.motion.longest_step_s(&self.structure, &request)?;
+        let steps = request.end_s / longest_s;
         (steps > STEPS).then(|| {
             format!(
                 "{begin}, some {steps:.0e} steps of {longest_s:.1e} s: unless it rests or overturns before, every \
@@ -145,40 +126,29 @@ fn starts_g(model: &dyn Model) -> Option<f64> {
 
 impl Structure {
     fn unlikely(&self) -> Vec<String> {
-        match self {
+        let (what, longest_m) = match self {
             Self::Arch(arch) => {
-                let mean_radius_m = arch.mean_radius_m();
-                let thickness_m = mean_radius_m * arch.thickness_ratio();
-                let embrace_deg = arch.embrace_deg();
+                let (radius_m, embrace_deg) = (arch.mean_radius_m(), arch.embrace_deg());
+                let thick_m = radius_m * arch.thickness_ratio();
                 let in_radians = (embrace_deg < LIKELY_EMBRACE_DEG).then(|| {
-                    format!(
-                        "the embrace angle is {} degrees: is it in radians?",
-                        plain(embrace_deg)
-                    )
+                    let angle = plain(embrace_deg);
+                    format!("the embrace angle is {angle} degrees: is it in radians?")
                 });
-                [
-                    long("the mean radius is", mean_radius_m, RADIUS_M),
-                    long("the thickness is", thickness_m, THICKNESS_M),
-                    in_radians,
-                ]
-                .into_iter()
-                .flatten()
-                .collect()
-            }
-            Self::Column(column) => {
-                let longest_m = column.height_m().max(column.width_m());
-                long("the column measures", longest_m, SIZE_M)
+                let radius = long("the mean radius is", radius_m, RADIUS_M);
+                let thickness = long("the thickness is", thick_m, THICKNESS_M);
+                return [radius, thickness, in_radians]
                     .into_iter()
-                    .collect()
+                    .flatten()
+                    .collect();
             }
+            Self::Column(column) => ("column", column.height_m().max(column.width_m())),
             Self::Masonry(masonry) => {
                 let [low_m, high_m] = bounds_m(masonry.row());
-                let longest_m = (high_m - low_m).max();
-                long("the structure measures", longest_m, SIZE_M)
-                    .into_iter()
-                    .collect()
+                ("structure", (high_m - low_m).max())
             }
-        }
+        };
+        let long = long(&format!("the {what} measures"), longest_m, SIZE_M);
+        long.into_iter().collect()
     }
 }
 
@@ -196,33 +166,31 @@ impl Series {
     /// The unlikely values of a record, a sentence each, with a suggestion what was meant.
     #[must_use]
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
-        let mut unlikely = Vec::new();
         let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));
+        let (unit, sampling) = (self.unit.name(), self.sampling());
+        let mut unlikely = Vec::new();
         if !PEAK_G.contains(&peak_g) {
             let might_be = match self.scaling {
-                Scaling::Factor(1.0) => format!("is its unit {:?}?", self.unit.name()),
-                Scaling::Factor(scale) => format!(
-                    "is its unit {:?}, and `scale` {}?",
-                    self.unit.name(),
-                    plain(scale)
-                ),
+                Scaling::Factor(1.0) => format!("is its unit {unit:?}?"),
+                Scaling::Factor(scale) => {
+                    format!("is its unit {unit:?}, and `scale` {}?", plain(scale))
+                }
                 Scaling::PeakG(_) => "is `peak_g` in units of gravity?".to_owned(),
             };
             unlikely.push(format!("{name} peaks at {} g: {might_be}", plain(peak_g)));
         }
-        let sampling = self.sampling();
         let step_s = sampling.duration_s / (sampling.count - 1) as f64;
         if step_s > RECORD_STEP_S {
+            let step = plain(step_s);
             unlikely.push(format!(
-                "{name} has a sample every {} s: are its times in milliseconds?",
-                plain(step_s)
+                "{name} has a sample every {step} s: are its times in milliseconds?"
             ));
         }
         let mean_g = self.mean_g(gravity_m_s2);
         if self.layout.format == Format::Knet && mean_g.abs() > OFFSET * peak_g {
+            let mean = plain(mean_g);
             unlikely.push(format!(
-                "{name} has a mean of {} g, the offset of the instrument: give `remove_mean = true` to take it off",
-                plain(mean_g)
+                "{name} has a mean of {mean} g, the offset of the instrument: give `remove_mean = true` to take it off"
             ));
         }
         unlikely

@@ -252,7 +252,7 @@ impl Writer {
         for (stem, format) in
             pictures.flat_map(|stem| PictureFormat::OTHERS.map(|other| (stem, other)))
         {
-            all.push(folder.join(format!("{stem}.{}", format.extension())));
+            all.push(folder.join(format!("{stem}.{}", format.name())));
         }
         all
     }
