@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn a_column_has_three_panels() {
         let shown = |figure: Figure, watched| {
-            let shown = Panel::ALL.into_iter();
+            let shown = Panel::ALL.iter().copied();
             shown
                 .filter(|panel| figure.shows(*panel, watched))
                 .collect::<Vec<_>>()
@@ -223,8 +223,10 @@ mod tests {
         let three = [Panel::Ground, Panel::Rotation, Panel::Points];
         assert_eq!(shown(narrow, true), three);
         assert_eq!(shown(wide, true), Panel::ALL);
+        let mut panels = [false; Panel::ALL.len()];
+        panels[Panel::Thrust as usize] = true;
         let one = Figure {
-            panels: Some(Panel::ALL.map(|panel| panel == Panel::Thrust)),
+            panels: Some(panels),
             ..narrow
         };
         assert_eq!(shown(one, true), [Panel::Thrust]);

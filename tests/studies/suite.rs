@@ -1018,7 +1018,7 @@ fn faults_of_records_name_the_file() {
                 &[
                     "names short.at2, which is faulty: ",
                     "short.at2:5: ",
-                    "ends after 2 values",
+                    "the number of samples is 2: line 4 announces 3",
                 ],
             ),
             (
