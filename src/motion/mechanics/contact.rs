@@ -226,6 +226,13 @@ impl Program {
         self.set_velocities();
     }
 
+    /// How many motions the pressed corners leave to the row.
+    pub(crate) fn freedom(&self) -> usize {
+        let moving = self.factor.bodies.iter().filter(|body| !body.is_held());
+        let pressed = self.factor.pins.iter().filter(|pin| !pin.parted);
+        (3 * moving.count()).saturating_sub(2 * pressed.count())
+    }
+
     /// Takes the load; returns the largest velocity.
     fn set_up(&mut self, load: &Load) -> f64 {
         let (largest_rate, momentum) = self.factor.row.load(load);

@@ -36,12 +36,13 @@ impl Stance {
         self.ties.iter().map(|tie| tie.force_n.0[0])
     }
 
-    /// The ties follow the blocks, slowly.
-    pub(crate) fn stretch_ties(&mut self, row: &Row) {
+    /// The ties follow the blocks, slowly. Returns how they lie then.
+    pub(crate) fn stretch_ties(&mut self, row: &Row) -> Vec<TieLine> {
         let lines: Vec<TieLine> = self.lines(row).collect();
         for ((memory, tie), line) in self.ties.iter_mut().zip(row.ties()).zip(&lines) {
             *memory = memory.then(tie, line.stretch_m);
         }
+        lines
     }
 
     /// The first of its ties that has broken.

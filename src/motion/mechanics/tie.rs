@@ -379,7 +379,11 @@ impl<R: Real> TieMemory<R> {
         let pulls_n = ((stretch_m - self.yielded_m) * tie.stiffness_n_m).max(zero);
         let force_n = pulls_n.min(R::of(tie.yield_force_n));
         let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
-        let breaks_m = R::of(tie.breaks_at_strain * tie.slack_length_m());
+        let breaks_m = R::of(if tie.breaks_at_strain.is_finite() {
+            tie.breaks_at_strain * tie.slack_length_m()
+        } else {
+            f64::INFINITY
+        });
         // A tie that breaks within the step pulls hardest where it breaks.
         let hardest_n = ((stretch_m.min(breaks_m) - self.yielded_m) * tie.stiffness_n_m)
             .max(zero)

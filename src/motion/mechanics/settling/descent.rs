@@ -43,7 +43,7 @@ const LEVEL: f64 = 1e-14;
 /// Rounds in which the forces of all ties are found, at most.
 const MOST_ROUNDS: usize = 100;
 /// Trials of how far a round goes, at most.
-const MOST_TRIALS: usize = 60;
+const MOST_TRIALS: usize = 20;
 /// A round goes on until the energy falls by less than this part of how it falls at the beginning.
 const FLAT: f64 = 0.1;
 /// A response to ties is rounding below this part of what they would do to free blocks.
@@ -57,7 +57,7 @@ const LONGEST: f64 = 1e3;
 struct Step<'a> {
     stance: &'a Stance,
     /// How the ties lie when it begins.
-    lines: Vec<TieLine>,
+    lines: &'a [TieLine],
     /// The forces between which each pulls, over gravity.
     bounds_kg: Vec<[f64; 2]>,
     force_g: Vector2<f64>,
@@ -68,7 +68,7 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    fn new(row: &Row, stance: &'a Stance, force_g: Vector2<f64>) -> Self {
+    fn new(row: &Row, stance: &'a Stance, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
         let ties = row.ties().iter().zip(&stance.ties);
         let most_kg = ties.map(|(tie, memory)| {
             let most_n = if memory.is_broken() {
@@ -80,7 +80,7 @@ impl<'a> Step<'a> {
         });
         Self {
             stance,
-            lines: stance.lines(row).collect(),
+            lines,
             bounds_kg: most_kg.map(|most_kg| [0.0, most_kg]).collect(),
             force_g,
             length: 0.0,
@@ -138,7 +138,8 @@ impl<'a> Descent<'a> {
         let forces = stance.forces_n().map(|force_n| force_n / gravity_m_s2);
         self.ties_kg = forces.collect();
         self.program.reset();
-        self.nudge(stance, from, to, force_g)?;
+        self.program.place(&stance.placement);
+        let mut lines = self.nudge(stance, from, to, force_g)?;
         self.jumps.fill(Twist::ZERO);
         let start_m = stance.placement.centres_m.to_vec();
         let turns = |stance: &Stance| {
@@ -163,13 +164,13 @@ impl<'a> Descent<'a> {
                 longest = farthest_m / fastest;
                 fastest
             } else {
-                self.solve_with_ties(stance, force_g, farthest_m, &mut longest)?
+                self.solve_with_ties(stance, &lines, force_g, farthest_m, &mut longest)?
             };
             if fastest <= STANDSTILL {
                 return Ok(true);
             }
             let (length, shut) = self.first_shut(&stance.placement, longest);
-            self.go_on(stance, length, shut);
+            lines = self.go_on(stance, length, shut);
             longest = (0.9 * farthest_m / fastest)
                 .min(2.0 * longest)
                 .min(LONGEST * size_m);
@@ -199,14 +200,15 @@ impl<'a> Descent<'a> {
     }
 
     /// Moves the supports, and the row by the velocities that they force on it while the load decides: from one joint that shuts on the
-    /// way to the next.
+    /// way to the next. Returns how the ties lie then.
     fn nudge(
         &mut self,
         stance: &mut Stance,
         from: &Condition,
         to: &Condition,
         force_g: Vector2<f64>,
-    ) -> Result<(), ContactError> {
+    ) -> Result<Vec<TieLine>, ContactError> {
+        let mut lines: Vec<TieLine> = stance.lines(self.row).collect();
         let mut here = from.supports;
         let last = self.jumps.len() - 1;
         for _ in 0..=2 * last {
@@ -217,7 +219,6 @@ impl<'a> Descent<'a> {
             self.jumps.fill(Twist::ZERO);
             self.jumps[0] = moved[0];
             self.jumps[last] = self.jumps[last] - moved[1];
-            let lines: Vec<TieLine> = stance.lines(self.row).collect();
             self.solve(stance, &lines, force_g, self.row.size_m())?;
             let (part, shut) = self.first_shut(&stance.placement, 1.0);
             here = match shut {
@@ -225,9 +226,9 @@ impl<'a> Descent<'a> {
                 Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
             };
             stance.placement.move_supports(here);
-            self.go_on(stance, part, shut);
+            lines = self.go_on(stance, part, shut);
         }
-        Ok(())
+        Ok(lines)
     }
 
     /// Velocities where the row is, with ties that lie so, under so many times its load; the fastest of them.
@@ -251,7 +252,6 @@ impl<'a> Descent<'a> {
         for (touching, gaps) in self.touching.iter_mut().zip(&placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
-        self.program.place(placement);
         self.program.solve(&Load {
             free: &self.free,
             jumps: &self.jumps,
@@ -269,11 +269,12 @@ impl<'a> Descent<'a> {
     fn solve_with_ties(
         &mut self,
         stance: &Stance,
+        lines: &[TieLine],
         force_g: Vector2<f64>,
         farthest_m: f64,
         longest: &mut f64,
     ) -> Result<f64, SettlingError> {
-        let mut step = Step::new(self.row, stance, force_g);
+        let mut step = Step::new(self.row, stance, lines, force_g);
         let (before_kg, shortest) = (self.ties_kg.clone(), SHORTEST * *longest);
         loop {
             step.length = *longest;
@@ -300,15 +301,10 @@ impl<'a> Descent<'a> {
             let [least_kg, most_kg] = step.bounds_kg[tie];
             self.ties_kg[tie] = self.ties_kg[tie].clamp(least_kg, most_kg);
         }
-        let mut fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+        let mut fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
-            let mut responded = false;
             let lacks_m = self.lacks_m(step);
-            if step.pressing != self.program.active {
-                step.pressing = self.program.active.to_vec();
-                step.lengthen = self.lengthen(step);
-                responded = true;
-            }
+            let responded = self.learn_to_lengthen(step);
             let Some(way_kg) = self.way_kg(step, &lacks_m) else {
                 break;
             };
@@ -318,22 +314,13 @@ impl<'a> Descent<'a> {
             if left_kg <= FORCE * self.row.mass_kg() {
                 if responded {
                     // Responses of the row have taken the place of its velocities.
-                    fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+                    fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
                 }
                 return Ok(fastest);
             }
             fastest = self.go_along(step, &way_kg, lacks_m.dot(&way_kg))?;
         }
         Err(SettlingError::Ties)
-    }
-
-    /// After which part of this change a tie pulls with nothing, or with as much as it can.
-    fn ends_at(&self, step: &Step<'_>, tie: usize, change_kg: f64) -> f64 {
-        if change_kg == 0.0 {
-            return f64::INFINITY;
-        }
-        let end_kg = step.bounds_kg[tie][usize::from(change_kg > 0.0)];
-        (end_kg - self.ties_kg[tie]) / change_kg
     }
 
     /// By how much longer each tie is at the end of a step than its force makes it, with the last velocities.
@@ -353,43 +340,59 @@ impl<'a> Descent<'a> {
     /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
     fn way_kg(&self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
         let lengthen = &step.lengthen;
+        let modes = lengthen.ncols();
         let kg_m = self.ties_m_kg.iter().map(|m_kg| 1.0 / m_kg);
-        let kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
-        let mut goes = self.may_go(step, lacks_m);
+        let mut kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
+        let (mut way_kg, mut found) = (lacks_m.clone(), false);
         loop {
-            let kg_m = kg_m.zip_map(&goes, |kg_m, goes| if goes { kg_m } else { 0.0 });
-            let pulls = DMatrix::from_fn(lengthen.nrows(), lengthen.ncols(), |tie, mode| {
-                kg_m[tie] * lengthen[(tie, mode)]
-            });
-            let mut equations = lengthen.tr_mul(&pulls) * step.length;
-            for mode in 0..lengthen.ncols() {
-                equations[(mode, mode)] += 1.0;
+            let mut all_go = true;
+            for (tie, kg_m) in kg_m.iter_mut().enumerate() {
+                if *kg_m != 0.0 && !self.may_go(step, tie, way_kg[tie]) {
+                    *kg_m = 0.0;
+                    all_go = false;
+                }
             }
-            let speeds = equations.cholesky()?.solve(&pulls.tr_mul(lacks_m));
-            let left_m = lacks_m - lengthen * speeds * step.length;
-            let way_kg = left_m.component_mul(&kg_m);
-            let still = goes.zip_map(&self.may_go(step, &way_kg), |goes, may| goes && may);
-            if still == goes {
+            if found && all_go {
                 return way_kg.iter().all(|kg| kg.is_finite()).then_some(way_kg);
             }
-            goes = still;
+            let mut equations = DMatrix::identity(modes, modes);
+            let mut pulled = DVector::zeros(modes);
+            for mode in 0..modes {
+                let pulls = lengthen.column(mode).component_mul(&kg_m);
+                pulled[mode] = pulls.dot(lacks_m);
+                for other in 0..=mode {
+                    equations[(mode, other)] += step.length * pulls.dot(&lengthen.column(other));
+                }
+            }
+            let speeds = equations.cholesky()?.solve(&pulled);
+            way_kg.copy_from(lacks_m);
+            way_kg.gemv(-step.length, lengthen, &speeds, 1.0);
+            way_kg.component_mul_assign(&kg_m);
+            found = true;
         }
     }
 
-    /// Which ties can pull harder or less, as they would on this way.
-    fn may_go(&self, step: &Step<'_>, way: &DVector<f64>) -> DVector<bool> {
-        let ties = 0..way.len();
-        DVector::from_iterator(
-            way.len(),
-            ties.map(|tie| self.ends_at(step, tie, way[tie]) > 0.0),
-        )
+    /// Whether a tie can pull harder or less, as this change would have it.
+    fn may_go(&self, step: &Step<'_>, tie: usize, change: f64) -> bool {
+        let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
+        (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0
+    }
+
+    /// Finds how ties lengthen while the corners press that do, unless that is known. Velocities are lost where it is not.
+    fn learn_to_lengthen(&mut self, step: &mut Step<'_>) -> bool {
+        let unknown = step.pressing != self.program.active;
+        if unknown {
+            step.pressing = self.program.active.to_vec();
+            step.lengthen = self.lengthen(step);
+        }
+        unknown
     }
 
     /// At which rates the ties (rows) lengthen in the motions (columns) that ties can give the row while the same corners press. The
     /// motions have no kinetic energy in common, and each has that of a unit mass at unit speed.
     ///
     /// The response to any pulls is the part of the free motion that the joints allow. So the responses to arbitrary pulls at once span all
-    /// such motions as soon as one of them adds nothing.
+    /// such motions as soon as one of them adds nothing, or there are no more.
     fn lengthen(&mut self, step: &Step<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
         let centres_m = &step.stance.placement.centres_m;
@@ -406,10 +409,14 @@ impl<'a> Descent<'a> {
                 .sum()
         };
         let mut motions: Vec<Vec<Twist>> = Vec::new();
-        while motions.len() < count {
+        while motions.len() < count.min(self.program.freedom()) {
             // No two ties, and no two trials, have parts in a simple ratio.
-            let phase = 1.0 + f64::sqrt(2.0) * motions.len() as f64;
-            self.respond(step, |tie| (phase * (1.0 + tie as f64)).fract() - 0.5);
+            let ratio = (f64::sqrt(2.0) * motions.len() as f64).fract();
+            let mut part = 0.0;
+            self.respond(step, |_| {
+                part += ratio - if part + ratio < 1.0 { 0.0 } else { 1.0 };
+                part - 0.5
+            });
             let mut motion = self.program.velocities.to_vec();
             // Twice, so that rounding leaves nothing in common.
             for known in motions.iter().chain(&motions) {
@@ -434,7 +441,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Velocities that ties alone give the row while the same corners press, each with so much over gravity.
-    fn respond(&mut self, step: &Step<'_>, kg: impl Fn(usize) -> f64) {
+    fn respond(&mut self, step: &Step<'_>, mut kg: impl FnMut(usize) -> f64) {
         let centres_m = &step.stance.placement.centres_m;
         self.free.fill(Twist::ZERO);
         let ties = step.lines.iter().enumerate();
@@ -448,27 +455,31 @@ impl<'a> Descent<'a> {
     }
 
     /// By how much less the ties lack, each times its part of a way, for the whole of that way.
-    fn slope_along(&mut self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
-        self.respond(step, |tie| way_kg[tie]);
-        let velocities = &self.program.velocities;
-        let each = self.ties_m_kg.iter().zip(&step.lines).zip(way_kg);
-        each.map(|((m_kg, line), kg)| {
-            let elastic_m = kg * m_kg;
-            kg * (elastic_m - step.length * line.lengthening(velocities))
-        })
-        .sum()
+    fn slope_along(&self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
+        let each = self.ties_m_kg.iter().zip(way_kg);
+        let elastic: f64 = each.map(|(m_kg, kg)| kg * kg * m_kg).sum();
+        elastic + step.length * step.lengthen.tr_mul(way_kg).norm_squared()
     }
 
     /// Changes the forces of ties on this way, each until it pulls with all or nothing, and all until the energy of the step falls hardly
     /// more: at first it falls by so much.
     fn go_along(
         &mut self,
-        step: &Step<'_>,
+        step: &mut Step<'_>,
         way_kg: &DVector<f64>,
         falls: f64,
     ) -> Result<f64, ContactError> {
         let from_kg = self.ties_kg.clone();
-        let ends = (0..from_kg.len()).map(|tie| self.ends_at(step, tie, way_kg[tie]));
+        // After which part of the way a tie pulls with nothing, or with as much as it can.
+        let bounds = from_kg.iter().zip(way_kg).zip(&step.bounds_kg);
+        let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
+            let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
+            if *change_kg == 0.0 {
+                f64::INFINITY
+            } else {
+                (end_kg - kg) / change_kg
+            }
+        });
         let ends: Vec<f64> = ends.collect();
         // Until here all ties go.
         let all = ends.iter().copied().fold(1.0, f64::min);
@@ -481,7 +492,7 @@ impl<'a> Descent<'a> {
                     from_kg + part * way_kg[tie]
                 };
             }
-            let fastest = self.solve(step.stance, &step.lines, step.force_g, 1.0)?;
+            let fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
             let falls_on = self.lacks_m(step).component_mul(way_kg);
             // A tie that has come to its end stays there, unless it should come back.
             let goes = falls_on.iter().zip(&ends);
@@ -500,6 +511,7 @@ impl<'a> Descent<'a> {
                 far = part;
             }
             // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
+            self.learn_to_lengthen(step);
             let next = part + left / self.slope_along(step, way_kg);
             part = if near < next && next < far {
                 next
@@ -507,7 +519,7 @@ impl<'a> Descent<'a> {
                 0.5 * (near + far)
             };
         }
-        self.solve(step.stance, &step.lines, step.force_g, 1.0)
+        self.solve(step.stance, step.lines, step.force_g, 1.0)
     }
 
     /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
@@ -527,8 +539,13 @@ impl<'a> Descent<'a> {
         (length, first)
     }
 
-    /// Goes on with the last velocities for so long, until this corner shuts.
-    fn go_on(&mut self, stance: &mut Stance, length: f64, shut: Option<(usize, usize)>) {
+    /// Goes on with the last velocities for so long, until this corner shuts. Returns how the ties lie then.
+    fn go_on(
+        &mut self,
+        stance: &mut Stance,
+        length: f64,
+        shut: Option<(usize, usize)>,
+    ) -> Vec<TieLine> {
         let placement = &mut stance.placement;
         let gaps_m = &placement.gaps_m;
         let mut change = vec![[0.0; 2]; gaps_m.len()];
@@ -540,7 +557,8 @@ impl<'a> Descent<'a> {
         }
         placement.open(|joint| change[joint]);
         self.closer.close(placement);
-        stance.stretch_ties(self.row);
+        self.program.place(placement);
+        stance.stretch_ties(self.row)
     }
 }
 
@@ -588,25 +606,35 @@ mod tests {
         row.with_ties(ties, 9.81).unwrap()
     }
 
-    fn step<'a>(row: &Row, stance: &'a Stance, force_g: Vector2<f64>, length: f64) -> Step<'a> {
+    fn step<'a>(
+        row: &Row,
+        (stance, lines): &'a (Stance, Vec<TieLine>),
+        force_g: Vector2<f64>,
+        length: f64,
+    ) -> Step<'a> {
         Step {
             length,
-            ..Step::new(row, stance, force_g)
+            ..Step::new(row, stance, lines, force_g)
         }
+    }
+
+    fn undeformed(row: &Row) -> (Stance, Vec<TieLine>) {
+        let stance = Stance::undeformed(row);
+        let lines = stance.lines(row).collect();
+        (stance, lines)
     }
 
     /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
     #[test]
     fn ties_that_depend_on_each_other_are_balanced_together() {
         let row = tied(&[(2, 1e6), (1, 6e5)]);
-        let (stance, length) = (Stance::undeformed(&row), 0.01);
+        let (stance, length) = (undeformed(&row), 0.01);
         let mut descent = Descent::new(&row);
         let push_g = Vector2::new(0.6, -1.0);
         let mut step = step(&row, &stance, push_g, length);
         let fastest = descent.balance_ties(&mut step).unwrap();
         assert!(fastest > 0.01, "{fastest}");
-        let lines: Vec<TieLine> = stance.lines(&row).collect();
-        for (index, (tie, line)) in row.ties().iter().zip(&lines).enumerate() {
+        for (index, (tie, line)) in row.ties().iter().zip(&stance.1).enumerate() {
             let longer_m = length * line.lengthening(&descent.program.velocities);
             let then_kg = tie.stiffness_n_m * longer_m / row.gravity_m_s2();
             let kg = descent.ties_kg[index];
@@ -624,7 +652,7 @@ mod tests {
     fn many_ties_depend_on_each_other_through_few_motions() {
         let ties: Vec<(usize, f64)> = (0..200).map(|tie| (tie % 4, 1e4)).collect();
         let row = tied(&ties);
-        let stance = Stance::undeformed(&row);
+        let stance = undeformed(&row);
         let mut descent = Descent::new(&row);
         let force_g = Vector2::new(2.0, -1.0);
         let mut step = step(&row, &stance, force_g, 0.01);
@@ -649,7 +677,7 @@ mod tests {
         let pulls_kg = |ties: &[(usize, f64)], length: f64| {
             let row = tied(ties);
             let mut descent = Descent::new(&row);
-            let stance = Stance::undeformed(&row);
+            let stance = undeformed(&row);
             let mut step = step(&row, &stance, Vector2::new(0.6, -1.0), length);
             descent.balance_ties(&mut step)?;
             Ok::<f64, SettlingError>(descent.ties_kg.iter().sum())

@@ -486,6 +486,17 @@ struct Unbalanced {
     reach: DMatrix<f64>,
 }
 
+impl Unbalanced {
+    /// With this force of the right support on the last pin.
+    fn held_by(mut self, reaction: Vector2<f64>) -> Self {
+        for (body, reach) in self.reach.column_iter().enumerate() {
+            self.slopes[body] -= reach[0] * reaction.x + reach[1] * reaction.y;
+            self.curvature[(body, body)] += reach[1] * reaction.x - reach[0] * reaction.y;
+        }
+        self
+    }
+}
+
 impl<'a> Chain<'a> {
     fn new(pins: &'a Pins, row: &'a Row, condition: &'a Condition, before: &'a Stance) -> Self {
         let count = pins.hinges.len() - 1;
@@ -551,8 +562,8 @@ impl<'a> Chain<'a> {
             .collect()
     }
 
-    /// Slopes and curvatures of the energy, with the force of the right support on the last pin.
-    fn unbalanced(&self, reaction: Vector2<f64>) -> Unbalanced {
+    /// Slopes and curvatures of the energy, without the right support.
+    fn unbalanced(&self) -> Unbalanced {
         let count = self.rotations_rad.len();
         let poses = self.poses();
         let mut slopes = DVector::zeros(count);
@@ -564,8 +575,8 @@ impl<'a> Chain<'a> {
                 pose.turned(self.moments_m[body]),
             );
             let force = self.condition.force_g;
-            slopes[body] -= force.dot(&turned(moment)) + reaction.dot(&turned(arm));
-            curvature[(body, body)] += force.dot(&moment) + reaction.dot(&arm);
+            slopes[body] -= force.dot(&turned(moment));
+            curvature[(body, body)] += force.dot(&moment);
             reach.set_column(body, &turned(arm));
         }
         self.add_ties(&poses, &mut slopes, &mut curvature);
@@ -635,22 +646,25 @@ impl<'a> Chain<'a> {
         *curvature += by_rotations.tr_mul(&(stiffnesses * &by_rotations));
     }
 
-    /// Turns the bodies until they rest; `None` where they find no stable equilibrium, or go far on the way to it.
+    /// Turns the bodies until they rest; `None` where they go far, or come to where the energy does not rise whatever they do.
     fn rest(mut self) -> Option<Vec<Pose>> {
         let count = self.rotations_rad.len();
         let size_m = self.row.size_m();
         // The force that balances the energy best.
-        let free = self.unbalanced(Vector2::zeros());
+        let mut free = self.unbalanced();
         let squares = &free.reach * free.reach.transpose();
         let force = squares.lu().solve(&(&free.reach * &free.slopes))?;
         let mut reaction = Vector2::new(force[0], force[1]);
         let start_rad = self.rotations_rad.clone();
         for _ in 0..MOST_STEPS {
-            let left = self.unbalanced(reaction);
+            let left = free.held_by(reaction);
+            if !self.is_stable(&left) {
+                return None;
+            }
             let slopes = left.slopes.amax() / size_m;
             let rounding = BALANCED + 8.0 * f64::EPSILON * left.curvature.amax() / size_m;
             if slopes < rounding && left.parted.amax() < BALANCED * size_m {
-                return self.is_stable(&left).then(|| self.poses());
+                return Some(self.poses());
             }
             let mut matrix = DMatrix::zeros(count + 2, count + 2);
             matrix
@@ -673,6 +687,7 @@ impl<'a> Chain<'a> {
             if turns.any(|(start, now)| (now - start).abs() > FAR_RAD) {
                 return None;
             }
+            free = self.unbalanced();
         }
         None
     }
@@ -731,13 +746,13 @@ mod tests {
         let mut chain = Chain::new(&pins, &row, &condition, &before);
         chain.rotations_rad = vec![0.02, -0.03, 0.01, 0.04];
         let reaction = Vector2::new(-0.2, 0.5);
-        let told = chain.unbalanced(reaction).curvature;
+        let told = chain.unbalanced().held_by(reaction).curvature;
         let step = 1e-5;
         for body in 0..4 {
             let mut slopes_at = |by: f64| {
                 let own = chain.rotations_rad[body];
                 chain.rotations_rad[body] = own + by;
-                let slopes = chain.unbalanced(reaction).slopes;
+                let slopes = chain.unbalanced().held_by(reaction).slopes;
                 chain.rotations_rad[body] = own;
                 slopes
             };
