@@ -345,7 +345,7 @@ class History:
 
     @property
     def outcome_time_s(self) -> float:
-        """The time of the outcome in s: the last outward passage of the unstable equilibrium, the last time that it came to rest, or the end."""
+        """Time of the outcome in s: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end."""
         time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
         return time_s
 
