@@ -38,8 +38,10 @@ impl<N: Number> Number for &N {
 pub(crate) mod filters {
     use std::fmt::Display;
 
+    use askama::filters::Safe;
     use askama::{Result, Values, filter_fn};
 
+    use super::super::text::escaped;
     use super::Number;
     use crate::argument;
 
@@ -48,6 +50,49 @@ pub(crate) mod filters {
     pub fn fixed(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
         let fixed = |number| argument::fixed(number, decimals);
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
+    }
+
+    /// With this many decimals on a page, in an element that holds the full value.
+    #[filter_fn]
+    pub fn data(number: impl Number, _: &dyn Values, decimals: usize) -> Result<Safe<String>> {
+        let element = |number: f64| {
+            let shown = argument::fixed(number, decimals);
+            // Adding zero makes a negative zero positive.
+            format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
+        };
+        let text = number
+            .value()
+            .map_or_else(|| "\u{2013}".to_owned(), element);
+        Ok(Safe(text))
+    }
+
+    /// On a page, with signs of HTML and invisible characters made harmless.
+    #[filter_fn]
+    pub fn text(text: impl Display, _: &dyn Values) -> Result<Safe<String>> {
+        Ok(Safe(escaped(&text.to_string())))
+    }
+
+    /// On a page, with symbols set as in formulas: `a_g,SLD` gets an index, `alpha_0` becomes a letter with one.
+    #[filter_fn]
+    pub fn typeset(text: impl Display, _: &dyn Values) -> Result<Safe<String>> {
+        let words = escaped(&text.to_string()).replace("alpha_", "\u{3b1}_");
+        let words = words.replace("xi\u{b2}", "\u{3be}\u{b2}");
+        let mut parts = words.split('_');
+        let mut set = parts.next().unwrap_or_default().to_owned();
+        for after in parts {
+            // Only a single letter has an index.
+            let mut letters = set.chars().rev();
+            let letter = letters.next().is_some_and(char::is_alphabetic);
+            let alone = letter && !letters.next().is_some_and(char::is_alphanumeric);
+            let end = after.find(|c: char| !c.is_alphanumeric() && c != ',');
+            let index = after[..end.unwrap_or(after.len())].trim_end_matches(',');
+            if alone && !index.is_empty() {
+                set += &format!("<sub>{index}</sub>{}", &after[index.len()..]);
+            } else {
+                set = set + "_" + after;
+            }
+        }
+        Ok(Safe(set))
     }
 
     /// With the fewest digits that read back as the same number.
@@ -74,5 +119,32 @@ pub(crate) mod filters {
     #[filter_fn]
     pub fn right(text: impl Display, _: &dyn Values, width: usize) -> Result<String> {
         Ok(format!("{:>width$}", text.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use askama::Template;
+
+    use super::filters;
+
+    #[derive(Template)]
+    #[template(source = "{{ text|typeset }}; {{ number|data(2) }}", ext = "html")]
+    struct Page {
+        text: &'static str,
+        number: f64,
+    }
+
+    #[test]
+    fn symbols_have_indices_and_numbers_keep_their_value() {
+        let text = "q times a_g,SLD, alpha_0 g/e* & S_eZ; give free_standing, T_C*";
+        let set = "q times a<sub>g,SLD</sub>, \u{3b1}<sub>0</sub> g/e* &amp; S<sub>eZ</sub>; give free_standing, T<sub>C</sub>*; ";
+        for (number, shown) in [
+            (-1e-9, "<data value=\"-1e-9\">0.00</data>"),
+            (1.0 / 3.0, "<data value=\"0.3333333333333333\">0.33</data>"),
+        ] {
+            let page = Page { text, number }.render().unwrap();
+            assert_eq!(page, format!("{set}{shown}"));
+        }
     }
 }

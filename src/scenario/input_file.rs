@@ -6,7 +6,7 @@ use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
 /// A file from which a scenario was read, with its hash.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct InputFile {
     /// Its name: as the scenario names it, or the last part of the path of the scenario itself.
     pub file: String,

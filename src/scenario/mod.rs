@@ -101,8 +101,8 @@ pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
 pub use verify::{
-    BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CodeDemand, Demand, FreeStanding,
-    Height, LimitState, ModeState, PointDemand, Records, Relief, Sides, StateRule, Verify,
+    BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand, Demand,
+    FreeStanding, Height, LimitState, ModeState, PointDemand, Records, Relief, StateRule, Verify,
 };
 
 /// Changes that are made to a scenario while it is read.

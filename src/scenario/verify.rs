@@ -46,6 +46,7 @@ use crate::dynamics::demand::points::PointSpectrum;
 
 named! {
     /// A limit state.
+    #[derive(PartialOrd, Ord)]
     pub enum LimitState {
         /// Damage (stato limite di danno).
         Sld = "sld",
@@ -58,7 +59,7 @@ named! {
 
 named! {
     /// The sides to which a mechanism is checked.
-    pub enum Sides {
+    pub enum CheckedSides {
         /// Both; the worse result counts.
         Both = "both",
         /// To the right only: something holds the structure on the other side.
@@ -118,7 +119,7 @@ pub struct Verify {
     /// Behaviour factor q for the simplified check of SLV.
     pub behaviour_factor: f64,
     /// The sides that are checked.
-    pub sides: Sides,
+    pub sides: CheckedSides,
     /// If given, the structure is free to vibrate before it moves; `None`: walls hold it all along.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub free_standing: Option<FreeStanding>,
@@ -229,7 +230,7 @@ impl Default for Verify {
         Self {
             confidence_factor: CONFIDENCE_FACTOR,
             behaviour_factor: BEHAVIOUR_FACTOR,
-            sides: Sides::Both,
+            sides: CheckedSides::Both,
             free_standing: None,
             records: Records::default(),
         }
@@ -240,7 +241,7 @@ impl Verify {
     /// Reads `[verify]`, whose files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
         let default = Self::default();
-        let sides = one_of(Sides::ALL, Sides::name);
+        let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
             confidence_factor: table.or(
                 "confidence_factor",
@@ -271,7 +272,7 @@ impl Verify {
                 );
                 return Err(table.wrong_in(&["verify"], key, wrong));
             }
-            if self.sides != Sides::Both {
+            if self.sides != CheckedSides::Both {
                 let wrong = "goes with sides = \"both\": histories sway to both sides";
                 return Err(table.wrong_in(&["verify"], key, wrong));
             }

@@ -20,7 +20,7 @@ use super::spread::{self, Way};
 use super::suite::{self, Heading, RecordSuite};
 use super::threshold::along::{self, Along, AlongOptions};
 use super::threshold::{self, Factors};
-use super::verify::{self, Check};
+use super::verify;
 use crate::scenario::Scenario;
 
 /// What is computed of a scenario, where that is not part of the scenario.
@@ -155,8 +155,8 @@ pub const VERIFY: StudyKind = StudyKind {
                 "the histories of a check shake both feet alike: leave [ground.right] out";
             return Err(StudyError::scenario(message));
         }
-        let check = Check::new(scenario).map_err(StudyError::scenario)?;
-        Ok(whole(verify::tell(scenario, &check)?))
+        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+        Ok(whole(verify::report(scenario, &check)?))
     },
 };
 /// How histories end and proceed, for samples of the uncertain numbers.

@@ -44,7 +44,8 @@ fn written(folder: &Path, found: &mut Vec<Written>) {
                     _ => continue,
                 };
                 let derives = |word| list(&attributes, "derive").contains(word);
-                if derives("Serialize") {
+                // A transparent type is written as the value inside it.
+                if derives("Serialize") && !list(&attributes, "serde").contains("transparent") {
                     let (file, name, doc) = (file.clone(), name.to_string(), doc(&attributes));
                     found.push(Written {
                         file,
@@ -96,7 +97,8 @@ fn parts(kind: &Type) -> (String, Option<&Type>) {
         Type::Path(path) => {
             let last = path.path.segments.last().unwrap();
             let inner = match &last.arguments {
-                PathArguments::AngleBracketed(inner) => inner.args.first(),
+                // Of a map, that of its values.
+                PathArguments::AngleBracketed(inner) => inner.args.last(),
                 _ => None,
             };
             let inner = inner.and_then(|inner| match inner {
@@ -111,12 +113,30 @@ fn parts(kind: &Type) -> (String, Option<&Type>) {
     }
 }
 
+/// Whether the keys of a map are sides; otherwise they are limit states.
+fn maps_sides(kind: &Type) -> bool {
+    let Type::Path(path) = kind else { return false };
+    let PathArguments::AngleBracketed(inner) = &path.path.segments.last().unwrap().arguments else {
+        return false;
+    };
+    matches!(inner.args.first(), Some(GenericArgument::Type(key)) if parts(key).0 == "Sway")
+}
+
 /// What a value is in words, and the name of the type inside.
 fn words(kind: &Type) -> (String, String) {
     let (name, inner) = parts(kind);
     match (&*name, inner) {
         ("Option", Some(inner)) => wrapped(inner, "", " or null"),
         ("Vec", Some(inner)) => wrapped(inner, "list: ", ""),
+        ("BTreeMap", Some(inner)) => wrapped(
+            inner,
+            if maps_sides(kind) {
+                "`right`, `left`: "
+            } else {
+                "`sld`, `slv`, `slc`: "
+            },
+            "",
+        ),
         ("Sides", Some(inner)) => wrapped(inner, "`right`, `left`: ", ""),
         ("Vector2", _) => ("list: x, y".to_owned(), String::new()),
         ("f64", _) => ("number".to_owned(), name),

@@ -41,6 +41,14 @@ impl<T> Sides<T> {
         }
     }
 
+    /// The result to one side, to be changed.
+    pub const fn to_mut(&mut self, sway: Sway) -> &mut T {
+        match sway {
+            Sway::Right => &mut self.right,
+            Sway::Left => &mut self.left,
+        }
+    }
+
     /// Both results with their sides, the right one first.
     pub fn iter(&self) -> impl Iterator<Item = (Sway, &T)> {
         [(Sway::Right, &self.right), (Sway::Left, &self.left)].into_iter()

@@ -5,7 +5,7 @@ use crate::mechanics::geometry::profile::Profile;
 
 named! {
     /// Direction in which a mechanism carries the structure.
-    #[derive(Default)]
+    #[derive(Default, PartialOrd, Ord)]
     pub enum Sway {
         #[default]
         /// Towards +x, as started by a ground acceleration towards -x.

@@ -4,16 +4,22 @@
 //! of the masses times their horizontal displacements, divided by the participating mass `M*` of the mechanism that starts to that
 //! side. For that mechanism it is `d = d_C / e*`, with the common centre of its masses as control point.
 
-use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
+use std::collections::BTreeMap;
 
-use super::{Check, Mechanism, NoCheck, SideCheck, Spectrum, Way};
+use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
+use serde::Serialize;
+
+use super::mechanism::Mechanism;
+use super::spectrum::Spectrum;
+use super::{Basis, NoCheck, SideCheck};
 use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{EventKind, Outcome, State};
 use crate::dynamics::model::{MechanismModel, Request, SimulationError};
 use crate::mechanics::four_links::FourLinkError;
+use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
-use crate::scenario::{LimitState, Scenario, Series, StateRule};
+use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::statistics::{bootstrap, interval};
 
 /// With this many records or more the mean counts, otherwise the largest (NTC 2018, § 7.3.5).
@@ -31,34 +37,36 @@ const STEP_S: f64 = 0.002;
 const AFTER_S: f64 = 10.0;
 
 /// The largest displacement under a record to one side.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Peak {
-    /// In metres; meaningless if the structure overturns to that side.
-    pub displacement_m: f64,
+    /// In metres; `None` if the structure overturns to that side, or a history ended too early.
+    pub peak_m: Option<f64>,
     /// Whether it overturned to that side.
     pub overturned: bool,
     /// Whether a history ended too early for a verdict: a later peak may be larger.
     pub incomplete: bool,
+    /// The largest displacement that was computed, in metres; meaningless if the structure overturns to that side.
+    #[serde(skip)]
+    pub displacement_m: f64,
 }
 
 /// The peaks under a record that acts in either direction; the larger peak counts.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordPeaks {
     /// The file.
     pub file: String,
     /// Checksum of its samples.
-    pub checksum: u32,
+    pub crc32: String,
     /// Peak acceleration, in g.
     pub peak_g: f64,
     /// To the right and to the left.
-    pub peaks: [Peak; 2],
+    #[serde(flatten)]
+    pub peaks: Sides<Peak>,
 }
 
 /// The results of all records to one side.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistorySide {
-    /// The side.
-    pub sway: Sway,
     /// The restitution of the first impact after a sway to that side; `None` if it stops the structure.
     pub restitution: Option<f64>,
     /// Mean of the peaks, or the largest if there are few records; `None` if one overturns or has no verdict.
@@ -72,75 +80,95 @@ pub struct HistorySide {
     pub capacity_over_fc_m: f64,
     /// Ultimate displacement, in metres, which no record may exceed.
     pub d0_m: f64,
-    /// The number of records that exceed it, without and with division by FC.
-    pub exceeded: [usize; 2],
+    /// The number of records that exceed it.
+    pub records_beyond_d0: usize,
+    /// The number of records that exceed it divided by FC.
+    pub records_beyond_d0_over_fc: usize,
+    /// Whether the side passes; `None` if that depends on a history without a verdict.
+    pub passed: Option<bool>,
+    /// Whether the side passes with capacities divided by FC.
+    pub passed_over_fc: Option<bool>,
     /// Whether a record overturns the structure to that side.
+    #[serde(skip)]
     pub overturned: bool,
-    /// Whether the side passes, with capacities not divided and divided by FC; `None` if that depends on a history without a verdict.
-    pub passes: [Option<bool>; 2],
+}
+
+named! {
+    /// The peak that counts.
+    pub enum Counted {
+        /// The mean, of at least [`FOR_THE_MEAN`] records.
+        Mean = "mean of the peaks",
+        /// The largest.
+        Largest = "largest peak",
+    }
+}
+
+/// The mean 5 % spectrum of the records over the demanded one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MeanSpectrum {
+    /// The shortest period of the comparison, in seconds.
+    pub from_s: f64,
+    /// The longest period of the comparison, in seconds.
+    pub to_s: f64,
+    /// The least ratio; `None` if the demanded spectrum is unknown at these periods.
+    pub least_ratio: Option<f64>,
+    /// The largest ratio.
+    pub largest_ratio: Option<f64>,
+    /// Whether the ratios are within [`SPECTRUM_MARGIN`].
+    pub fits: Option<bool>,
 }
 
 /// The histories of a limit state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histories {
+    /// The peak that counts.
+    pub demand: Counted,
+    /// Whether all sides pass; `None` if that depends on a history without a verdict.
+    pub passed: Option<bool>,
+    /// Whether all sides pass with capacities divided by FC.
+    pub passed_over_fc: Option<bool>,
+    /// Number of records with a history that ended too early for a verdict.
+    pub incomplete: usize,
     /// The results of each record.
     pub records: Vec<RecordPeaks>,
+    /// Comparison of the spectra.
+    pub mean_spectrum: MeanSpectrum,
     /// The results to each side.
-    pub sides: Vec<HistorySide>,
-    /// Least and largest ratio of the mean 5 % spectrum of the records to the demanded one; `None` if the latter is
-    /// unknown at these periods.
-    pub spectrum_ratios: Option<[f64; 2]>,
-    /// The shortest and the longest period of the comparison, in seconds.
-    pub periods_s: [f64; 2],
+    #[serde(flatten)]
+    pub sides: Sides<HistorySide>,
 }
 
-impl Histories {
-    /// Whether all sides pass, with capacities not divided and divided by FC; `None` if that depends on a history without a verdict.
-    #[must_use]
-    pub fn passes(&self) -> [Option<bool>; 2] {
-        [0, 1].map(|divided| {
-            let passes = self.sides.iter().map(|side| side.passes[divided]);
-            // `None` is less than `Some(true)`, and does not hide a side that fails.
-            if passes.clone().any(|passes| passes == Some(false)) {
-                return Some(false);
-            }
-            passes.min().flatten()
-        })
+/// Whether both sides pass. A side without a verdict does not hide one that fails.
+fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool>) -> Option<bool> {
+    match [passed(&sides.right), passed(&sides.left)] {
+        [Some(false), _] | [_, Some(false)] => Some(false),
+        [right, left] => right.and(left),
     }
+}
 
-    /// Number of records with a history that ended too early for a verdict.
+impl HistorySide {
+    /// Whether histories pass as they are and with FC, in words.
     #[must_use]
-    pub fn incomplete(&self) -> usize {
-        let records = self.records.iter();
-        let incomplete = |record: &&RecordPeaks| record.peaks.iter().any(|peak| peak.incomplete);
-        records.filter(incomplete).count()
-    }
-
-    /// Whether the mean of the peaks counts, instead of the largest.
-    #[must_use]
-    pub fn is_mean(&self) -> bool {
-        self.records.len() >= FOR_THE_MEAN
-    }
-
-    /// Whether the mean spectrum of the records is within the margins of the code.
-    #[must_use]
-    pub fn fits_the_spectrum(&self) -> Option<bool> {
-        let [least, largest] = self.spectrum_ratios?;
-        Some(least >= SPECTRUM_MARGIN[0] && largest <= SPECTRUM_MARGIN[1])
+    pub const fn verdict(&self) -> &'static str {
+        match (self.passed, self.passed_over_fc) {
+            (Some(true), Some(true)) => "passed",
+            (Some(true), Some(false)) => "passed without FC only",
+            (Some(false), _) => "not passed",
+            (None, Some(false)) => "not passed with FC, no verdict without",
+            (_, None) | (None, Some(true)) => "no verdict",
+        }
     }
 }
 
 /// The histories of a limit state, if it has records.
 pub(super) fn histories(
-    scenario: &Scenario,
-    check: &Check,
-    (state, checks): (LimitState, &[SideCheck]),
-    spectrum: &Spectrum,
-    rule: Option<&StateRule>,
+    basis: &Basis<'_>,
+    (state, rule, spectrum): (LimitState, &StateRule, &Spectrum),
+    mechanisms: &BTreeMap<Sway, Mechanism>,
+    sides: &BTreeMap<Sway, SideCheck>,
 ) -> Result<Option<Histories>, NoCheck> {
-    let (records, Some(rule)) = (check.settings.records.of(state), rule) else {
-        return Ok(None);
-    };
+    let (scenario, gravity_m_s2) = (basis.scenario, basis.gravity_m_s2);
+    let records = basis.settings.records.of(state);
     if records.is_empty() {
         return Ok(None);
     }
@@ -155,88 +183,103 @@ pub(super) fn histories(
         )),
         error => failed(error.to_string()),
     })?;
-    let ways: Result<Vec<(&Mechanism, &Way)>, String> = (check.mechanisms.iter())
-        .map(|mechanism| Ok((mechanism, mechanism.way.as_ref().map_err(String::clone)?)))
-        .collect();
-    let ways = ways.map_err(failed)?;
-    // Right and left, the order of the sides: histories sway to both.
-    let participating_kg = [0, 1].map(|side: usize| {
-        let mechanism = ways.get(side).map(|way| way.0);
-        mechanism.map_or(f64::INFINITY, |one| one.participation.participating_mass_kg)
-    });
-    let runs: Vec<(usize, f64)> = (0..records.len())
-        .flat_map(|record| [1.0, -1.0].map(|sign| (record, sign)))
-        .collect();
-    let peaks: Result<Vec<[Peak; 2]>, SimulationError> = runs
+    // The reader refuses records where one side alone is checked.
+    let mechanisms = Sides::of(|sway| &mechanisms[&sway]);
+    if let Some(why) = mechanisms.iter().find_map(|(_, one)| one.no_curve.clone()) {
+        return Err(failed(why));
+    }
+    let participating_kg = mechanisms.map(|one| one.m_star_kg);
+    let found: Result<Vec<(RecordPeaks, &Series)>, SimulationError> = records
         .into_par_iter()
-        .map(|(record, sign)| {
-            let series = &records[record];
-            let ground = scenario.shaken_by(series, sign);
-            let request = scenario.request_on(&ground, scenario.structure());
-            let request = Request {
-                end_s: request.end_s.max(ground.end_s() + AFTER_S),
-                output_step_s: STEP_S,
-                ..request
-            };
-            peaks(&*model, &ground, &request, participating_kg)
-        })
-        .collect();
-    let peaks = peaks.map_err(|error| failed(error.to_string()))?;
-    let gravity_m_s2 = check.gravity_m_s2;
-    let records: Vec<(RecordPeaks, &Series)> = records
-        .iter()
-        .zip(peaks.chunks(2))
-        .map(|(series, both)| {
-            let larger = |side: usize| Peak {
-                displacement_m: both[0][side]
-                    .displacement_m
-                    .max(both[1][side].displacement_m),
-                overturned: both[0][side].overturned || both[1][side].overturned,
-                incomplete: both[0][side].incomplete || both[1][side].incomplete,
+        .map(|series| {
+            let both = [1.0, -1.0].into_par_iter().map(|sign| {
+                let ground = scenario.shaken_by(series, sign);
+                let request = scenario.request_on(&ground, scenario.structure());
+                let request = Request {
+                    end_s: request.end_s.max(ground.end_s() + AFTER_S),
+                    output_step_s: STEP_S,
+                    ..request
+                };
+                peaks(&*model, &ground, &request, participating_kg)
+            });
+            let both = both.collect::<Result<Vec<Sides<Peak>>, _>>()?;
+            let larger = |sway| {
+                let (one, other) = (both[0].to(sway), both[1].to(sway));
+                let overturned = one.overturned || other.overturned;
+                let incomplete = one.incomplete || other.incomplete;
+                let displacement_m = one.displacement_m.max(other.displacement_m);
+                Peak {
+                    peak_m: (!overturned && !incomplete).then_some(displacement_m),
+                    overturned,
+                    incomplete,
+                    displacement_m,
+                }
             };
             let peaks = RecordPeaks {
                 file: series.file.clone(),
-                checksum: series.checksum(),
+                crc32: format!("{:08x}", series.checksum()),
                 peak_g: series.peak_g(gravity_m_s2),
-                peaks: [larger(0), larger(1)],
+                peaks: Sides::of(larger),
             };
-            (peaks, series)
+            Ok((peaks, series))
         })
         .collect();
-    let factor = check.settings.confidence_factor;
-    let told: Vec<RecordPeaks> = records.iter().map(|(peaks, _)| peaks.clone()).collect();
-    let sides = ways.iter().enumerate().map(|(side, (mechanism, way))| {
-        let d0_m = way.centre.end().oscillator_displacement_m;
+    let (records, series): (Vec<RecordPeaks>, Vec<&Series>) = found
+        .map_err(|error| failed(error.to_string()))?
+        .into_iter()
+        .unzip();
+    let results = Sides::of(|sway| {
+        let peaks: Vec<Peak> = records.iter().map(|one| *one.peaks.to(sway)).collect();
+        let d0_m = mechanisms.to(sway).d0_m.unwrap_or_default();
         let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
         HistorySide {
-            restitution: model.restitution_from(mechanism.sway, 1),
-            ..history_side(mechanism.sway, side, &told, [capacity_m, d0_m], factor)
+            restitution: model.restitution_from(sway, 1),
+            ..history_side(&peaks, [capacity_m, d0_m], basis.settings.confidence_factor)
         }
     });
-    let periods = checks
-        .iter()
+    let periods_s = sides
+        .values()
         .filter_map(|side| Some(side.displacement?.period_s));
-    let periods_s = [FROM_S, periods.fold(2.0 * FROM_S, f64::max)];
-    let samples: Vec<Vec<(f64, f64)>> = records
+    let periods_s = [FROM_S, periods_s.fold(2.0 * FROM_S, f64::max)];
+    let samples = series
         .iter()
-        .map(|(_, series)| series.accelerations_m_s2(gravity_m_s2))
-        .collect();
-    Ok(Some(Histories {
-        sides: sides.collect(),
-        spectrum_ratios: spectrum_ratios(&samples, spectrum, periods_s, gravity_m_s2),
+        .map(|series| series.accelerations_m_s2(gravity_m_s2));
+    let ratios = spectrum_ratios(
+        &samples.collect::<Vec<_>>(),
+        spectrum,
         periods_s,
-        records: told,
+        gravity_m_s2,
+    );
+    let [least, largest] = SPECTRUM_MARGIN;
+    let is_mean = records.len() >= FOR_THE_MEAN;
+    let is_incomplete =
+        |one: &&RecordPeaks| one.peaks.right.incomplete || one.peaks.left.incomplete;
+    Ok(Some(Histories {
+        demand: if is_mean {
+            Counted::Mean
+        } else {
+            Counted::Largest
+        },
+        passed: both_pass(&results, |side| side.passed),
+        passed_over_fc: both_pass(&results, |side| side.passed_over_fc),
+        incomplete: records.iter().filter(is_incomplete).count(),
+        records,
+        mean_spectrum: MeanSpectrum {
+            from_s: periods_s[0],
+            to_s: periods_s[1],
+            least_ratio: ratios.map(|ratios| ratios[0]),
+            largest_ratio: ratios.map(|ratios| ratios[1]),
+            fits: ratios.map(|ratios| ratios[0] >= least && ratios[1] <= largest),
+        },
+        sides: results,
     }))
 }
 
 fn history_side(
-    sway: Sway,
-    side: usize,
-    records: &[RecordPeaks],
+    peaks: &[Peak],
     [capacity_m, d0_m]: [f64; 2],
     confidence_factor: f64,
 ) -> HistorySide {
-    let peaks: Vec<Peak> = records.iter().map(|record| record.peaks[side]).collect();
     let overturned = peaks.iter().any(|peak| peak.overturned);
     let displacements = || peaks.iter().map(|peak| peak.displacement_m);
     let is_mean = peaks.len() >= FOR_THE_MEAN;
@@ -254,27 +297,25 @@ fn history_side(
         });
         interval(means.collect())
     });
-    let divisors = [1.0, confidence_factor];
-    let exceeded = divisors.map(|divisor| {
+    let [as_is, over_fc] = [1.0, confidence_factor].map(|divisor| {
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
-        peaks.iter().filter(exceeds).count()
-    });
-    // Later peaks of an incomplete history can only make it worse.
-    let passes = [0, 1].map(|i: usize| {
-        let passes = !overturned && exceeded[i] == 0 && least_m <= capacity_m / divisors[i];
-        (!passes || !incomplete).then_some(passes)
+        let exceeded = peaks.iter().filter(exceeds).count();
+        let passes = !overturned && exceeded == 0 && least_m <= capacity_m / divisor;
+        // Later peaks of an incomplete history can only make it worse.
+        (exceeded, (!passes || !incomplete).then_some(passes))
     });
     HistorySide {
-        sway,
         restitution: None,
         demand_m,
         mean_interval_m,
         capacity_m,
         capacity_over_fc_m: capacity_m / confidence_factor,
         d0_m,
-        exceeded,
+        records_beyond_d0: as_is.0,
+        records_beyond_d0_over_fc: over_fc.0,
+        passed: as_is.1,
+        passed_over_fc: over_fc.1,
         overturned,
-        passes,
     }
 }
 
@@ -283,8 +324,8 @@ fn peaks(
     model: &dyn MechanismModel,
     ground: &GroundMotion,
     request: &Request,
-    participating_kg: [f64; 2],
-) -> Result<[Peak; 2], SimulationError> {
+    participating_kg: Sides<f64>,
+) -> Result<Sides<Peak>, SimulationError> {
     let history = model.history(ground, request)?;
     // The chain of mechanisms is the one that begins with the side of the latest uplift.
     let mut first = Sway::Right;
@@ -298,7 +339,7 @@ fn peaks(
             Some((first, event.mechanism?))
         })
         .collect();
-    let mut peaks = [Peak::default(); 2];
+    let mut peaks = Sides::<Peak>::default();
     for sample in history.samples.iter() {
         let State::Rocking(sway) = sample.state else {
             continue;
@@ -316,13 +357,13 @@ fn peaks(
             .and_then(|((first, impacts), rotation_rad)| {
                 model.shift_kg_m(first, impacts, rotation_rad.abs())
             });
-        let side = usize::from(sway == Sway::Left);
-        let displacement_m = shift.unwrap_or_default() / participating_kg[side];
-        peaks[side].displacement_m = peaks[side].displacement_m.max(displacement_m);
+        let displacement_m = shift.unwrap_or_default() / participating_kg.to(sway);
+        let peak = peaks.to_mut(sway);
+        peak.displacement_m = peak.displacement_m.max(displacement_m);
     }
     match history.summary.outcome {
-        Outcome::Overturned(sway) => peaks[usize::from(sway == Sway::Left)].overturned = true,
-        Outcome::Incomplete => peaks.iter_mut().for_each(|peak| peak.incomplete = true),
+        Outcome::Overturned(sway) => peaks.to_mut(sway).overturned = true,
+        Outcome::Incomplete => [peaks.right.incomplete, peaks.left.incomplete] = [true; 2],
         _ => {}
     }
     Ok(peaks)

@@ -1,9 +1,11 @@
 //! The mechanism to one side as a chain of rigid bodies: its onset, its masses, and its capacity curve if it has one.
 
-use nalgebra::Vector2;
+use std::collections::BTreeMap;
 
-use super::NoCheck;
-use super::notes::FRICTION;
+use nalgebra::Vector2;
+use serde::Serialize;
+
+use super::{Basis, NoCheck};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control, Displaced};
@@ -17,40 +19,115 @@ use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::{
     MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
-use crate::scenario::{Scenario, Structure};
+use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity;
 
 /// A hinge with its position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlacedHinge {
     /// The hinge.
+    #[serde(flatten)]
     pub hinge: Hinge,
     /// Its position in the undeformed structure, in metres.
-    pub at_m: Vector2<f64>,
+    pub x_m: f64,
+    /// Its position in the undeformed structure, in metres.
+    pub y_m: f64,
+}
+
+/// A rigid body of a mechanism, with its virtual displacement for one of the common centre.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Body {
+    /// Its mass and that of what it carries, in kg.
+    pub mass_kg: f64,
+    /// Its weight, in kN.
+    pub weight_kn: f64,
+    /// Its centre of gravity in the undeformed structure, in metres.
+    pub x_m: f64,
+    /// Its centre of gravity in the undeformed structure, in metres.
+    pub y_m: f64,
+    /// Virtual displacement of its centre in the direction of the sway.
+    pub delta_x: f64,
+    /// Virtual displacement of its centre upwards.
+    pub delta_y: f64,
+    /// Virtual rotation towards the side of the sway, per metre.
+    pub rotation_per_m: f64,
+}
+
+/// A tie of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HeldTie {
+    /// Its force at rest, in kN.
+    pub force_kn: f64,
+    /// Its lengthening.
+    pub delta_l: f64,
 }
 
 /// The mechanism that starts to one side.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mechanism {
-    /// The side.
-    pub sway: Sway,
     /// Its hinges from left to right.
     pub hinges: Vec<PlacedHinge>,
     /// Its rigid bodies from left to right; the virtual displacement of their common centre is one.
-    pub bodies: Vec<MovingBody>,
+    pub bodies: Vec<Body>,
     /// Its ties, with their lengthening for that displacement.
-    pub ties: Vec<MovingTie>,
-    /// The body to which each block of a row belongs; used if there is no curve.
-    pub body_of_block: Vec<Option<usize>>,
+    pub ties: Vec<HeldTie>,
+    /// Sum of the forces of ties at rest times their lengthening, in kN.
+    pub sum_f_delta_l_kn: f64,
+    /// Sum of the weights, in kN.
+    pub sum_p_kn: f64,
+    /// Sum of the weights times horizontal virtual displacements, in kN.
+    pub sum_p_delta_x_kn: f64,
+    /// Sum of the weights times squares of horizontal virtual displacements, in kN.
+    pub sum_p_delta_x2_kn: f64,
+    /// Sum of the weights times vertical virtual displacements, in kN.
+    pub sum_p_delta_y_kn: f64,
     /// Load multiplier [C8.7.1.1].
     pub alpha0: f64,
-    /// Participating masses [C8.7.1.5].
-    pub participation: Participation,
-    /// Its motion up to the unstable equilibrium, or why that is unknown.
-    pub way: Result<Way, String>,
+    /// All of the mass that moves, in kg.
+    pub moving_mass_kg: f64,
+    /// Participating mass `M*` as a fraction of the mass that moves.
+    pub e_star: f64,
+    /// Participating mass `M*` [C8.7.1.5], in kg.
+    pub m_star_kg: f64,
+    /// `a_0 / FC = alpha0 / (e* FC)`, in g.
+    pub a0_over_fc_g: f64,
+    /// Displacement of the common centre at the unstable equilibrium, in metres; `None` without a capacity curve.
+    pub d_c0_m: Option<f64>,
+    /// Displacement of the oscillator at the unstable equilibrium, in metres.
+    pub d0_m: Option<f64>,
+    /// Displacement of the crown (or the top) at the unstable equilibrium, in metres; `None` also if it does not move to that side.
+    pub d_c0_crown_m: Option<f64>,
+    /// Displacement of the oscillator at the unstable equilibrium with the crown as control point, in metres.
+    pub d0_crown_m: Option<f64>,
+    /// Displacement at which the elastic branch meets the divided curve, in metres; `None` if walls hold the structure.
+    pub d_y_m: Option<f64>,
+    /// Divided acceleration at that displacement, in g.
+    pub a_y_over_fc_g: Option<f64>,
+    /// The largest friction coefficient needed up to the furthest displacement that a limit state allows.
+    pub friction: Option<f64>,
+    /// Displacements in metres and accelerations in g of the oscillator.
+    pub curve_m_g: Option<Vec<[f64; 2]>>,
+    /// The reason why there is no capacity curve.
+    pub no_curve: Option<String>,
+    /// The body to which each block of a row belongs; used if there is no curve.
+    #[serde(skip)]
+    pub body_of_block: Vec<Option<usize>>,
+    /// Its motion up to the unstable equilibrium.
+    #[serde(skip)]
+    pub way: Option<Way>,
     /// The acceleration at which joints of the allowed friction coefficient slide first, in g, by the associated bound; `None` if they do
     /// not, or if the motion is known.
+    #[serde(skip)]
     pub slides_at_g: Option<f64>,
+}
+
+/// A mechanism before its virtual displacements have a scale.
+struct Found {
+    hinges: Vec<(Hinge, Vector2<f64>)>,
+    bodies: Vec<MovingBody>,
+    ties: Vec<MovingTie>,
+    body_of_block: Vec<Option<usize>>,
+    way: Result<Way, String>,
 }
 
 /// The motion of a mechanism up to its unstable equilibrium.
@@ -113,36 +190,85 @@ impl Way {
 }
 
 impl Mechanism {
-    fn new(
-        sway: Sway,
-        hinges: Vec<PlacedHinge>,
-        (mut bodies, mut ties): (Vec<MovingBody>, Vec<MovingTie>),
-        body_of_block: Vec<Option<usize>>,
-        way: Result<Way, String>,
-    ) -> Self {
-        let alpha0 = load_multiplier(&bodies, &ties);
-        let participation = Participation::of_bodies(&bodies);
-        let scale = per_displacement_of_centre(&bodies);
-        for body in &mut bodies {
-            body.displacement *= scale;
-            body.rotation *= scale;
-        }
-        for tie in &mut ties {
-            tie.lengthening *= scale;
-        }
+    fn new(found: Found, basis: &Basis<'_>) -> Self {
+        let weight_kn = |mass_kg: f64| mass_kg * basis.gravity_m_s2 / 1000.0;
+        let alpha0 = load_multiplier(&found.bodies, &found.ties);
+        let participation = Participation::of_bodies(&found.bodies);
+        let scale = per_displacement_of_centre(&found.bodies);
+        let bodies = found.bodies.iter().map(|body| Body {
+            mass_kg: body.mass_kg,
+            weight_kn: weight_kn(body.mass_kg),
+            // Adding zero makes a negative zero positive.
+            x_m: body.centre_m.x + 0.0,
+            y_m: body.centre_m.y + 0.0,
+            delta_x: body.displacement.x * scale,
+            delta_y: body.displacement.y * scale,
+            rotation_per_m: body.rotation * scale,
+        });
+        let bodies: Vec<Body> = bodies.collect();
+        let sum = |term: fn(&Body) -> f64| -> f64 {
+            let terms = bodies.iter().map(|body| body.weight_kn * term(body));
+            terms.sum()
+        };
+        let ties = found.ties.iter();
+        let held_kg = ties
+            .clone()
+            .map(|tie| tie.force_kg * (tie.lengthening * scale));
+        let way = found.way.as_ref().ok();
+        let crown = way.and_then(|way| way.crown.as_ref()).map(Capacity::end);
+        let end = way.map(|way| way.centre.end());
+        let yielding = way.and_then(|way| basis.yielding(way));
+        let curve = way.map(|way| {
+            let points = way.centre.curve.iter();
+            let points = points.map(|point| {
+                [
+                    point.oscillator_displacement_m,
+                    point.oscillator_acceleration_g,
+                ]
+            });
+            points.collect()
+        });
+        let hinges = found.hinges.iter().map(|(hinge, at_m)| PlacedHinge {
+            hinge: *hinge,
+            x_m: at_m.x + 0.0,
+            y_m: at_m.y + 0.0,
+        });
         Self {
-            sway,
-            hinges,
-            alpha0,
-            participation,
+            hinges: hinges.collect(),
+            sum_f_delta_l_kn: held_kg.sum::<f64>() * basis.gravity_m_s2 / 1000.0,
+            sum_p_kn: sum(|_| 1.0),
+            sum_p_delta_x_kn: sum(|body| body.delta_x),
+            sum_p_delta_x2_kn: sum(|body| body.delta_x * body.delta_x),
+            sum_p_delta_y_kn: sum(|body| body.delta_y),
             bodies,
-            ties,
-            body_of_block,
-            way,
+            ties: ties
+                .map(|tie| HeldTie {
+                    force_kn: weight_kn(tie.force_kg),
+                    delta_l: tie.lengthening * scale,
+                })
+                .collect(),
+            alpha0,
+            moving_mass_kg: participation.moving_mass_kg,
+            e_star: participation.mass_fraction,
+            m_star_kg: participation.participating_mass_kg,
+            a0_over_fc_g: alpha0 / (participation.mass_fraction * basis.settings.confidence_factor),
+            d_c0_m: end.map(|end| end.displacement_m),
+            d0_m: end.map(|end| end.oscillator_displacement_m),
+            d_c0_crown_m: crown.map(|end| end.displacement_m),
+            d0_crown_m: crown.map(|end| end.oscillator_displacement_m),
+            d_y_m: yielding.map(|both| both.0),
+            a_y_over_fc_g: yielding.map(|both| both.1),
+            friction: way.map(|way| way.friction_up_to(basis.furthest_part())),
+            curve_m_g: curve,
+            no_curve: found.way.as_ref().err().cloned(),
+            body_of_block: found.body_of_block,
+            way: found.way.ok(),
             slides_at_g: None,
         }
     }
+}
 
+impl Found {
     /// The mechanism, to one side, of a model that moves as one mechanism.
     fn of_model(
         structure: &Structure,
@@ -153,24 +279,19 @@ impl Mechanism {
         let bodies = model.moving_bodies(sway)?;
         let at_rest = model.displaced(sway, 0.0)?;
         let named = model.hinges_after(0, sway).into_iter();
-        let hinges: Vec<PlacedHinge> = named
-            .zip(at_rest.hinges_m)
-            .map(|(hinge, at_m)| PlacedHinge { hinge, at_m })
-            .collect();
         let displaced = |part| {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
         let crown = capacity::crown_of(structure.as_parts(), model, sway);
         let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
-        let way = way.map_err(|error| error.to_string());
-        Some(Self::new(
-            sway,
-            hinges,
-            (bodies, Vec::new()),
-            Vec::new(),
-            way,
-        ))
+        Some(Self {
+            hinges: named.zip(at_rest.hinges_m).collect(),
+            way: way.map_err(|error| error.to_string()),
+            bodies,
+            ties: Vec::new(),
+            body_of_block: Vec::new(),
+        })
     }
 
     /// The mechanism of a row at rest, from limit analysis, and its motion if the row has no ties.
@@ -214,12 +335,10 @@ impl Mechanism {
             }
         });
         let bodies: Vec<MovingBody> = bodies.collect();
-        let hinges = onset.openings.iter().map(|open| PlacedHinge {
-            hinge: Hinge::Joint {
-                joint: open.joint,
-                edge: open.hinge,
-            },
-            at_m: row.joints()[open.joint].corner_m(open.hinge.unwrap_or(Edge::Intrados)),
+        let hinges = onset.openings.iter().map(|open| {
+            let (joint, edge) = (open.joint, open.hinge);
+            let at_m = row.joints()[joint].corner_m(edge.unwrap_or(Edge::Intrados));
+            (Hinge::Joint { joint, edge }, at_m)
         });
         let ties = row.ties().iter().zip(&onset.lengthening);
         let ties = ties.map(|(tie, lengthening)| MovingTie {
@@ -234,13 +353,13 @@ impl Mechanism {
                     .to_owned(),
             )
         };
-        Self::new(
-            sway,
-            hinges.collect(),
-            (bodies, ties.collect()),
+        Self {
+            hinges: hinges.collect(),
+            ties: ties.collect(),
+            bodies,
             body_of_block,
             way,
-        )
+        }
     }
 }
 
@@ -254,57 +373,53 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
     }
 }
 
-/// Friction coefficient with which the friction that a mechanism needs is compared: that of the Circolare for walls, or that of the
-/// scenario if it is smaller.
-pub(super) fn allowed_friction(scenario: &Scenario) -> f64 {
-    let own = scenario.motion().friction_coefficient();
-    own.map_or(FRICTION, |own| own.min(FRICTION))
-}
-
 /// The mechanisms of a structure to these sides.
 ///
 /// # Errors
 /// When the structure does not stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario
 /// has a friction coefficient, or if there is no curve along which the required friction is known; a linkage that locks is then not
 /// refused, but has [`Mechanism::slides_at_g`].
-pub(super) fn mechanisms(scenario: &Scenario, sides: &[Sway]) -> Result<Vec<Mechanism>, NoCheck> {
-    let (structure, gravity_m_s2) = (scenario.structure(), scenario.gravity_m_s2());
-    let coefficient = allowed_friction(scenario);
-    let slips = scenario.motion().friction_coefficient().is_some();
+pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>, NoCheck> {
+    let (structure, gravity_m_s2) = (basis.scenario.structure(), basis.gravity_m_s2);
+    let coefficient = basis.allowed_friction;
+    let slips = basis.scenario.motion().friction_coefficient().is_some();
     let none =
         |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
     let model = structure.model(ImpactModel::MaxRestitution);
     let row = structure
         .row()
         .map_err(|error| NoCheck::NoMechanism(error.to_string()));
-    let of = |sway: &Sway| {
-        let mechanism = if let Ok(model) = &model {
-            Mechanism::of_model(structure, &**model, *sway, gravity_m_s2)
-                .ok_or_else(|| none(*sway))?
+    let of = |sway: Sway| {
+        let found = if let Ok(model) = &model {
+            Found::of_model(structure, &**model, sway, gravity_m_s2).ok_or_else(|| none(sway))?
         } else {
             let row = row.as_ref().map_err(NoCheck::clone)?;
             let found =
-                onset(row, *sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
-            let found = found.ok_or_else(|| none(*sway))?;
-            Mechanism::of_onset(row, *sway, &found, gravity_m_s2)
+                onset(row, sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+            let found = found.ok_or_else(|| none(sway))?;
+            Found::of_onset(row, sway, &found, gravity_m_s2)
         };
+        let mut mechanism = Mechanism::new(found, basis);
         let may_slide = row
             .as_ref()
             .ok()
-            .filter(|_| slips || mechanism.way.is_err());
-        let slides = may_slide.and_then(|row| slides_at_g(row, coefficient, *sway));
-        match slides {
+            .filter(|_| slips || mechanism.way.is_none());
+        mechanism.slides_at_g = may_slide.and_then(|row| slides_at_g(row, coefficient, sway));
+        match mechanism.slides_at_g {
             Some(at_g) if slips || model.is_err() => Err(NoCheck::Slides {
-                sway: *sway,
+                sway,
                 coefficient,
                 at_g,
                 alpha0: mechanism.alpha0,
             }),
-            slides_at_g => Ok(Mechanism {
-                slides_at_g,
-                ..mechanism
-            }),
+            _ => Ok((sway, mechanism)),
         }
     };
-    sides.iter().map(of).collect()
+    let sides = Sway::ALL.iter().copied();
+    let checked = sides.filter(|sway| match basis.settings.sides {
+        CheckedSides::Both => true,
+        CheckedSides::Right => *sway == Sway::Right,
+        CheckedSides::Left => *sway == Sway::Left,
+    });
+    checked.map(of).collect()
 }

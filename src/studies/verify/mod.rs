@@ -1,34 +1,40 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
 //! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and
-//! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. This study has its own reports: [`to_json`] has
-//! every number, [`words()`] the result, and [`page()`] everything that another engineer needs to redo the check by hand. Where the
-//! text of the Circolare leaves a choice, the page prints the [decision](notes) that was taken.
+//! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and judgement;
+//! words, notes and the printed page are templates that read it. Where the text of the Circolare leaves a choice, the notes say
+//! which decision was taken.
 
-pub mod histories;
+mod histories;
 mod mechanism;
-pub mod notes;
-mod page;
 mod picture;
-mod summary;
-mod words;
+mod report;
+mod spectrum;
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
+use askama::Template;
+use serde::Serialize;
+use serde_json::Value;
 use thiserror::Error;
 
 use crate::bisection::{Width, bisect};
-use crate::dynamics::demand::floor::FloorSpectrum;
-use crate::dynamics::demand::ground::{GroundSpectrum, Site};
+use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site};
 use crate::dynamics::demand::points::Beyond;
 use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sway::Sway;
-use crate::scenario::{Demand, LimitState, PointDemand, Scenario, Sides, StateRule, Verify};
-pub use histories::{Histories, HistorySide};
-pub use mechanism::{Mechanism, PlacedHinge, Way};
-pub use page::{FILES, page, tell};
-pub use summary::to_json;
-pub use words::words;
+use crate::output::template::filters;
+use crate::scenario::{
+    CheckedSides, Demand, InputFile, LimitState, Scenario, StateRule, Verify, sha256,
+};
+pub use histories::{Counted, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
+pub use mechanism::{Body, HeldTie, Mechanism, PlacedHinge, Way};
+pub use report::{FILES, page, report, words};
+pub use spectrum::{FloorMode, Ground, Spectrum};
+
+/// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
+pub const FRICTION: f64 = 0.577;
 
 /// Why a scenario cannot be checked.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -83,110 +89,8 @@ pub enum NoCheck {
     },
 }
 
-/// The spectrum at the place of the mechanism.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Spectrum {
-    /// By NTC 2018, on the ground.
-    Ground(GroundSpectrum),
-    /// The same at a height in a building.
-    Floor(GroundSpectrum, FloorSpectrum),
-    /// Given by points.
-    Points(PointDemand),
-}
-
-impl Spectrum {
-    /// The spectrum of a limit state; `None` if the demand does not include that state.
-    fn of(demand: &Demand, state: LimitState) -> Option<Self> {
-        let code = match demand {
-            Demand::Points(points) => return points.get(state).cloned().map(Self::Points),
-            Demand::Code(code) => code,
-        };
-        let site = Site {
-            soil: code.soil,
-            topographic_factor: code.relief.factor(),
-        };
-        let ground = GroundSpectrum::new(*code.hazards.get(state)?, site)
-            .expect("the hazards of a scenario are within the ranges of the code");
-        let height = code.height.as_ref();
-        let floor = height.and_then(|height| FloorSpectrum::new(ground, height.at(state)));
-        Some(match floor {
-            Some(floor) => Self::Floor(ground, floor),
-            None => Self::Ground(ground),
-        })
-    }
-
-    /// The spectrum of the code on the ground.
-    #[must_use]
-    pub const fn ground(&self) -> Option<&GroundSpectrum> {
-        match self {
-            Self::Ground(ground) | Self::Floor(ground, _) => Some(ground),
-            Self::Points(_) => None,
-        }
-    }
-
-    /// Acceleration of the hazard, `a_g`; for points, their peak, if they begin at period zero. In g.
-    #[must_use]
-    pub fn ag_g(&self) -> Option<f64> {
-        match self {
-            Self::Ground(ground) | Self::Floor(ground, _) => Some(ground.hazard.ag_g),
-            Self::Points(demand) => demand.points.peak_g().ok(),
-        }
-    }
-
-    /// Peak acceleration of the ground, or of the floor that carries the mechanism, in g.
-    ///
-    /// # Errors
-    /// When the points do not include it.
-    pub fn peak_g(&self) -> Result<f64, Beyond> {
-        match self {
-            Self::Ground(ground) => Ok(ground.peak_g()),
-            Self::Floor(_, floor) => Ok(floor.peak_g()),
-            Self::Points(demand) => demand.points.peak_g(),
-        }
-    }
-
-    /// Spectral acceleration at a period and a damping, in g.
-    ///
-    /// # Errors
-    /// When the period is beyond the points.
-    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
-        match self {
-            Self::Ground(ground) => Ok(ground.acceleration_g(period_s, damping_percent)),
-            Self::Floor(_, floor) => Ok(floor.acceleration_g(period_s, damping_percent)),
-            Self::Points(demand) => demand.points.acceleration_g(period_s, damping_percent),
-        }
-    }
-
-    /// Displacement demand on a mechanism whose period has lengthened to `period_s`, in metres; for points, the largest from the period `from_s` on.
-    ///
-    /// # Errors
-    /// When a period is beyond the points.
-    pub fn displacement_m(
-        &self,
-        period_s: f64,
-        from_s: Option<f64>,
-        damping_percent: f64,
-        gravity_m_s2: f64,
-    ) -> Result<f64, Beyond> {
-        Ok(match self {
-            Self::Ground(ground) => {
-                ground.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
-            }
-            Self::Floor(_, floor) => floor.displacement_m(period_s, damping_percent, gravity_m_s2),
-            Self::Points(demand) => {
-                let points = &demand.points;
-                let from_s = from_s.unwrap_or(points.range_s()[0]).min(period_s);
-                let periods_s = [from_s, period_s];
-                points
-                    .largest_displacement(periods_s, damping_percent, gravity_m_s2)?
-                    .0
-            }
-        })
-    }
-}
-
 /// The ratio of capacity to demand.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margin {
     /// The ground acceleration that the structure can bear, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub ag_capacity_g: Option<f64>,
@@ -194,6 +98,8 @@ pub struct Margin {
     pub ag_g: Option<f64>,
     /// The first over the second.
     pub zeta_e: f64,
+    /// Whether the capacity reaches the demand.
+    pub passed: bool,
 }
 
 impl Margin {
@@ -202,84 +108,77 @@ impl Margin {
             ag_capacity_g: ag_g.map(|ag_g| ag_g * zeta_e),
             ag_g,
             zeta_e,
+            passed: zeta_e >= 1.0,
         }
-    }
-
-    /// Whether the capacity reaches the demand.
-    #[must_use]
-    pub fn passes(&self) -> bool {
-        self.zeta_e >= 1.0
     }
 }
 
 /// The check of the onset of motion (SLD).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Activation {
     /// Spectral acceleration at which motion starts, divided by FC, in g.
     pub capacity_g: f64,
     /// Spectral acceleration demanded, in g.
     pub demand_g: f64,
     /// The ratio of the two.
+    #[serde(flatten)]
     pub margin: Margin,
 }
 
 /// The simplified check of SLV, by the behaviour factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Simplified {
     /// The activation acceleration that is multiplied, as `a_g`, in g.
     pub activation_ag_g: f64,
     /// The behaviour factor.
-    pub behaviour_factor: f64,
+    pub q: f64,
     /// The result.
+    #[serde(flatten)]
     pub margin: Margin,
 }
 
 /// The check by displacements (SLV, SLC).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ByDisplacement {
     /// The fraction of the ultimate displacement that belongs to the state, in metres.
     pub reached_m: f64,
-    /// The same after division: displacement of the oscillator that may be reached, in metres.
+    /// That displacement after division: displacement of the oscillator that may be reached, in metres.
     pub capacity_m: f64,
     /// Acceleration at that displacement, after division, in g.
     pub acceleration_g: f64,
     /// Period at that displacement, in seconds.
     pub period_s: f64,
-    /// Spectral acceleration at that period, in g.
-    pub demand_g: f64,
     /// Displacement demand, in metres.
     pub demand_m: f64,
     /// Lower bound of the demand, in metres, at periods beyond resonance with a building.
     pub resonance_m: Option<f64>,
-    /// The ratio of displacement capacity to demand.
-    pub displacement: Margin,
-    /// The activation acceleration, as `a_g` in g, if it is larger.
-    pub activation_ag_g: Option<f64>,
-    /// The result: the ratio of displacements, or the activation if motion starts only later.
-    pub margin: Margin,
+    /// Spectral acceleration at that period, in g.
+    pub demand_acceleration_g: f64,
+    /// The ground acceleration that the structure can bear by displacements, as `a_g`, in g.
+    pub by_displacement_ag_g: Option<f64>,
+    /// Whether motion starts only at a larger ground acceleration, which then counts.
+    pub activation_governs: bool,
     /// The capacity `a_g` if the shape of the spectrum varies with `a_g`, in g; `None` if the mechanism is not on the ground, or
     /// beyond the range of the code.
-    pub ag_following_g: Option<f64>,
+    pub ag_capacity_following_g: Option<f64>,
     /// `zeta_E` with the crown as control point; `None` if the crown does not move.
     pub zeta_e_crown: Option<f64>,
-}
-
-impl ByDisplacement {
-    /// Displacement, or activation if motion starts later than the displacement is reached.
-    #[must_use]
-    pub const fn method(&self) -> Method {
-        match self.activation_ag_g {
-            Some(_) => Method::Activation,
-            None => Method::Displacement,
-        }
-    }
+    /// The result: the ratio of displacements, or the activation if motion starts only later.
+    #[serde(flatten)]
+    pub margin: Margin,
+    /// The ratio of displacement capacity to demand.
+    #[serde(skip)]
+    pub by_displacement: Margin,
+    /// The activation acceleration, as `a_g` in g, if it governs.
+    #[serde(skip)]
+    pub activation_ag_g: Option<f64>,
 }
 
 /// The checks of a limit state to one side.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SideCheck {
-    /// The side.
-    pub sway: Sway,
+    /// The governing result; `None` if the state cannot be checked.
+    pub zeta_e: Option<f64>,
     /// The onset of motion, for SLD.
     pub activation: Option<Activation>,
     /// The simplified check, for SLV.
@@ -300,6 +199,28 @@ named! {
     }
 }
 
+impl Method {
+    /// Its name in words.
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Activation => "activation",
+            Self::Simplified => "q times activation",
+            Self::Displacement => "displacement",
+        }
+    }
+}
+
+impl ByDisplacement {
+    /// The method whose result counts.
+    const fn method(&self) -> Method {
+        if self.activation_governs {
+            Method::Activation
+        } else {
+            Method::Displacement
+        }
+    }
+}
+
 impl SideCheck {
     /// The check that governs: by displacements, if there is a curve, or the activation if it is later.
     #[must_use]
@@ -311,222 +232,278 @@ impl SideCheck {
     }
 }
 
+named! {
+    /// The verdict on a limit state.
+    pub enum Verdict {
+        /// The capacity reaches the demand.
+        Passed = "passed",
+        /// The capacity is less than the demand.
+        NotPassed = "not_passed",
+        /// There is no capacity curve.
+        NotChecked = "not_checked",
+    }
+}
+
+named! {
+    /// The side whose result governs a limit state.
+    pub enum GoverningSide {
+        /// The right one.
+        Right = "right",
+        /// The left one.
+        Left = "left",
+        /// Both sides have the same method and result.
+        Either = "either",
+    }
+}
+
 /// The check of a limit state.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StateCheck {
-    /// The limit state.
-    pub state: LimitState,
-    /// The demand.
-    pub spectrum: Spectrum,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The governing result; `None` if the state cannot be checked.
+    pub zeta_e: Option<f64>,
+    /// The governing side.
+    pub side: Option<GoverningSide>,
+    /// The governing method.
+    pub method: Option<Method>,
+    /// The spectrum.
+    pub demand: Spectrum,
     /// The rule of the limit state; `None` for SLD.
     pub rule: Option<StateRule>,
-    /// The checks to each side.
-    pub sides: Vec<SideCheck>,
     /// The check by histories, if there are records.
     pub histories: Option<Histories>,
+    /// The checks to each side.
+    #[serde(flatten)]
+    pub sides: BTreeMap<Sway, SideCheck>,
 }
 
-impl StateCheck {
-    /// The governing side, its method and its result; `None` if the state cannot be checked.
-    #[must_use]
-    pub fn governing(&self) -> Option<(Sway, Method, Margin)> {
-        let sides = self.sides.iter();
-        let checked: Option<Vec<(Sway, Method, Margin)>> = sides
-            .map(|side| {
-                let (method, margin) = side.governing()?;
-                Some((side.sway, method, margin))
-            })
-            .collect();
-        let worse = |worst: (_, _, Margin), one: (_, _, Margin)| {
-            let is_worse = one.2.zeta_e < worst.2.zeta_e && !alike(one.2.zeta_e, worst.2.zeta_e);
-            if is_worse { one } else { worst }
-        };
-        checked?.into_iter().reduce(worse)
-    }
-
-    /// Name of the governing side: `right`, `left`, or `either` if both sides have the same method and result; `None` if the state
-    /// cannot be checked.
-    #[must_use]
-    pub fn governing_side(&self) -> Option<&'static str> {
-        let (sway, method, margin) = self.governing()?;
-        let equals = |side: &SideCheck| {
-            side.governing()
-                .is_some_and(|(own, one)| own == method && alike(one.zeta_e, margin.zeta_e))
-        };
-        let either = self.sides.len() > 1 && self.sides.iter().all(equals);
-        Some(if either { EITHER } else { sway.name() })
-    }
+/// A decision where the text leaves a choice.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Decision {
+    /// Its name on the page.
+    pub name: String,
+    /// The decision.
+    pub text: String,
 }
 
-/// The check of a scenario.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Check {
-    /// The options of the check.
-    pub settings: Verify,
-    /// The demand.
-    pub demand: Demand,
-    /// Gravity, in m/s2.
-    pub gravity_m_s2: f64,
+/// The check of a scenario by the Circolare 7/2019.
+#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[template(path = "studies/verify/words.txt")]
+pub struct Summary {
+    /// Name of the program.
+    pub program: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// Title of the scenario.
+    pub title: Option<String>,
+    /// The source of the formulas; `None` for spectra and limits given by the engineer.
+    pub formulas: Option<&'static str>,
+    /// SHA-256 of the scenario with every default written out, as `archrock check` prints it.
+    pub scenario_sha256: String,
+    /// Files from which the scenario was read.
+    pub files: Vec<InputFile>,
+    /// The least `zeta_E` of the limit states with a result.
+    pub zeta_e: f64,
+    /// The verdict on each limit state of the demand.
+    pub verdict: BTreeMap<LimitState, Verdict>,
+    /// Confidence factor FC, by which accelerations are divided.
+    pub confidence_factor: f64,
+    /// Behaviour factor q of the simplified check.
+    pub behaviour_factor: f64,
+    /// The sides that are checked.
+    pub sides: CheckedSides,
     /// Period of the elastic vibration before motion, in seconds; `None`: walls hold the structure all along.
     pub t0_s: Option<f64>,
-    /// The mechanism to each side.
-    pub mechanisms: Vec<Mechanism>,
-    /// The limit states of the demand.
-    pub states: Vec<StateCheck>,
+    /// Gravity, in m/s2.
+    pub gravity_m_s2: f64,
     /// Largest friction coefficient that joints may need: that of the Circolare, or that of the scenario if it is smaller.
     pub allowed_friction: f64,
-    /// The frame of reference and the place of each tie, in words; empty without ties.
-    pub tie_places: Vec<String>,
-    /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
-    pub top: &'static str,
+    /// The mechanism to each side.
+    pub mechanisms: BTreeMap<Sway, Mechanism>,
+    /// The limit states of the demand.
+    pub states: BTreeMap<LimitState, StateCheck>,
     /// Assumptions that do not hold, and input that is unlikely or ignored.
     pub warnings: Vec<String>,
+    /// Decisions where the text leaves a choice.
+    pub decisions: Vec<Decision>,
+    /// Assumptions of the check.
+    pub assumptions: Vec<String>,
+    /// Effects that the check leaves out.
+    pub not_covered: Vec<String>,
+    /// The scenario with all defaults.
+    pub scenario: Value,
+    /// The frame of reference and the place of each tie, in words; empty without ties.
+    #[serde(skip)]
+    pub tie_places: Vec<String>,
+    /// Whether the left side is the mirror image of the right one, with all their numbers.
+    #[serde(skip)]
+    pub is_symmetric: bool,
+    /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
+    #[serde(skip)]
+    pub top: &'static str,
 }
-
-/// Name of the governing side if both sides are equal.
-const EITHER: &str = "either";
 
 /// Whether two numbers that describe mirrored sides differ by rounding only.
 fn alike(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }
 
-impl Check {
-    /// Checks a scenario.
-    ///
-    /// # Errors
-    /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends too early.
-    pub fn new(scenario: &Scenario) -> Result<Self, NoCheck> {
-        let demand = scenario.demand().cloned().ok_or(NoCheck::NoDemand)?;
-        let settings = scenario.verify().cloned().unwrap_or_default();
-        let gravity_m_s2 = scenario.gravity_m_s2();
-        let sides: &[Sway] = match settings.sides {
-            Sides::Both => Sway::ALL,
-            Sides::Right => &[Sway::Right],
-            Sides::Left => &[Sway::Left],
-        };
-        let mechanisms = mechanism::mechanisms(scenario, sides)?;
-        let (_, density_kg_m3) = scenario.structure().depth_and_density();
-        let free = settings.free_standing.as_ref();
-        let t0_s = free.map(|free| free.period_s(density_kg_m3));
-        let mut check = Self {
-            settings,
-            demand,
-            gravity_m_s2,
-            t0_s,
-            mechanisms,
-            states: Vec::new(),
-            allowed_friction: mechanism::allowed_friction(scenario),
-            tie_places: scenario.structure().tie_places(),
-            top: if scenario.structure().stands_on_one_support() {
-                "top"
-            } else {
-                "crown"
-            },
-            warnings: Vec::new(),
-        };
-        for state in check.demand.states().collect::<Vec<_>>() {
-            let one = check.state(scenario, state)?;
-            check.states.push(one);
-        }
-        let ultimate = check
-            .states
+/// The basis of a check: its scenario, options and demand.
+struct Basis<'a> {
+    scenario: &'a Scenario,
+    settings: Verify,
+    demand: Demand,
+    gravity_m_s2: f64,
+    t0_s: Option<f64>,
+    allowed_friction: f64,
+}
+
+/// Checks a scenario.
+///
+/// # Errors
+/// When there is no demand, no mechanism or no possible check, or a spectrum of points ends too early.
+pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
+    let demand = scenario.demand().cloned().ok_or(NoCheck::NoDemand)?;
+    let settings = scenario.verify().cloned().unwrap_or_default();
+    let (structure, own_friction) = (
+        scenario.structure(),
+        scenario.motion().friction_coefficient(),
+    );
+    let (_, density_kg_m3) = structure.depth_and_density();
+    let free = settings.free_standing.as_ref();
+    let basis = Basis {
+        scenario,
+        t0_s: free.map(|free| free.period_s(density_kg_m3)),
+        settings,
+        demand,
+        gravity_m_s2: scenario.gravity_m_s2(),
+        allowed_friction: own_friction.map_or(FRICTION, |own| own.min(FRICTION)),
+    };
+    let mechanisms = mechanism::mechanisms(&basis)?;
+    let mut states = BTreeMap::new();
+    for state in basis.demand.states() {
+        let sld = states.get(&LimitState::Sld);
+        let one = basis.state(state, &mechanisms, sld)?;
+        states.insert(state, one);
+    }
+    let mut ultimate = states.range(LimitState::Slv..);
+    if ultimate.all(|(_, one)| one.verdict == Verdict::NotChecked) {
+        let mut whys = mechanisms.values().filter_map(|one| one.no_curve.clone());
+        return Err(NoCheck::NoCurve(whys.next().unwrap_or_default()));
+    }
+    let by_the_code = matches!(basis.demand, Demand::Code(_));
+    let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
+    let results = states.values().filter_map(|one| one.zeta_e);
+    let mut summary = Summary {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        title: scenario.title().map(str::to_owned),
+        formulas: by_the_code.then_some(formulas),
+        scenario_sha256: sha256(scenario.to_resolved_toml().as_bytes()),
+        files: scenario.files().to_vec(),
+        zeta_e: results.fold(f64::INFINITY, f64::min),
+        verdict: states
             .iter()
-            .filter(|one| one.state != LimitState::Sld);
-        if ultimate.clone().all(|one| one.governing().is_none()) {
-            let whys = check
-                .mechanisms
-                .iter()
-                .filter_map(|one| one.way.as_ref().err());
-            let why = whys.into_iter().next().cloned().unwrap_or_default();
-            return Err(NoCheck::NoCurve(why));
+            .map(|(state, one)| (*state, one.verdict))
+            .collect(),
+        confidence_factor: basis.settings.confidence_factor,
+        behaviour_factor: basis.settings.behaviour_factor,
+        sides: basis.settings.sides,
+        t0_s: basis.t0_s,
+        gravity_m_s2: basis.gravity_m_s2,
+        allowed_friction: basis.allowed_friction,
+        is_symmetric: report::are_mirrored(&mechanisms, &states),
+        mechanisms,
+        states,
+        warnings: Vec::new(),
+        decisions: Vec::new(),
+        assumptions: Vec::new(),
+        not_covered: Vec::new(),
+        scenario: scenario.to_json(),
+        tie_places: structure.tie_places(),
+        top: if structure.stands_on_one_support() {
+            "top"
+        } else {
+            "crown"
+        },
+    };
+    report::add_notes(scenario, &mut summary);
+    Ok(summary)
+}
+
+impl Basis<'_> {
+    /// The rule of a limit state; `None` for SLD.
+    fn rule(&self, state: LimitState) -> Option<StateRule> {
+        match &self.demand {
+            Demand::Points(points) => points.get(state)?.state,
+            Demand::Code(_) => StateRule::circolare(state, self.settings.confidence_factor),
         }
-        check.warnings = notes::warnings(scenario, &check);
-        Ok(check)
-    }
-
-    /// Whether spectra are those of NTC 2018; only then are clauses of the Circolare cited.
-    #[must_use]
-    pub const fn by_the_code(&self) -> bool {
-        matches!(self.demand, Demand::Code(_))
-    }
-
-    /// The limit states with a result.
-    pub fn checked(&self) -> impl Iterator<Item = LimitState> {
-        let checked = self.states.iter().filter(|one| one.governing().is_some());
-        checked.map(|one| one.state)
-    }
-
-    /// The least `zeta_E` of the limit states with a result.
-    #[must_use]
-    pub fn zeta_e(&self) -> f64 {
-        let states = self.states.iter().filter_map(StateCheck::governing);
-        states
-            .map(|(.., margin)| margin.zeta_e)
-            .fold(f64::INFINITY, f64::min)
     }
 
     /// The largest fraction of the ultimate displacement that any limit state allows.
-    #[must_use]
-    pub fn furthest_part(&self) -> f64 {
-        let rules = self.states.iter().filter_map(|one| one.rule);
+    fn furthest_part(&self) -> f64 {
+        let rules = self.demand.states().filter_map(|state| self.rule(state));
         rules.map(|rule| rule.part_of_d0).fold(0.0, f64::max)
     }
 
-    /// The mechanism to one side.
-    #[must_use]
-    pub fn mechanism(&self, sway: Sway) -> Option<&Mechanism> {
-        self.mechanisms.iter().find(|one| one.sway == sway)
-    }
-
-    /// `a_0 / FC = alpha0 / (e* FC)`, in g.
-    #[must_use]
-    pub fn activation_g(&self, mechanism: &Mechanism) -> f64 {
-        mechanism.alpha0 / (mechanism.participation.mass_fraction * self.settings.confidence_factor)
-    }
-
-    fn state(&self, scenario: &Scenario, state: LimitState) -> Result<StateCheck, NoCheck> {
-        let spectrum = Spectrum::of(&self.demand, state).expect("the state is asked for");
-        let rule = match &spectrum {
-            Spectrum::Points(demand) => demand.state,
-            Spectrum::Ground(_) | Spectrum::Floor(..) => {
-                StateRule::circolare(state, self.settings.confidence_factor)
-            }
-        };
-        let sides = self.mechanisms.iter().map(|mechanism| {
+    /// The check of a limit state, given that of SLD if there is one.
+    fn state(
+        &self,
+        state: LimitState,
+        mechanisms: &BTreeMap<Sway, Mechanism>,
+        sld: Option<&StateCheck>,
+    ) -> Result<StateCheck, NoCheck> {
+        let rule = self.rule(state);
+        let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2);
+        let spectrum = spectrum.expect("the demand has this state");
+        let sides = mechanisms.iter().map(|(sway, mechanism)| {
+            let start_ag_g = sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
             let activation = match state {
                 LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
                 LimitState::Slv | LimitState::Slc => None,
             };
             let displacement = match (&mechanism.way, &rule) {
-                (Ok(way), Some(rule)) => {
-                    Some(self.by_displacement(mechanism, way, &spectrum, rule)?)
+                (Some(way), Some(rule)) => {
+                    Some(self.by_displacement(way, start_ag_g, &spectrum, rule)?)
                 }
                 _ => None,
             };
-            Ok(SideCheck {
-                sway: mechanism.sway,
+            let mut side = SideCheck {
+                zeta_e: None,
                 activation,
-                simplified: self.simplified(state, mechanism.sway, &spectrum),
+                simplified: self.simplified(state, start_ag_g, &spectrum),
                 displacement,
-            })
+            };
+            side.zeta_e = side.governing().map(|(_, margin)| margin.zeta_e);
+            Ok((*sway, side))
         });
-        let sides = sides.collect::<Result<Vec<SideCheck>, Beyond>>();
+        let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, Beyond>>();
         let sides = sides.map_err(|beyond| NoCheck::Beyond { state, beyond })?;
-        let histories =
-            histories::histories(scenario, self, (state, &sides), &spectrum, rule.as_ref())?;
+        let histories = match &rule {
+            Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
+            None => None,
+        };
+        let governing = governing(&sides);
         Ok(StateCheck {
-            sides,
-            histories,
-            state,
-            spectrum,
+            verdict: match governing {
+                Some((.., margin)) if margin.passed => Verdict::Passed,
+                Some(_) => Verdict::NotPassed,
+                None => Verdict::NotChecked,
+            },
+            zeta_e: governing.map(|(.., margin)| margin.zeta_e),
+            side: governing.map(|(side, ..)| side),
+            method: governing.map(|(_, method, _)| method),
+            demand: spectrum,
             rule,
+            histories,
+            sides,
         })
     }
 
     /// The check of C8.7.1.2.1.5: [C8.7.1.8] if walls hold the structure, [C8.7.1.9] if it is free to vibrate.
     fn activation(&self, mechanism: &Mechanism, spectrum: &Spectrum) -> Result<Activation, Beyond> {
-        let capacity_g = self.activation_g(mechanism);
+        let capacity_g = mechanism.a0_over_fc_g;
         let demand_g = match self.t0_s {
             None => spectrum.peak_g()?,
             Some(t0_s) => spectrum.acceleration_g(t0_s, 5.0)?,
@@ -538,82 +515,74 @@ impl Check {
         })
     }
 
-    /// The activation to one side from the spectrum of SLD, as `a_g` in g; `None` without that state.
-    fn activation_ag_g(&self, sway: Sway) -> Option<f64> {
-        let sld = self
-            .states
-            .iter()
-            .find(|one| one.state == LimitState::Sld)?;
-        let side = sld.sides.iter().find(|side| side.sway == sway)?;
-        side.activation?.margin.ag_capacity_g
-    }
-
-    /// The check of C8.7.1.2.1.7, for SLV.
-    fn simplified(&self, state: LimitState, sway: Sway, spectrum: &Spectrum) -> Option<Simplified> {
-        if state != LimitState::Slv || !self.by_the_code() {
+    /// The check of C8.7.1.2.1.7, for SLV, from the activation as `a_g` in g.
+    fn simplified(
+        &self,
+        state: LimitState,
+        start_ag_g: Option<f64>,
+        spectrum: &Spectrum,
+    ) -> Option<Simplified> {
+        if state != LimitState::Slv || matches!(self.demand, Demand::Points(_)) {
             return None;
         }
-        let activation_ag_g = self.activation_ag_g(sway)?;
-        let behaviour_factor = self.settings.behaviour_factor;
+        let activation_ag_g = start_ag_g?;
+        let q = self.settings.behaviour_factor;
         let ag_g = spectrum.ag_g()?;
         Some(Simplified {
             activation_ag_g,
-            behaviour_factor,
-            margin: Margin::new(behaviour_factor * activation_ag_g / ag_g, Some(ag_g)),
+            q,
+            margin: Margin::new(q * activation_ag_g / ag_g, Some(ag_g)),
         })
     }
 
-    /// The check of C8.7.1.2.1.8.
+    /// The check of C8.7.1.2.1.8, with the activation as `a_g` in g.
     fn by_displacement(
         &self,
-        mechanism: &Mechanism,
         way: &Way,
+        start_ag_g: Option<f64>,
         spectrum: &Spectrum,
         rule: &StateRule,
     ) -> Result<ByDisplacement, Beyond> {
         let reached = |curve: &Capacity| self.reached(curve, spectrum, rule);
         let (capacity_m, acceleration_g, period_s, demand_m) = reached(&way.centre)?;
-        let displacement = Margin::new(capacity_m / demand_m, spectrum.ag_g());
-        let activation_ag_g = self.activation_ag_g(mechanism.sway);
-        let later = activation_ag_g.zip(displacement.ag_capacity_g);
+        let by_displacement = Margin::new(capacity_m / demand_m, spectrum.ag_g());
+        let later = start_ag_g.zip(by_displacement.ag_capacity_g);
         let activation_ag_g = later.filter(|(start, end)| start > end).map(|both| both.0);
-        let margin = match (activation_ag_g, displacement.ag_g) {
+        let margin = match (activation_ag_g, by_displacement.ag_g) {
             (Some(start_g), Some(ag_g)) => Margin::new(start_g / ag_g, Some(ag_g)),
-            _ => displacement,
+            _ => by_displacement,
         };
         let crown = way.crown.as_ref().map(reached).transpose()?;
-        let zeta_e_crown = crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m);
-        let ag_following_g = match spectrum {
-            Spectrum::Ground(ground) => {
-                let damping_percent = rule.damping_percent;
-                following_g(
-                    ground,
-                    capacity_m,
-                    period_s,
-                    damping_percent,
-                    self.gravity_m_s2,
-                )
-            }
-            Spectrum::Floor(..) | Spectrum::Points(_) => None,
-        };
+        let (damping_percent, gravity_m_s2) = (rule.damping_percent, self.gravity_m_s2);
         Ok(ByDisplacement {
             reached_m: rule.part_of_d0 * way.centre.end().oscillator_displacement_m,
             capacity_m,
             acceleration_g,
             period_s,
-            demand_g: spectrum.acceleration_g(period_s, rule.damping_percent)?,
             demand_m,
             resonance_m: match spectrum {
-                Spectrum::Floor(_, floor) if period_s > floor.resonance_s() => {
-                    Some(floor.resonance_m(rule.damping_percent, self.gravity_m_s2))
+                Spectrum::Floor { floor, .. } if period_s > floor.resonance_s() => {
+                    Some(floor.resonance_m(damping_percent, gravity_m_s2))
                 }
                 _ => None,
             },
-            displacement,
-            activation_ag_g,
+            demand_acceleration_g: spectrum.acceleration_g(period_s, damping_percent)?,
+            by_displacement_ag_g: by_displacement.ag_capacity_g,
+            activation_governs: activation_ag_g.is_some(),
+            ag_capacity_following_g: match spectrum {
+                Spectrum::Ground(Ground { spectrum, .. }) => following_g(
+                    spectrum,
+                    capacity_m,
+                    period_s,
+                    damping_percent,
+                    gravity_m_s2,
+                ),
+                Spectrum::Floor { .. } | Spectrum::Points { .. } => None,
+            },
+            zeta_e_crown: crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m),
             margin,
-            ag_following_g,
-            zeta_e_crown,
+            by_displacement,
+            activation_ag_g,
         })
     }
 
@@ -655,8 +624,7 @@ impl Check {
     }
 
     /// Where the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
-    #[must_use]
-    pub fn yielding(&self, way: &Way) -> Option<(f64, f64)> {
+    fn yielding(&self, way: &Way) -> Option<(f64, f64)> {
         let divided = self.settings.confidence_factor;
         let end_m = way.centre.end().oscillator_displacement_m;
         let rigid_g = |d_m: f64| way.centre.oscillator_acceleration_g(d_m / end_m) / divided;
@@ -669,6 +637,28 @@ impl Check {
     }
 }
 
+/// The governing side, its method and its result; `None` if the state cannot be checked to every side.
+fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, Method, Margin)> {
+    let checked = sides.iter().map(|(sway, side)| {
+        let (method, margin) = side.governing()?;
+        Some((*sway, method, margin))
+    });
+    let checked = checked.collect::<Option<Vec<_>>>()?;
+    let worse = |worst: (_, _, Margin), one: (_, _, Margin)| {
+        let is_worse = one.2.zeta_e < worst.2.zeta_e && !alike(one.2.zeta_e, worst.2.zeta_e);
+        if is_worse { one } else { worst }
+    };
+    let (sway, method, margin) = checked.iter().copied().reduce(worse)?;
+    let equals =
+        |(_, own, one): &(Sway, Method, Margin)| *own == method && alike(one.zeta_e, margin.zeta_e);
+    let side = match sway {
+        _ if checked.len() > 1 && checked.iter().all(equals) => GoverningSide::Either,
+        Sway::Right => GoverningSide::Right,
+        Sway::Left => GoverningSide::Left,
+    };
+    Some((side, method, margin))
+}
+
 /// The least `a_g`, in g, at which the displacement demand reaches a capacity, while `S_S` and `T_D` vary with `a_g`;
 /// `None` beyond the range of the code.
 fn following_g(
@@ -679,11 +669,15 @@ fn following_g(
     gravity_m_s2: f64,
 ) -> Option<f64> {
     let reaches = |ag_g: f64| {
-        let hazard = crate::dynamics::demand::ground::Hazard {
+        let hazard = Hazard {
             ag_g,
             ..ground.hazard
         };
-        let spectrum = GroundSpectrum::new(hazard, ground.site).ok()?;
+        let site = Site {
+            soil: ground.soil,
+            topographic_factor: ground.s_t,
+        };
+        let spectrum = GroundSpectrum::new(hazard, site).ok()?;
         let demand_m = spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2);
         Some(demand_m >= capacity_m)
     };

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::{Check, Mechanism, Way};
+use super::{Body, Mechanism, Summary};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
+use crate::mechanics::sway::Sway;
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
@@ -14,15 +15,19 @@ use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
 use crate::output::scene::{Piece, Scene};
 use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
-use crate::scenario::DimensionSide;
-use crate::scenario::{LimitState, Structure};
+use crate::scenario::{DimensionSide, Structure};
 
 /// Colour of the parts that stand still.
 const STILL: &str = "#e9e9e9";
 
 /// The mechanism in the undeformed structure: its bodies with their centres, numbered from the left like its hinges, and their
 /// virtual displacements.
-pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mechanism) -> String {
+pub(super) fn mechanism(
+    figure: Figure,
+    structure: &Structure,
+    sway: Sway,
+    mechanism: &Mechanism,
+) -> String {
     let scene = Scene::new(structure);
     let [low, high] = scene.frame_m();
     let size = high - low;
@@ -40,7 +45,7 @@ pub(super) fn mechanism(figure: Figure, structure: &Structure, mechanism: &Mecha
             at: Vector2::new(left + 0.5 * width_px, part.top),
             scale: part.height / size.y,
         };
-        draw_mechanism(drawing, &place, (structure, &scene), mechanism);
+        draw_mechanism(drawing, &place, (structure, &scene), (sway, mechanism));
     });
     sheet.gap(below);
     sheet.finish()
@@ -50,7 +55,7 @@ fn draw_mechanism(
     drawing: &mut Drawing,
     place: &Place,
     (structure, scene): (&Structure, &Scene),
-    mechanism: &Mechanism,
+    (sway, mechanism): (Sway, &Mechanism),
 ) {
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let [low, high] = scene.frame_m();
@@ -73,15 +78,13 @@ fn draw_mechanism(
         drawing.polygon(&name, outline, fill, thin);
     }
     view.draw_ties(drawing);
-    let fastest = mechanism.bodies.iter().map(|body| body.displacement.norm());
+    let moves = |body: &Body| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
+    let fastest = mechanism.bodies.iter().map(|body| moves(body).norm());
     let fastest = fastest.fold(f64::MIN_POSITIVE, f64::max);
     let arrow = Stroke::new(color::BLUE, 1.6, "");
     for (number, body) in (1..).zip(&mechanism.bodies) {
-        let at = px(body.centre_m);
-        let delta = Vector2::new(
-            mechanism.sway.sign() * body.displacement.x,
-            -body.displacement.y,
-        ) * (46.0 / fastest);
+        let at = px(Vector2::new(body.x_m, body.y_m));
+        let delta = moves(body) * (46.0 / fastest);
         let end = at + delta;
         drawing.curve(&format!("delta {number}"), [at, end], arrow);
         if delta.norm() > 6.0 {
@@ -106,7 +109,7 @@ fn draw_mechanism(
     let red = Stroke::new(color::VERMILION, 1.8, "");
     let middle = px(0.5 * (low + high));
     for (name, hinge) in ('A'..='Z').zip(&mechanism.hinges) {
-        let at = px(hinge.at_m);
+        let at = px(Vector2::new(hinge.x_m, hinge.y_m));
         drawing.circle(&format!("hinge {name}"), at, 3.6, red);
         // Away from the middle of the picture, so that the label is beside the masonry.
         let away = at - middle;
@@ -130,36 +133,40 @@ fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
     }
     let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
         hinge: placed.hinge,
-        position_m: placed.at_m,
+        position_m: Vector2::new(placed.x_m, placed.y_m),
     });
     Scene::new(structure).pieces(&hinges.collect::<Vec<_>>())
 }
 
 /// Acceleration against displacement of the oscillator: its divided curve, the spectra of the limit states at their damping, and the
 /// lines of their periods.
-pub(super) fn capacity(figure: Figure, check: &Check, mechanism: &Mechanism, way: &Way) -> String {
-    let divided = check.settings.confidence_factor;
-    let states = check
-        .states
-        .iter()
-        .filter(|one| one.state != LimitState::Sld);
-    let sides = states.filter_map(|one| {
-        let side = one.sides.iter().find(|side| side.sway == mechanism.sway)?;
-        Some((one, side.displacement?, one.rule?))
+pub(super) fn capacity(
+    figure: Figure,
+    check: &Summary,
+    sway: Sway,
+    mechanism: &Mechanism,
+) -> Option<String> {
+    let way = mechanism.way.as_ref()?;
+    let divided = check.confidence_factor;
+    let sides = check.states.iter().filter_map(|(state, one)| {
+        let side = one.sides.get(&sway)?;
+        Some(((state, one), side.displacement?, one.rule?))
     });
     let sides: Vec<_> = sides.zip(&CURVES[1..]).collect();
     let end_m = way.centre.end().oscillator_displacement_m;
     let farthest_m = sides.iter().map(|((_, side, _), _)| 1.15 * side.demand_m);
     let farthest_m = farthest_m.fold(1.05 * end_m, f64::max);
     let start_g = way.centre.start().oscillator_acceleration_g / divided;
-    let highest_g = sides.iter().map(|((_, side, _), _)| 1.3 * side.demand_g);
+    let highest_g = sides
+        .iter()
+        .map(|((_, side, _), _)| 1.3 * side.demand_acceleration_g);
     let highest_g = highest_g.fold(1.6 * start_g, f64::max);
     let x = Scale::around([0.0, farthest_m], figure.ticks(8));
     let y = Scale::around([0.0, highest_g], 5);
     let mut keys = vec![Key::line("capacity, a/FC", CURVES[0])];
     let (mut below, mut above) = (Vec::new(), Vec::new());
-    for ((one, side, rule), stroke) in &sides {
-        let name = super::words::name(one.state);
+    for (((state, one), side, rule), stroke) in &sides {
+        let name = state.name().to_uppercase();
         keys.push(Key::line(
             format!("{name}, {} %", rule.damping_percent),
             **stroke,
@@ -167,7 +174,7 @@ pub(super) fn capacity(figure: Figure, check: &Check, mechanism: &Mechanism, way
         let points = (1..=600).filter_map(|step| {
             let period_s = 0.01 * f64::from(step);
             let acceleration_g = one
-                .spectrum
+                .demand
                 .acceleration_g(period_s, rule.damping_percent)
                 .ok()?;
             let circular = period_s / (2.0 * PI);
@@ -191,7 +198,7 @@ pub(super) fn capacity(figure: Figure, check: &Check, mechanism: &Mechanism, way
             [(reached_m, 0.0), reached],
         ));
         let own = Stroke::new(stroke.color, 1.6, "");
-        let demanded = (side.demand_m, side.demand_g);
+        let demanded = (side.demand_m, side.demand_acceleration_g);
         above.push(Mark::new(
             format!("reached {name}"),
             own,
@@ -221,5 +228,5 @@ pub(super) fn capacity(figure: Figure, check: &Check, mechanism: &Mechanism, way
         marks: vec![Mark::clipped(below)],
         ..Chart::new(400.0, axes[0], axes[1])
     };
-    chart.draw(figure, "")
+    Some(chart.draw(figure, ""))
 }

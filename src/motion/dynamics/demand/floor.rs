@@ -83,7 +83,7 @@ impl FloorSpectrum {
     #[must_use]
     pub fn peak_g(&self) -> f64 {
         let modes = self.modes.iter().map(|mode| mode.peak_g(&self.ground));
-        root_of_squares(modes).max(self.ground.peak_g())
+        root_of_squares(modes).max(self.ground.peak_g)
     }
 
     /// Spectral acceleration `S_eZ`, [C7.2.5], and at least that of the ground at every period, in g.

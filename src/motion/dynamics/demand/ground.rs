@@ -110,14 +110,19 @@ pub struct Site {
 }
 
 /// The elastic spectrum of a site for a limit state.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GroundSpectrum {
+    /// Subsoil category.
+    pub soil: Soil,
     /// The hazard.
+    #[serde(flatten)]
     pub hazard: Hazard,
-    /// The site.
-    pub site: Site,
     /// Soil coefficient `S_S`.
     pub s_s: f64,
+    /// Topographic coefficient `S_T`.
+    pub s_t: f64,
+    /// `S = S_S S_T`.
+    pub s: f64,
     /// Coefficient `C_C`.
     pub c_c: f64,
     /// Where the branch of constant acceleration begins, in seconds.
@@ -128,6 +133,8 @@ pub struct GroundSpectrum {
     pub t_d_s: f64,
     /// Where that ends, in seconds.
     pub t_e_s: f64,
+    /// Peak acceleration of the ground, `a_g S`, in g.
+    pub peak_g: f64,
 }
 
 impl GroundSpectrum {
@@ -177,28 +184,20 @@ impl GroundSpectrum {
             let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)".to_owned();
             return refused("topographic_factor", site.topographic_factor, allowed);
         }
+        let (s_s, s_t) = (site.soil.amplification(f0 * ag_g), site.topographic_factor);
         Ok(Self {
+            soil: site.soil,
             hazard,
-            site,
-            s_s: site.soil.amplification(f0 * ag_g),
+            s_s,
+            s_t,
+            s: s_s * s_t,
             c_c,
             t_b_s: t_c_s / 3.0,
             t_c_s,
             t_d_s,
             t_e_s,
+            peak_g: ag_g * (s_s * s_t),
         })
-    }
-
-    /// `S = S_S S_T`.
-    #[must_use]
-    pub fn s(&self) -> f64 {
-        self.s_s * self.site.topographic_factor
-    }
-
-    /// Peak acceleration of the ground, `a_g S`, in g.
-    #[must_use]
-    pub fn peak_g(&self) -> f64 {
-        self.hazard.ag_g * self.s()
     }
 
     /// Spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
@@ -215,7 +214,7 @@ impl GroundSpectrum {
         } else {
             self.t_c_s * self.t_d_s / (t * t)
         };
-        self.peak_g() * amplified * shape
+        self.peak_g * amplified * shape
     }
 
     /// Spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
@@ -233,7 +232,7 @@ impl GroundSpectrum {
     /// Peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
     #[must_use]
     pub fn peak_displacement_m(&self, gravity_m_s2: f64) -> f64 {
-        0.025 * self.peak_g() * gravity_m_s2 * self.t_c_s * self.t_d_s
+        0.025 * self.peak_g * gravity_m_s2 * self.t_c_s * self.t_d_s
     }
 
     /// The largest spectral displacement up to a period: beyond `T_E` it falls, and a structure that softens on its way has

@@ -1,14 +1,17 @@
 //! A spectrum given by points, straight between them.
 
+use serde::Serialize;
 use thiserror::Error;
 
 use super::{damping_factor, displacement_m};
 
 /// Accelerations at rising periods, at one damping.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
 pub struct PointSpectrum {
     /// Period in seconds and acceleration in g.
-    points: Vec<(f64, f64)>,
+    pub points: Vec<(f64, f64)>,
+    #[serde(skip)]
     damping_percent: f64,
 }
 
@@ -62,18 +65,6 @@ impl PointSpectrum {
             points,
             damping_percent,
         })
-    }
-
-    /// The points.
-    #[must_use]
-    pub fn points(&self) -> &[(f64, f64)] {
-        &self.points
-    }
-
-    /// Damping at which it is given, in per cent.
-    #[must_use]
-    pub const fn damping_percent(&self) -> f64 {
-        self.damping_percent
     }
 
     /// Peak acceleration: that at the period zero, in g.

@@ -1,0 +1,371 @@
+//! The report of a check: the numbers in JSON, and words, notes and a page that prints on A4 as templates.
+//!
+//! Every number of the page is a rounded number of the [`Summary`], in an element `data` that holds the full value.
+
+use std::collections::BTreeMap;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use askama::Template;
+use askama::filters::Safe;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
+use super::{
+    Decision, FRICTION, Histories, Mechanism, Method, PlacedHinge, SideCheck, Spectrum, StateCheck,
+    Summary, Verdict, alike, picture,
+};
+use crate::dynamics::demand::damping_factor;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+use crate::output::summary::summary_of;
+use crate::output::template::{filters, render};
+use crate::output::{Figure, OutputError, pretty};
+use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
+use crate::studies::remarks::no_verdict;
+use crate::studies::results::Results;
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 2] = ["verify.html", "verify.json"];
+/// Gravity of the codes, in m/s2.
+const GRAVITY_M_S2: f64 = 9.81;
+/// A smaller damping is probably a fraction instead of per cent.
+const LEAST_DAMPING_PERCENT: f64 = 1.0;
+/// Largest number of points of a spectrum on the page.
+const MOST_POINTS: usize = 40;
+
+/// Page, numbers and words of a check of a scenario.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
+    let summary = summary_of(check)?;
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    let today = date_of(since.map_or(0, |since| since.as_secs() / 86_400));
+    let page = page(scenario, check, &today);
+    let contents = [page.into_bytes(), pretty(&summary).into_bytes()];
+    Ok(Results {
+        files: FILES.into_iter().zip(contents).collect(),
+        words: words(check),
+        summary,
+        ..Results::default()
+    })
+}
+
+/// The verdict in a sentence, then the result for each limit state, with the governing side.
+#[must_use]
+pub fn words(check: &Summary) -> String {
+    render(check)
+}
+
+/// The page of a check of a scenario, with the date of the check.
+#[must_use]
+pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
+    let is_one = check.shown() == 1;
+    let figure = if is_one { "78mm" } else { "90mm" };
+    let figure: Figure = figure.parse().expect("a width of a figure");
+    let drawn = |(sway, mechanism): (&Sway, _)| {
+        let structure = scenario.structure();
+        Drawn {
+            sway: *sway,
+            mechanism,
+            picture: picture::mechanism(figure, structure, *sway, mechanism),
+            curve: picture::capacity(figure, check, *sway, mechanism),
+        }
+    };
+    render(&Page {
+        drawn: check
+            .mechanisms
+            .iter()
+            .take(check.shown())
+            .map(drawn)
+            .collect(),
+        described: scenario.structure().described(),
+        resolved: scenario.to_resolved_toml(),
+        check,
+        date,
+        is_one,
+    })
+}
+
+/// The printed page.
+#[derive(Template)]
+#[template(path = "studies/verify/page.html")]
+struct Page<'a> {
+    check: &'a Summary,
+    date: &'a str,
+    /// The sides that are printed: one if the left side is the mirror image of the right one.
+    drawn: Vec<Drawn<'a>>,
+    is_one: bool,
+    described: String,
+    resolved: String,
+}
+
+impl Page<'_> {
+    /// Hinges with their letters on the picture.
+    fn lettered<'a>(&self, one: &'a Mechanism) -> impl Iterator<Item = (char, &'a PlacedHinge)> {
+        ('A'..='Z').zip(&one.hinges)
+    }
+
+    /// The factor for the damping of a mechanism.
+    fn eta(&self, rule: &StateRule) -> f64 {
+        damping_factor(rule.damping_percent)
+    }
+
+    fn is_on_floor(&self) -> bool {
+        let mut states = self.check.states.values();
+        states.any(|one| matches!(one.demand, Spectrum::Floor { .. }))
+    }
+
+    fn title(&self) -> &str {
+        let title = self.check.title.as_deref();
+        title.unwrap_or("Check of local mechanisms")
+    }
+}
+
+/// The pictures of a side.
+struct Drawn<'a> {
+    sway: Sway,
+    mechanism: &'a Mechanism,
+    picture: String,
+    curve: Option<String>,
+}
+
+/// A row of the table of results: a method with the values that it compares.
+struct Row {
+    method: Method,
+    margin: super::Margin,
+    compared: Option<([f64; 2], &'static str)>,
+}
+
+impl SideCheck {
+    fn rows(&self) -> impl Iterator<Item = Row> {
+        let activation = self.activation.map(|one| Row {
+            method: Method::Activation,
+            margin: one.margin,
+            compared: Some(([one.capacity_g, one.demand_g], "g")),
+        });
+        let displacement = self.displacement.map(|one| Row {
+            method: one.method(),
+            margin: one.margin,
+            compared: Some(match one.activation_ag_g.zip(one.margin.ag_g) {
+                Some((start_g, ag_g)) => ([start_g, ag_g], "g"),
+                None => ([one.capacity_m, one.demand_m], "m"),
+            }),
+        });
+        let simplified = self.simplified.map(|one| Row {
+            method: Method::Simplified,
+            margin: one.margin,
+            compared: None,
+        });
+        [activation, displacement, simplified].into_iter().flatten()
+    }
+}
+
+impl StateCheck {
+    /// Whether a row of a side is in bold.
+    fn counts(&self, sway: &Sway, row: &Row) -> bool {
+        let side = self.side.map_or("", super::GoverningSide::name);
+        self.method == Some(row.method) && ["either", sway.name()].contains(&side)
+    }
+
+    /// Dampings that are probably fractions instead of per cent, with their owners.
+    fn small_dampings(&self) -> Vec<(&'static str, f64)> {
+        let mut given: Vec<(&str, f64)> = match &self.demand {
+            Spectrum::Ground(_) => Vec::new(),
+            Spectrum::Floor { modes, .. } => modes
+                .iter()
+                .map(|one| ("a mode of the building", one.mode.damping_percent))
+                .collect(),
+            Spectrum::Points {
+                damping_percent, ..
+            } => vec![("the spectrum", *damping_percent)],
+        };
+        given.extend(
+            self.rule
+                .map(|rule| ("the mechanism", rule.damping_percent)),
+        );
+        given.retain(|(_, percent)| *percent < LEAST_DAMPING_PERCENT);
+        given
+    }
+}
+
+impl Summary {
+    /// Number of sides that are printed.
+    fn shown(&self) -> usize {
+        if self.is_symmetric {
+            1
+        } else {
+            self.mechanisms.len()
+        }
+    }
+
+    /// The limit states with a verdict.
+    pub(super) fn with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
+        let states = self.states.iter();
+        states.filter(|(_, one)| one.verdict == verdict).collect()
+    }
+
+    /// The limit states with a result.
+    pub(super) fn checked(&self) -> Vec<(&LimitState, &StateCheck)> {
+        let states = self.states.iter();
+        states.filter(|(_, one)| one.zeta_e.is_some()).collect()
+    }
+
+    /// The clause of a formula, if clauses are cited.
+    fn clause(&self, clause: &str) -> Safe<String> {
+        let cited = format!(" <span class=\"clause\">[{clause}]</span>");
+        Safe(self.formulas.map_or_else(String::new, |_| cited))
+    }
+}
+
+impl PlacedHinge {
+    /// Its place in the structure.
+    fn place(&self) -> String {
+        match self.hinge {
+            Hinge::Section { edge, .. } => edge.name().to_owned(),
+            Hinge::Toe(side) => format!("{} toe", side.name()),
+            Hinge::Joint { joint, edge } => {
+                format!("joint {joint}, {}", edge.map_or("parted", Edge::name))
+            }
+        }
+    }
+}
+
+/// The notes, one a line, in four paragraphs.
+#[derive(Template)]
+#[template(path = "studies/verify/notes.txt")]
+struct Notes<'a> {
+    check: &'a Summary,
+    scenario: &'a Scenario,
+}
+
+impl Notes<'_> {
+    /// The friction coefficient that is allowed, with its source.
+    fn allowed(&self) -> String {
+        let allowed = self.check.allowed_friction;
+        if allowed < FRICTION {
+            format!("the scenario has {allowed}")
+        } else {
+            format!("the Circolare has {FRICTION} for walls")
+        }
+    }
+
+    fn no_verdict(&self, histories: &Histories) -> Option<String> {
+        no_verdict(histories.incomplete, histories.records.len(), "records")
+    }
+
+    fn has_curve(&self) -> bool {
+        let mut mechanisms = self.check.mechanisms.values();
+        mechanisms.any(|one| one.way.is_some())
+    }
+
+    fn has_histories(&self) -> bool {
+        let mut states = self.check.states.values();
+        states.any(|one| one.histories.is_some())
+    }
+}
+
+/// Adds decisions, assumptions, gaps and warnings to a check.
+pub(super) fn add_notes(scenario: &Scenario, check: &mut Summary) {
+    let text = render(&Notes { check, scenario });
+    let mut parts = text.split("\n\n").map(|part| {
+        let lines = part.lines().skip(1).map(str::to_owned);
+        lines.collect::<Vec<String>>()
+    });
+    let mut part = || parts.next().unwrap_or_default();
+    let decisions = part().into_iter().filter_map(|line| {
+        let (name, text) = line.split_once(": ")?;
+        Some(Decision {
+            name: name.to_owned(),
+            text: text.to_owned(),
+        })
+    });
+    check.decisions = decisions.collect();
+    check.assumptions = part();
+    check.not_covered = part();
+    check.warnings = part();
+}
+
+/// Whether the left side is the mirror image of the right one, with all their numbers.
+pub(super) fn are_mirrored(
+    mechanisms: &BTreeMap<Sway, Mechanism>,
+    states: &BTreeMap<LimitState, StateCheck>,
+) -> bool {
+    let both = [Sway::Right, Sway::Left].map(|sway| mechanisms.get(&sway));
+    let [Some(right), Some(left)] = both else {
+        return false;
+    };
+    let mut mirrored = left.clone();
+    mirrored.hinges.reverse();
+    mirrored.bodies.reverse();
+    let hinges = mirrored.hinges.iter_mut().map(|hinge| &mut hinge.x_m);
+    let bodies = mirrored.bodies.iter_mut().map(|body| &mut body.x_m);
+    hinges.chain(bodies).for_each(|x_m| *x_m = -*x_m);
+    let mut own = right.clone();
+    // The position of a hinge says which joint or angle it is.
+    for hinge in own.hinges.iter_mut().chain(&mut mirrored.hinges) {
+        hinge.hinge = Hinge::Toe(Sway::Right);
+    }
+    let states = states.values().all(|one| {
+        let histories = one.histories.as_ref().map(|all| &all.sides);
+        are_alike(&one.sides[&Sway::Right], &one.sides[&Sway::Left])
+            && histories.is_none_or(|sides| are_alike(&sides.right, &sides.left))
+    });
+    states && are_alike(&own, &mirrored)
+}
+
+/// Whether two results have the same numbers, up to rounding; texts may name a side.
+fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
+    fn alike_values(a: &Value, b: &Value) -> bool {
+        match (a, b) {
+            (Value::Number(a), Value::Number(b)) => {
+                a.as_f64().zip(b.as_f64()).is_some_and(|(a, b)| alike(a, b))
+            }
+            (Value::String(_), Value::String(_)) => true,
+            (Value::Array(a), Value::Array(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike_values(a, b))
+            }
+            (Value::Object(a), Value::Object(b)) => {
+                a.len() == b.len() && a.values().zip(b.values()).all(|(a, b)| alike_values(a, b))
+            }
+            _ => a == b,
+        }
+    }
+    alike_values(&json!(a), &json!(b))
+}
+
+/// The date this many days after 1 January 1970, as in 2025-01-31.
+fn date_of(days: u64) -> String {
+    // Years that begin in March end with the leap day (Hinnant, Chrono-compatible low-level date algorithms).
+    let days = days + 719_468;
+    let (era, day) = (days / 146_097, days % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    let year = year + 400 * era + u64::from(month <= 2);
+    format!("{year}-{month:02}-{day:02}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dates_are_those_of_the_calendar() {
+        for (days, date) in [
+            (0, "1970-01-01"),
+            (58, "1970-02-28"),
+            (59, "1970-03-01"),
+            (789, "1972-02-29"),
+            (11_016, "2000-02-29"),
+            (20_088, "2024-12-31"),
+            (20_089, "2025-01-01"),
+        ] {
+            assert_eq!(date_of(days), date);
+        }
+    }
+}

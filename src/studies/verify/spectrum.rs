@@ -1,0 +1,184 @@
+//! The spectrum of a limit state at the place of the mechanism.
+
+use serde::Serialize;
+
+use crate::dynamics::demand::floor::{FloorSpectrum, Mode};
+use crate::dynamics::demand::ground::{GroundSpectrum, Site};
+use crate::dynamics::demand::points::{Beyond, PointSpectrum};
+use crate::scenario::{Demand, LimitState, StateRule};
+
+/// The spectrum of a limit state at the place of the mechanism.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Spectrum {
+    /// By NTC 2018, on the ground.
+    Ground(Ground),
+    /// By NTC 2018, at a height in a building.
+    Floor {
+        /// The spectrum of the ground.
+        #[serde(flatten)]
+        ground: Ground,
+        /// The modes of the building.
+        modes: Vec<FloorMode>,
+        /// Peak acceleration of the floor that carries the mechanism, in g.
+        a_z_g: f64,
+        /// The spectrum of that floor.
+        #[serde(skip)]
+        floor: FloorSpectrum,
+    },
+    /// Given by points.
+    Points {
+        /// Name of their file.
+        spectrum: String,
+        /// Damping of the given spectrum, in per cent.
+        damping_percent: f64,
+        /// Periods in seconds, and accelerations in g.
+        #[serde(rename = "points_s_g")]
+        points: PointSpectrum,
+    },
+}
+
+/// The spectrum of the ground by NTC 2018.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Ground {
+    /// The spectrum.
+    #[serde(flatten)]
+    pub spectrum: GroundSpectrum,
+    /// Peak displacement of the ground, in metres.
+    pub peak_displacement_m: f64,
+}
+
+/// A mode of the building.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FloorMode {
+    /// The mode.
+    #[serde(flatten)]
+    pub mode: Mode,
+    /// Spectral acceleration of the ground at its period and damping, in g.
+    pub acceleration_g: f64,
+    /// Largest acceleration of the floor in this mode [C7.2.7], in g.
+    pub a_z_g: f64,
+    /// Amplification at the damping of the mechanism [C7.2.6].
+    pub f: f64,
+}
+
+impl Spectrum {
+    /// The spectrum of a limit state; `None` if the demand does not include that state.
+    pub(super) fn of(
+        demand: &Demand,
+        state: LimitState,
+        rule: Option<&StateRule>,
+        gravity_m_s2: f64,
+    ) -> Option<Self> {
+        let code = match demand {
+            Demand::Points(points) => {
+                let points = points.get(state)?.clone();
+                return Some(Self::Points {
+                    spectrum: points.spectrum,
+                    damping_percent: points.damping_percent,
+                    points: points.points,
+                });
+            }
+            Demand::Code(code) => code,
+        };
+        let site = Site {
+            soil: code.soil,
+            topographic_factor: code.relief.factor(),
+        };
+        let spectrum = GroundSpectrum::new(*code.hazards.get(state)?, site)
+            .expect("the hazards of a scenario are within the ranges of the code");
+        let ground = Ground {
+            spectrum,
+            peak_displacement_m: spectrum.peak_displacement_m(gravity_m_s2),
+        };
+        let height = code.height.as_ref();
+        let floor = height.and_then(|height| FloorSpectrum::new(spectrum, height.at(state)));
+        let Some(floor) = floor else {
+            return Some(Self::Ground(ground));
+        };
+        let damping_percent = rule.map_or(5.0, |rule| rule.damping_percent);
+        let modes = floor.modes.iter().map(|mode| FloorMode {
+            mode: *mode,
+            acceleration_g: spectrum.acceleration_g(mode.t_s, mode.damping_percent),
+            a_z_g: mode.peak_g(&spectrum),
+            f: mode.amplification(damping_percent),
+        });
+        Some(Self::Floor {
+            ground,
+            modes: modes.collect(),
+            a_z_g: floor.peak_g(),
+            floor,
+        })
+    }
+
+    /// The spectrum of the code on the ground.
+    #[must_use]
+    pub const fn ground(&self) -> Option<&Ground> {
+        match self {
+            Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground),
+            Self::Points { .. } => None,
+        }
+    }
+
+    /// Acceleration of the hazard, `a_g`; for points, their peak, if they begin at period zero. In g.
+    #[must_use]
+    pub fn ag_g(&self) -> Option<f64> {
+        match self {
+            Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground.spectrum.hazard.ag_g),
+            Self::Points { points, .. } => points.peak_g().ok(),
+        }
+    }
+
+    /// Peak acceleration of the ground, or of the floor that carries the mechanism, in g.
+    ///
+    /// # Errors
+    /// When the points do not include it.
+    pub fn peak_g(&self) -> Result<f64, Beyond> {
+        match self {
+            Self::Ground(ground) => Ok(ground.spectrum.peak_g),
+            Self::Floor { a_z_g, .. } => Ok(*a_z_g),
+            Self::Points { points, .. } => points.peak_g(),
+        }
+    }
+
+    /// Spectral acceleration at a period and a damping, in g.
+    ///
+    /// # Errors
+    /// When the period is beyond the points.
+    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
+        match self {
+            Self::Ground(ground) => Ok(ground.spectrum.acceleration_g(period_s, damping_percent)),
+            Self::Floor { floor, .. } => Ok(floor.acceleration_g(period_s, damping_percent)),
+            Self::Points { points, .. } => points.acceleration_g(period_s, damping_percent),
+        }
+    }
+
+    /// Displacement demand on a mechanism whose period has lengthened to `period_s`, in metres; for points, the largest from the period
+    /// `from_s` on.
+    ///
+    /// # Errors
+    /// When a period is beyond the points.
+    pub fn displacement_m(
+        &self,
+        period_s: f64,
+        from_s: Option<f64>,
+        damping_percent: f64,
+        gravity_m_s2: f64,
+    ) -> Result<f64, Beyond> {
+        Ok(match self {
+            Self::Ground(Ground { spectrum, .. }) => {
+                spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
+            }
+            Self::Floor { floor, .. } => {
+                floor.displacement_m(period_s, damping_percent, gravity_m_s2)
+            }
+            Self::Points { points, .. } => {
+                let from_s = from_s.unwrap_or(points.range_s()[0]).min(period_s);
+                let periods_s = [from_s, period_s];
+                let largest =
+                    points.largest_displacement(periods_s, damping_percent, gravity_m_s2)?;
+                largest.0
+            }
+        })
+    }
+}
