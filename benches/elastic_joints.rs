@@ -50,7 +50,7 @@ fn tied(bencher: Bencher, count: usize) {
         let joint = 6 + index % 8;
         let end = |joint: usize, block: usize| Anchor {
             block: Some(block),
-            at_m: row.joints()[joint].intrados_m,
+            at_m: row.joints[joint].intrados_m,
         };
         Tie {
             ends: [end(joint, joint), end(36 - joint, 35 - joint)],

@@ -45,10 +45,10 @@ fn structure(structure: &Structure, varies: Varies<'_>) -> String {
                 "thickness_m",
             ];
             let varies_shape = shape.iter().any(|key| varies(&format!("arch.{key}")));
-            let mut values = match arch.measured_at().filter(|_| !varies_shape) {
+            let mut values = match arch.measured_at.filter(|_| !varies_shape) {
                 Some(line) => {
                     let [span_m, rise_m] = arch.span_and_rise_m(line).map(four_digits);
-                    let thick_m = four_digits(arch.mean_radius_m() * arch.thickness_ratio());
+                    let thick_m = four_digits(arch.mean_radius_m * arch.thickness_ratio);
                     let at = line.in_words();
                     vec![(
                         "",
@@ -58,25 +58,25 @@ fn structure(structure: &Structure, varies: Varies<'_>) -> String {
                 None => vec![
                     (
                         "arch.mean_radius_m",
-                        format!("R {} m", four_digits(arch.mean_radius_m())),
+                        format!("R {} m", four_digits(arch.mean_radius_m)),
                     ),
                     (
                         "arch.thickness_ratio",
-                        format!("t/R {}", four_digits(arch.thickness_ratio())),
+                        format!("t/R {}", four_digits(arch.thickness_ratio)),
                     ),
                     (
                         "arch.embrace_deg",
-                        format!("{} degrees", four_digits(arch.embrace_deg())),
+                        format!("{} degrees", four_digits(arch.embrace_deg)),
                     ),
                 ],
             };
-            let voussoirs = arch.voussoirs().map(|count| format!("{count} voussoirs"));
+            let voussoirs = arch.voussoirs.map(|count| format!("{count} voussoirs"));
             let voussoirs = voussoirs.unwrap_or_else(|| "hinges anywhere".to_owned());
             values.push(("arch.voussoirs", voussoirs));
             ("arch", values)
         }
         Structure::Column(column) => {
-            let [high_m, wide_m] = [column.height_m(), column.width_m()].map(four_digits);
+            let [high_m, wide_m] = [column.height_m, column.width_m].map(four_digits);
             let values = [
                 ("column.height_m", format!("{high_m} m high")),
                 ("column.width_m", format!("{wide_m} m wide")),

@@ -9,7 +9,7 @@ const POINTS: u32 = 24;
 /// Times in seconds up to an end, and the horizontal accelerations in g; a jump is two points at the same time.
 pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
-    let pieces = ground.pieces().iter();
+    let pieces = ground.pieces.iter();
     for piece in pieces.take_while(|piece| piece.start_s < end_s) {
         let to_s = piece.end_s.min(end_s);
         let straight = piece.stays_still() || piece.longest_step_s() == f64::INFINITY;

@@ -47,9 +47,9 @@ impl Scene {
                 let left = ring.radial(0.0);
                 let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
                 // Down to this angle a point lies just below the left springing; beyond, it has gone round the other way.
-                let before_rad = 0.5 * (ring.embrace_rad() - TAU);
+                let before_rad = 0.5 * (ring.embrace_rad - TAU);
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
-                Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad()))
+                Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad))
             }
             Outline::Block { .. } | Outline::Row { .. } => Part::Block(index),
         };

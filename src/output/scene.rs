@@ -172,7 +172,7 @@ impl Scene {
     #[must_use]
     pub fn of_row(row: &Row) -> Self {
         Self {
-            ties: row.ties().to_vec(),
+            ties: row.ties.to_vec(),
             ..Self::bare(row)
         }
     }
@@ -363,7 +363,7 @@ impl Scene {
             } => {
                 let hinges_rad = sections_rad(hinges);
                 let mut cuts_rad =
-                    [&[0.0, ring.embrace_rad()], &joints_rad[..], &hinges_rad].concat();
+                    [&[0.0, ring.embrace_rad], &joints_rad[..], &hinges_rad].concat();
                 cuts_rad.sort_by(f64::total_cmp);
                 cuts_rad.dedup_by(|a, b| (*a - *b).abs() < SAME_SECTION_RAD);
                 let pairs = cuts_rad.windows(2);

@@ -261,7 +261,7 @@ impl Additions {
         let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
         let masonry = tie::tied(table, &self.ties, masonry, gravity_m_s2)?;
-        match falls(masonry.row()) {
+        match falls(&masonry.row) {
             Ok(None) => Ok(masonry),
             Ok(Some(_)) if stands_without_ties(&masonry) => {
                 Err(table.wrong("tie", tie::PULLS_OVER))
@@ -305,8 +305,8 @@ impl Additions {
 }
 
 fn stands_without_ties(masonry: &Masonry) -> bool {
-    let row = masonry.row();
-    !row.ties().is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
+    let row = &masonry.row;
+    !row.ties.is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
 }
 
 /// Reads `[piers]`: its keys hold for both piers, and `[piers.left]` and `[piers.right]` may override them.
@@ -382,7 +382,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
 
 /// Reports that the masonry falls under its own weight, and what would hold it.
 fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
-    let shape = masonry.shape().name();
+    let shape = masonry.shape.name();
     let falls = format!(
         "cannot carry its own weight: it opens at joints {joints} (0: the left base or springing)"
     );

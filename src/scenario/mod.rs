@@ -528,7 +528,7 @@ impl Scenario {
     /// As [`Structure::free_hinges`].
     pub fn row(&self) -> Result<Option<Row>, ModelError> {
         Ok(match &self.structure {
-            Structure::Masonry(masonry) => Some(masonry.row().clone()),
+            Structure::Masonry(masonry) => Some(masonry.row.clone()),
             Structure::Column(column) if !column.is_one_prism() => {
                 Some(self.structure.row().map_err(RowModelError::from)?)
             }

@@ -76,7 +76,7 @@ impl RightFoot {
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
         let row = structure.and_then(|structure| structure.row().ok());
-        if row.is_some_and(|row| row.supports() == Supports::Left) {
+        if row.is_some_and(|row| row.supports == Supports::Left) {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }

@@ -37,13 +37,13 @@ pub(super) fn check(
         return Ok(());
     };
     let mut wrong = |message: String| Err(table.wrong("supports", message));
-    if row.supports() == Supports::Left {
+    if row.supports == Supports::Left {
         return wrong(
             "needs two springings, of which one can move against the other, and this stands on one support: leave it out"
                 .to_owned(),
         );
     }
-    let joints = row.joints();
+    let joints = &row.joints;
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
     let closer_m = -(movements.left.spread_m + movements.right.spread_m);
     if closer_m >= apart_m {

@@ -152,7 +152,7 @@ impl TieTable {
             yield_force_n: self.yield_force_n.or(by_section).unwrap_or(f64::INFINITY),
             breaks_at_strain: self.breaks_at_strain.unwrap_or(f64::INFINITY),
         };
-        match tie.check(row.blocks().len(), row.size_m()) {
+        match tie.check(row.blocks.len(), row.size_m) {
             Ok(()) => Ok(tie),
             Err(TieError::OnSupports) if self.between.is_some() => Err(
                 "is between springings that both stand on rigid ground, which moves as it is told whatever a tie does: give [piers], or \
@@ -190,8 +190,8 @@ impl TieTable {
             );
         };
         // What carries the arch: the block before the left springing, and the one behind the right.
-        let at_m = |joint: usize| row.joints()[joint].intrados_m;
-        let blocks = row.blocks().len();
+        let at_m = |joint: usize| row.joints[joint].intrados_m;
+        let blocks = row.blocks.len();
         Ok([
             Anchor {
                 block: left.checked_sub(1),
@@ -218,7 +218,7 @@ fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
 fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
     let at_m = Vector2::from(point_m);
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
-    let blocks = row.blocks().len();
+    let blocks = row.blocks.len();
     let ground = || format!("for a point of the ground give `{end}_block = 0`");
     let on = |block: Option<usize>| Ok(Anchor { block, at_m });
     if let Some(number) = block {
@@ -231,7 +231,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
             ));
         }
         let away_m = row.distance_m(index, at_m);
-        if away_m > NEAR_RATIO * row.size_m() {
+        if away_m > NEAR_RATIO * row.size_m {
             return Err(format!(
                 "holds on at {point}, which is {away_m:.4} m away from block {number}: give a point of that block; {}",
                 ground()
@@ -265,7 +265,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
 
 /// The two points of the intrados, taken as straight from joint to joint, at a height.
 fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
-    let pairs = row.joints().windows(2).enumerate();
+    let pairs = row.joints.windows(2).enumerate();
     let crossings: Vec<Anchor> = pairs
         .filter_map(|(block, pair)| {
             let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
@@ -279,7 +279,7 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     match crossings[..] {
         [left, right] => Ok([left, right]),
         _ => {
-            let corners = row.joints().iter().map(|joint| joint.intrados_m.y);
+            let corners = row.joints.iter().map(|joint| joint.intrados_m.y);
             let lowest = corners.clone().fold(f64::INFINITY, f64::min);
             let highest = corners.fold(f64::NEG_INFINITY, f64::max);
             Err(format!(
@@ -311,7 +311,7 @@ pub(super) fn tied(
     masonry: Masonry,
     gravity_m_s2: f64,
 ) -> Reading<Masonry> {
-    let placed = placed(ties, masonry.row(), masonry.springing_joints());
+    let placed = placed(ties, &masonry.row, masonry.springing_joints());
     let tied = placed.and_then(|ties| {
         let tied = masonry.with_ties(ties, gravity_m_s2);
         tied.map_err(|(index, error)| (index, error.to_string()))

@@ -128,8 +128,8 @@ impl Structure {
     fn unlikely(&self) -> Vec<String> {
         let (what, longest_m) = match self {
             Self::Arch(arch) => {
-                let (radius_m, embrace_deg) = (arch.mean_radius_m(), arch.embrace_deg());
-                let thick_m = radius_m * arch.thickness_ratio();
+                let (radius_m, embrace_deg) = (arch.mean_radius_m, arch.embrace_deg);
+                let thick_m = radius_m * arch.thickness_ratio;
                 let in_radians = (embrace_deg < LIKELY_EMBRACE_DEG).then(|| {
                     let angle = plain(embrace_deg);
                     format!("the embrace angle is {angle} degrees: is it in radians?")
@@ -141,9 +141,9 @@ impl Structure {
                     .flatten()
                     .collect();
             }
-            Self::Column(column) => ("column", column.height_m().max(column.width_m())),
+            Self::Column(column) => ("column", column.height_m.max(column.width_m)),
             Self::Masonry(masonry) => {
-                let [low_m, high_m] = bounds_m(masonry.row());
+                let [low_m, high_m] = bounds_m(&masonry.row);
                 ("structure", (high_m - low_m).max())
             }
         };

@@ -161,8 +161,7 @@ fn the_impulses_are_compressive_inside_the_ring_and_complementary() {
                 case.ring.radial(joint.angle_rad),
             );
             let impulse = tangent * joint.impulse.normal + radial * joint.impulse.tangential;
-            let arm =
-                radial * (1.0 + joint.impulse.eccentricity_ratio * case.ring.thickness_ratio());
+            let arm = radial * (1.0 + joint.impulse.eccentricity_ratio * case.ring.thickness_ratio);
             Momentum::applied_at(arm, impulse)
         };
         let start = vector(&projection.joints[0]);
@@ -311,7 +310,7 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
 #[test]
 fn springings_and_hinges_are_always_joints() {
     let (ring, _) = first(0.15, 180.0, ANYWHERE).unwrap();
-    let end = ring.embrace_rad();
+    let end = ring.embrace_rad;
     // Hinges close to both springings, at both, and almost at one.
     for hinges in [
         [1e-4, 1.4, 2.4, end - 1e-4],

@@ -126,7 +126,7 @@ fn published_eccentricities_of_the_impulse_line() {
         let line = ResultantLine::through_hinges(&ring, &next.mechanism, closing.minus(&after));
         let (mut largest, mut at) = (0.0, 0.0);
         for i in 0..=18_000_u32 {
-            let section = ring.embrace_rad() * f64::from(i) / 18_000.0;
+            let section = ring.embrace_rad * f64::from(i) / 18_000.0;
             let there = line.section(section);
             assert!(there.normal > 0.0);
             if there.eccentricity_ratio.abs() > largest {
@@ -149,14 +149,14 @@ fn published_eccentricities_of_the_impulse_line() {
 
 /// Kinetic-energy product by midpoint quadrature of the velocities themselves, without any moments.
 fn quadrature(v: &Field, w: &Field, ring: &Ring, cuts: u32) -> f64 {
-    let (inner, t) = (ring.radius(Edge::Intrados), ring.thickness_ratio());
+    let (inner, t) = (ring.radius(Edge::Intrados), ring.thickness_ratio);
     let layers = 24;
     let mut sum = 0.0;
     for i in 0..cuts {
-        let angle = ring.embrace_rad() * (f64::from(i) + 0.5) / f64::from(cuts);
+        let angle = ring.embrace_rad * (f64::from(i) + 0.5) / f64::from(cuts);
         for j in 0..layers {
             let r = inner + t * (f64::from(j) + 0.5) / f64::from(layers);
-            let area = r * t / f64::from(layers) * ring.embrace_rad() / f64::from(cuts);
+            let area = r * t / f64::from(layers) * ring.embrace_rad / f64::from(cuts);
             let point = ring.radial(angle) * r;
             let (at_v, at_w) = (v.at(angle, Side::After), w.at(angle, Side::After));
             sum += area * at_v.at(point).dot(&at_w.at(point));
@@ -184,8 +184,8 @@ fn restitution_is_the_ratio_of_integrated_kinetic_energies() {
 /// Random mechanisms of a ring, at most `count` (a thick shallow ring has none); the angles between hinges
 /// are at least `apart` times the embrace angle.
 fn mechanisms(ring: &Ring, random: &mut Random, count: usize, apart: f64) -> Vec<FourLink> {
-    let quadruples = (0..2000).map(|_| random.quadruple(ring.embrace_rad()));
-    let least = apart * ring.embrace_rad();
+    let quadruples = (0..2000).map(|_| random.quadruple(ring.embrace_rad));
+    let least = apart * ring.embrace_rad;
     quadruples
         .filter(|angles| angles.windows(2).all(|pair| pair[1] - pair[0] > least))
         .filter_map(|angles| FourLink::new(ring, angles))
@@ -285,8 +285,8 @@ fn beaten_by_nothing(
     let mut random = Random(seed);
     let mut done = 0;
     for _ in 0..1000 {
-        let start = random.quadruple(ring.embrace_rad());
-        if let Some((value, angles)) = climb(start, ring.embrace_rad(), score) {
+        let start = random.quadruple(ring.embrace_rad);
+        if let Some((value, angles)) = climb(start, ring.embrace_rad, score) {
             // Values below 1e-3 do not matter, and there the maximum may lie where two hinges merge.
             prop_assert!(
                 value <= best + 1e-10 || value < 1e-3,
@@ -380,7 +380,7 @@ fn the_search_over_joints_is_exhaustive() {
     ] {
         let ring = ring(t, embrace);
         let sites = HingeSites::Voussoirs(count);
-        let section = |i: usize| ring.embrace_rad() * (i as f64 / count as f64);
+        let section = |i: usize| ring.embrace_rad * (i as f64 / count as f64);
         let mut closing = first_mechanism(&ring, sites);
         for _ in 0..links {
             let before = closing_field(&closing, &ring);

@@ -20,10 +20,10 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             return Ok(());
         }
     };
-    prop_assert!(row.mass_kg() > 0.0 && row.blocks().iter().all(|b| b.mass_kg.is_finite()));
+    prop_assert!(row.mass_kg() > 0.0 && row.blocks.iter().all(|b| b.mass_kg.is_finite()));
     // A hundred steps of a length that suits the size.
-    let time_s = (row.size_m() / 9.81).sqrt();
-    let sized = fine || (1e-3..1e6).contains(&row.size_m());
+    let time_s = (row.size_m / 9.81).sqrt();
+    let sized = fine || (1e-3..1e6).contains(&row.size_m);
     let model = match FreeHinges::new(row) {
         Ok(model) => model,
         Err(RowModelError::Stability(StabilityError::CannotStand(opening))) => {
@@ -77,15 +77,15 @@ fn check_column(column: &Column) -> Result<(), TestCaseError> {
     if heights_m.len() >= 8 {
         return Ok(());
     }
-    let sizes = [column.height_m(), column.width_m(), column.top_width_m()];
+    let sizes = [column.height_m, column.width_m, column.top_width_m()];
     let usual = |size_m: &f64| (1e-3..1e6).contains(size_m);
     match FreeHinges::of_column(column) {
         Ok(model) => {
-            let joints = model.row().joints();
+            let joints = &model.row().joints;
             prop_assert_eq!(joints.len(), heights_m.len());
             for (pair, height_m) in joints.windows(2).zip(&heights_m) {
                 let rise_m = pair[1].intrados_m.y - pair[0].intrados_m.y;
-                prop_assert!((rise_m - height_m).abs() <= 1e-9 * column.height_m());
+                prop_assert!((rise_m - height_m).abs() <= 1e-9 * column.height_m);
             }
         }
         Err(error) => {
@@ -141,7 +141,7 @@ proptest! {
                     prop_assert!(!usual);
                 }
                 Err(error) => return Err(TestCaseError::fail(error.to_string())),
-                Ok(row) => prop_assert_eq!(row.blocks().len(), voussoirs),
+                Ok(row) => prop_assert_eq!(row.blocks.len(), voussoirs),
             }
             check(row, usual)?;
         }
@@ -171,7 +171,7 @@ proptest! {
                 prop_assert!(!sizes.iter().all(|x| (1e-3..1e6).contains(x)));
             }
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
-            Ok(row) => prop_assert_eq!(row.blocks().len(), drums.len()),
+            Ok(row) => prop_assert_eq!(row.blocks.len(), drums.len()),
         }
         let fine = drums.iter().all(|drum| {
             (0.2..2.0).contains(&drum.height_m)
@@ -198,7 +198,7 @@ proptest! {
         }
         // Steps follow the size: a joint far larger than the row would need steps without end.
         if let Ok(row) = &row {
-            prop_assert!(row.joints().iter().all(|joint| row.size_m() >= 1e-6 * joint.thickness_m()));
+            prop_assert!(row.joints.iter().all(|joint| row.size_m >= 1e-6 * joint.thickness_m()));
         }
         check(row, false)?;
     }
@@ -303,11 +303,11 @@ fn outlines_hold_the_blocks() {
         Row::tapered_stack(&[0.8, 0.8, 0.4], 1.0, 0.7, 0.7, 2100.0).unwrap(),
     ];
     for row in rows {
-        assert_eq!(row.outlines_m().len(), row.blocks().len());
-        for (outline, block) in row.outlines_m().iter().zip(row.blocks()) {
+        assert_eq!(row.outlines_m.len(), row.blocks.len());
+        for (outline, block) in row.outlines_m.iter().zip(row.blocks) {
             let drawn = Block::prism(outline, 0.7, 2100.0);
             assert!((drawn.mass_kg / block.mass_kg - 1.0).abs() < 1e-3);
-            assert!((drawn.centre_m - block.centre_m).norm() < 1e-3 * row.size_m());
+            assert!((drawn.centre_m - block.centre_m).norm() < 1e-3 * row.size_m);
         }
     }
 }

@@ -443,7 +443,7 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
                 let mut follower = Follower::new(&row).unwrap();
                 let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
                 assert_eq!(reached.unwrap(), Reached::End);
-                let crown = row.joints()[voussoirs / 2].extrados_m;
+                let crown = row.joints[voussoirs / 2].extrados_m;
                 let pose = follower.placement().poses[voussoirs / 2 - 1];
                 let drop = (crown - pose.of(crown)).y;
                 // The judge rests where no block goes by more than 1e-7.
@@ -585,7 +585,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
             if last {
                 break;
             }
-            let crown = row.joints()[8].extrados_m;
+            let crown = row.joints[8].extrados_m;
             let drop = (crown - follower.placement().poses[7].of(crown)).y;
             let force = follower.stance.forces_n().sum::<f64>() / weight_n;
             let due = blocks.pull(&blocks.bars[0]);
@@ -678,7 +678,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
             assert_eq!(reached, Reached::End, "{what}");
             blocks.support = way.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
-            let crown = row.joints()[8].extrados_m;
+            let crown = row.joints[8].extrados_m;
             let drop = (crown - follower.placement().poses[7].of(crown)).y;
             assert!((drop - blocks.crown_drop()).abs() < 2e-6, "{what}: {drop}");
             let forces = follower.stance.forces_n().map(|force_n| force_n / weight_n);
@@ -780,11 +780,11 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let blocks = named(&picture, "block 1");
     assert_eq!((ties.len(), blocks.len()), (2, 2));
     for ((tie, block), stage) in ties.iter().zip(&blocks).zip(last) {
-        let corner_m = |corner: usize| stage.poses[0].of(row.outlines_m()[0][corner]);
+        let corner_m = |corner: usize| stage.poses[0].of(row.outlines_m[0][corner]);
         let (tie_px, block_px) = (points(tie), points(block));
         let apart_m = corner_m(1) - corner_m(0);
         let scale = (block_px[1] - block_px[0]).norm() / apart_m.norm();
-        for (end_px, anchor) in tie_px.iter().zip(row.ties()[0].ends) {
+        for (end_px, anchor) in tie_px.iter().zip(row.ties[0].ends) {
             let end_m = stage.poses[anchor.block.unwrap()].of(anchor.at_m);
             let from_m = end_m - corner_m(0);
             let due_px = block_px[0] + Vector2::new(from_m.x, -from_m.y) * scale;
@@ -855,7 +855,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     let (row, _) = tied(16, 1.0, 0.05, f64::INFINITY, false);
     let tie = Tie {
         breaks_at_strain: 0.07,
-        ..row.ties()[0]
+        ..row.ties[0]
     };
     let breaks_m = 0.07 * tie.slack_length_m();
     let row = row.with_ties(vec![tie], 9.81).unwrap();
@@ -947,7 +947,7 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
 #[test]
 fn an_arch_that_turns_as_a_whole_leans() {
     let row = arch(157.5, 0.15, 12);
-    let joints = row.joints();
+    let joints = &row.joints;
     let turned = |angle: f64| {
         let movement = |joint: usize, outwards: f64| {
             let middle = joints[joint].middle_m();
@@ -1543,7 +1543,7 @@ fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
         },
     };
     let built = model.rest(9.81).unwrap();
-    let joints = model.structure().clone().on_supports(along.displacements());
+    let joints = model.structure.clone().on_supports(along.displacements());
     let moved = joints.rest([0.0, -9.81]).unwrap();
     for (built, moved) in built.moved.iter().zip(&moved.moved) {
         for (axis, shift) in [0.2, -0.1, 0.0].into_iter().enumerate() {

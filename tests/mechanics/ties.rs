@@ -36,10 +36,10 @@ fn tie(ends: [Anchor; 2], prestress_n: f64, yield_force_n: f64) -> Tie {
 
 /// Between the intrados corners of a joint and of the one opposite, on the blocks above them.
 fn level(row: &Row, joint: usize) -> [Anchor; 2] {
-    let blocks = row.blocks().len();
+    let blocks = row.blocks.len();
     [(joint, joint), (blocks - joint, blocks - 1 - joint)].map(|(joint, block)| Anchor {
         block: Some(block),
-        at_m: row.joints()[joint].intrados_m,
+        at_m: row.joints[joint].intrados_m,
     })
 }
 
@@ -60,8 +60,8 @@ fn least_statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
 
 /// The largest push times a sign.
 fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option<f64> {
-    let (size_m, mass_kg) = (row.size_m(), row.mass_kg());
-    let origin = row.joints()[0].middle_m();
+    let (size_m, mass_kg) = (row.size_m, row.mass_kg());
+    let origin = row.joints[0].middle_m();
     // Wrench about the origin on what is before each joint, by unknown: push, reaction, ties; and known.
     let width = 4 + bounds.len();
     let wrench = |point_m: Vector2<f64>, force: Vector2<f64>| {
@@ -84,10 +84,10 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
         }
         right.push(limit);
     };
-    for (index, joint) in row.joints().iter().enumerate() {
+    for (index, joint) in row.joints.iter().enumerate() {
         // Force across the joint on what is before it, about either corner: both compressive.
         let along = joint.along();
-        let across = Vector2::new(-along.y, along.x) * -row.handedness();
+        let across = Vector2::new(-along.y, along.x) * -row.handedness;
         for corner in [Edge::Intrados, Edge::Extrados] {
             // The moment about one corner is that of the force at the other.
             let other = match corner {
@@ -102,7 +102,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
             let coefficients = by_unknown.iter().map(|w| about(w) / sense).collect();
             bound(coefficients, -about(&known) / sense);
         }
-        let Some(block) = row.blocks().get(index) else {
+        let Some(block) = row.blocks.get(index) else {
             continue;
         };
         let weight = block.mass_kg / mass_kg;
@@ -112,7 +112,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
             by_unknown[0][axis] += push[axis];
             known[axis] += falls[axis];
         }
-        for (number, tie) in row.ties().iter().enumerate() {
+        for (number, tie) in row.ties.iter().enumerate() {
             for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
                 if anchor.block == Some(index) {
                     let pull = wrench(anchor.at_m, towards);
@@ -181,7 +181,7 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
                 let second = number(0.55 * voussoirs as f64, voussoirs as f64) as usize;
                 let of_block = |block: usize| Anchor {
                     block: Some(block),
-                    at_m: row.blocks()[block].centre_m,
+                    at_m: row.blocks[block].centre_m,
                 };
                 let ends = match number(0.0, 1.0) {
                     share if share < 0.7 => [of_block(first), of_block(second)],
@@ -199,11 +199,11 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
             .collect();
         let row = tied(&row, ties);
         let at_rest: Vec<[f64; 2]> = {
-            let ties = row.ties().iter();
+            let ties = row.ties.iter();
             ties.map(|tie| [tie.prestress_n / weight_n; 2]).collect()
         };
         let up_to_yield: Vec<[f64; 2]> = {
-            let ties = row.ties().iter();
+            let ties = row.ties.iter();
             ties.map(|tie| [0.0, tie.yield_force_n / weight_n])
                 .collect()
         };
@@ -215,14 +215,14 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
                     assert!(
                         (found_g - due_g).abs() < 1e-8,
                         "{found_g} {due_g} {compared} {sway:?} {thickness} {embrace} {voussoirs} {:?} {at_rest:?}",
-                        row.ties()
+                        row.ties
                     );
                     let limit = limit_with_yielding_ties(&row, *sway).unwrap().unwrap();
                     let most_g = statically(&row, *sway, &up_to_yield).unwrap();
                     let limit_g = limit.onset.acceleration_g;
                     assert!((limit_g - most_g).abs() < 1e-8, "{limit_g} {most_g}");
                     assert!(limit_g > found_g - 1e-12);
-                    for (force_n, tie) in limit.forces_n.iter().zip(row.ties()) {
+                    for (force_n, tie) in limit.forces_n.iter().zip(&row.ties) {
                         assert!((0.0..=tie.yield_force_n).contains(force_n));
                     }
                     // The same by joints that do not slip, however hard they are pushed.
@@ -313,7 +313,7 @@ fn worked_arches_have_their_pushes() {
     let ends = [
         Anchor {
             block: Some(9),
-            at_m: row.joints()[9].extrados_m,
+            at_m: row.joints[9].extrados_m,
         },
         Anchor {
             block: None,
@@ -340,11 +340,11 @@ fn mirrored_ties_have_mirrored_pushes() {
     let ends = [
         Anchor {
             block: Some(2),
-            at_m: row.blocks()[2].centre_m,
+            at_m: row.blocks[2].centre_m,
         },
         Anchor {
             block: Some(9),
-            at_m: row.joints()[9].extrados_m,
+            at_m: row.joints[9].extrados_m,
         },
     ];
     let row = tied(&row, vec![tie(ends, 0.03 * weight_n, 0.05 * weight_n)]);
@@ -593,7 +593,7 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
         .unwrap()
         .row()
         .unwrap();
-    assert_eq!(stack.supports(), Supports::Left);
+    assert_eq!(stack.supports, Supports::Left);
 }
 
 /// Two hundred ties side by side bear what one of their strength bears; one more, or a stiffer one, is refused with the limit.

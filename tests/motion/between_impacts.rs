@@ -268,7 +268,7 @@ fn cuts_in_the_ground_motion_change_nothing() {
             &[0.3, 0.3 + 1e-9],
         ] {
             let cut_ground = ground.cut_at(cuts);
-            assert!(cut_ground.pieces().len() > ground.pieces().len());
+            assert!(cut_ground.pieces.len() > ground.pieces.len());
             let cut = run(&arch, &cut_ground, &request(20.0));
             let times_s = [&cut, &whole].map(impact_times_s);
             assert_eq!(times_s[0].is_empty(), times_s[1].is_empty(), "{kind:?}");

@@ -127,7 +127,7 @@ fn arches_rest_where_an_independent_program_has_them() {
         );
         let rest = structure.rest([0.0, -gravity]).unwrap();
         assert!(rest.unbalanced < 1e-11 && rest.steps < 20);
-        let crown_mm = -1e3 * rest.moved[row.blocks().len() / 2][1];
+        let crown_mm = -1e3 * rest.moved[row.blocks.len() / 2][1];
         assert!(
             (crown_mm / drop_mm - 1.0).abs() < 4e-3,
             "{stiffness:e}: {crown_mm} {drop_mm}"
@@ -141,7 +141,7 @@ fn a_column_settles_by_its_weight_over_its_stiffness() {
     let row = stack(5, 4.0);
     let structure = ElasticStructure::of_row(&row, &joints(1e9, Contact::Points(4))).unwrap();
     let rest = structure.rest([0.0, -9.81]).unwrap();
-    let drum_n = row.blocks()[0].mass_kg * 9.81;
+    let drum_n = row.blocks[0].mass_kg * 9.81;
     for (joint, memory) in rest.memories.iter().enumerate() {
         let due_m = drum_n * (5 - joint) as f64 / 1e9;
         for end in memory.penetrations_m {
@@ -441,7 +441,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
     ] {
         let error = |part: f64| {
             let model = ElasticJoints::new(semicircle(9), properties).unwrap();
-            let step_s = part * model.structure().stable_step_s();
+            let step_s = part * model.structure.stable_step_s();
             let options = ElasticOptions {
                 longest_step_s: Some(step_s),
             };
@@ -568,7 +568,7 @@ fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
         .unwrap();
     assert_eq!(shaken.outcome, Outcome::Rest);
     assert!(shaken.end_s < 19.0);
-    assert_eq!(model.row().supports(), Supports::Both);
+    assert_eq!(model.row().supports, Supports::Both);
     let due = model.incipient_acceleration_g(Sway::Right).unwrap();
     assert!((due - model.incipient_acceleration_g(Sway::Left).unwrap()).abs() < 1e-9);
 }
@@ -730,7 +730,7 @@ fn no_history_fails_silently() {
                 .unwrap()
         };
         let weight_n = row.mass_kg() * 9.81;
-        let unit_j = weight_n * row.size_m();
+        let unit_j = weight_n * row.size_m;
         let Ok(model) = ElasticJoints::new(row, properties) else {
             none += 1;
             continue;

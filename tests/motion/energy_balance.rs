@@ -60,7 +60,7 @@ fn a_wrong_energy_balance_fails() {
                     let mass_kg = model.row().mass_kg();
                     let barrier_j = mass_kg * GRAVITY * (2.0_f64.hypot(0.4) - 2.0);
                     let defect_j =
-                        summary.energy_defect_ratio * mass_kg * GRAVITY * model.row().size_m();
+                        summary.energy_defect_ratio * mass_kg * GRAVITY * model.row().size_m;
                     let due = defect_j / barrier_j.max(row.largest_kinetic_j);
                     let error = row.energy_error;
                     assert!((error / due - 1.0).abs() < 1e-12 || error < 1e-12);

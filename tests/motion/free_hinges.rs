@@ -57,7 +57,7 @@ fn closure_error_m(run: &Summary) -> f64 {
 }
 
 fn still(row: &Row) -> (Vec<Twist>, Vec<[bool; 2]>) {
-    let joints = row.joints().len();
+    let joints = row.joints.len();
     (vec![Twist::ZERO; joints], vec![[true; 2]; joints])
 }
 
@@ -72,7 +72,7 @@ fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
     };
     program.solve(&load).unwrap();
     let energy = |twists: &[Twist]| -> f64 {
-        let blocks = row.blocks().iter().zip(twists);
+        let blocks = row.blocks.iter().zip(twists);
         blocks
             .map(|(block, twist)| twist.power(&twist.momentum(&block.moments_at(block.centre_m))))
             .sum()
@@ -140,7 +140,7 @@ fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
     outline.extend([Vector2::new(10.0, 30.0), Vector2::new(15.0, 30.0)]);
     let shift = Vector2::new(0.0, 16.4);
     let mut blocks = vec![Block::prism(&mirrored(&outline), 1.0, 2620.0)];
-    blocks.extend(sectors.blocks().iter().map(|block| Block {
+    blocks.extend(sectors.blocks.iter().map(|block| Block {
         centre_m: block.centre_m + shift,
         ..*block
     }));
@@ -150,7 +150,7 @@ fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
         extrados_m: Vector2::new(15.0 * side, 0.0),
     };
     let mut joints = vec![base(-1.0)];
-    joints.extend(sectors.joints().iter().map(|joint| Joint {
+    joints.extend(sectors.joints.iter().map(|joint| Joint {
         intrados_m: joint.intrados_m + shift,
         extrados_m: joint.extrados_m + shift,
     }));
@@ -165,7 +165,7 @@ fn a_buttressed_arch_has_the_onset_of_the_static_programme() {
 /// there is no limit.
 fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    let (blocks, joints) = (row.blocks().len(), row.joints().len());
+    let (blocks, joints) = (row.blocks.len(), row.joints.len());
     let mass = row.mass_kg();
     let mut right = vec![0.0; 3 * blocks + 2 * joints];
     let mut entry = |row: usize, column: usize, value: f64| {
@@ -173,13 +173,13 @@ fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
         columns.push(column);
         values.push(value);
     };
-    for (index, block) in row.blocks().iter().enumerate() {
+    for (index, block) in row.blocks.iter().enumerate() {
         entry(3 * index, 3 * joints, sway.sign() * block.mass_kg / mass);
         right[3 * index + 1] = block.mass_kg / mass;
     }
-    for (index, joint) in row.joints().iter().enumerate() {
+    for (index, joint) in row.joints.iter().enumerate() {
         let along = joint.along();
-        let normal = Vector2::new(-along.y, along.x) * row.handedness();
+        let normal = Vector2::new(-along.y, along.x) * row.handedness;
         let forces = [
             (joint.intrados_m, normal),
             (joint.extrados_m, normal),
@@ -187,8 +187,8 @@ fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
         ];
         for (kind, (point, direction)) in forces.into_iter().enumerate() {
             for (block, sign) in [(index.checked_sub(1), -1.0), (Some(index), 1.0)] {
-                if let Some((at, block)) = block.and_then(|at| Some((at, row.blocks().get(at)?))) {
-                    let moment = (point - block.centre_m).perp(&direction) / row.size_m();
+                if let Some((at, block)) = block.and_then(|at| Some((at, row.blocks.get(at)?))) {
+                    let moment = (point - block.centre_m).perp(&direction) / row.size_m;
                     for (axis, value) in [direction.x, direction.y, moment].into_iter().enumerate()
                     {
                         entry(3 * at + axis, 3 * index + kind, sign * value);
@@ -263,7 +263,7 @@ fn a_full_closure_keeps_what_the_cone_allows() {
         let closing = mechanism.field().scaled(-1.0);
         let free: Vec<Twist> = (0..voussoirs)
             .map(|i| {
-                let middle = ring.embrace_rad() * (i as f64 + 0.5) / voussoirs as f64;
+                let middle = ring.embrace_rad * (i as f64 + 0.5) / voussoirs as f64;
                 closing.at(middle, Side::After)
             })
             .collect();
@@ -285,7 +285,7 @@ fn the_restitution_of_a_block_is_housners() {
             top_width_m: width_m,
         };
         let row = Row::stack(&[drum], 1.0, 2000.0).unwrap();
-        let toe = row.joints()[0].extrados_m;
+        let toe = row.joints[0].extrados_m;
         let (_, kept) = projected(&row, &[Twist::rotation(toe, 0.3)]);
         let sin = width_m / width_m.hypot(4.0);
         let housner = 1.0 - 1.5 * sin * sin;
@@ -593,7 +593,7 @@ fn energy_does_not_grow() {
         );
         assert!(kept.impacts.len() > 10);
         // An impact that takes no energy may seem to add some by rounding.
-        let unit = row.mass_kg() * GRAVITY * row.size_m();
+        let unit = row.mass_kg() * GRAVITY * row.size_m;
         assert!(kept.impacts.iter().all(|taken| *taken > -1e-14 * unit));
         assert!(closure_error_m(&run) < 1e-9);
     }
@@ -712,8 +712,8 @@ fn bad_arguments_are_refused() {
     let row = column(2);
     // Steps follow the size.
     let tiny = Row::new(
-        row.blocks().to_vec(),
-        row.joints().to_vec(),
+        row.blocks.to_vec(),
+        row.joints.to_vec(),
         Supports::Left,
         2.2e-16,
     );

@@ -134,7 +134,7 @@ impl Recorder for Closures {
 
 /// The fraction of the energy that a closing four-link mechanism keeps by the certificate, from the corners that land.
 fn certified(ring: &Ring, voussoirs: usize, landed: &[(usize, Edge)]) -> Option<f64> {
-    let embrace_rad = ring.embrace_rad();
+    let embrace_rad = ring.embrace_rad;
     let angle_rad = |joint: usize| embrace_rad * joint as f64 / voussoirs as f64;
     let mut hinges_rad: Vec<f64> = landed.iter().map(|(joint, _)| angle_rad(*joint)).collect();
     // It turned about the edges opposite to those that land; if it swayed to the left, its mirror image swayed to the right.
@@ -165,7 +165,7 @@ fn four_corners_that_land_together_are_one_impact() {
         for factor in [1.0, 3.2] {
             let settings = Settings::to_landings(&row, GRAVITY, 60.0).times(factor);
             let mut closures_of_run = Closures {
-                least_j: 1e-6 * row.mass_kg() * GRAVITY * row.size_m(),
+                least_j: 1e-6 * row.mass_kg() * GRAVITY * row.size_m,
                 found: Vec::new(),
             };
             simulate(
@@ -232,7 +232,7 @@ fn second_peaks_converge() {
             12
         };
         let (_, _, row, ground) = shaken_arch(&mut random, 5, most);
-        let end_s = 3.0 * (row.size_m() / 10.0).sqrt();
+        let end_s = 3.0 * (row.size_m / 10.0).sqrt();
         let second = |settings: Settings| {
             let run = simulate(&row, &ground, GRAVITY, &settings, None, None).unwrap();
             peaks_rad(&run).get(1).copied()

@@ -232,7 +232,7 @@ fn a_block_that_slips_down_a_slope_comes_to_rest() {
     let ours_m = slid(&run).offsets_m[0];
     assert!((ours_m / slip_m - 1.0).abs() < 1e-5, "{ours_m} {slip_m}");
     // The sliding along its base does not count as overturning.
-    assert!(ours_m.abs() > 0.6 * row.size_m());
+    assert!(ours_m.abs() > 0.6 * row.size_m);
 }
 
 /// It overturns only when it leaves the slope: the reported time is when it begins to tip, near where its centre passes the edge.
@@ -484,12 +484,12 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
         };
         let shape = Shape::PointedArch(dimensions);
         let masonry = Masonry::new(shape, piers, None, Vec::new()).unwrap();
-        assert_eq!(masonry.row().supports_extend(), [!pedestal; 2]);
+        assert_eq!(masonry.row.supports_extend, [!pedestal; 2]);
         let ground = Pulse::OneSine
             .lasting_s(0.5)
             .horizontal_m_s2(0.5 * GRAVITY)
             .unwrap();
-        let run = run(masonry.row(), &ground, &equal(8e-5, 6.0, 0.3));
+        let run = run(&masonry.row, &ground, &equal(8e-5, 6.0, 0.3));
         assert_eq!(run.outcome, Outcome::Rest);
         let time_s = run.outcome_time_s;
         assert!((time_s - 2.53).abs() < 0.1, "{time_s}");
@@ -542,7 +542,7 @@ fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
         };
         let masonry =
             Masonry::new(Shape::Blocks(given), Piers::default(), None, Vec::new()).unwrap();
-        masonry.row().supports_extend()
+        masonry.row.supports_extend
     };
     let frame = |left: f64, right: f64| {
         [
@@ -566,12 +566,12 @@ fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
     assert_eq!(goes_on(Supports::Left, &stack), [true, false]);
     // In a mirror image the supports are exchanged.
     let row = arch(157.5, 0.15, 7, 10.0);
-    assert_eq!(row.supports_extend(), [false; 2]);
+    assert_eq!(row.supports_extend, [false; 2]);
     let mirrored = row
         .with_supports_that_extend([true, false])
         .mirrored()
         .unwrap();
-    assert_eq!(mirrored.supports_extend(), [false, true]);
+    assert_eq!(mirrored.supports_extend, [false, true]);
 }
 
 /// The ground acceleration must exceed the static bound to start a motion, by any amount.
@@ -829,14 +829,14 @@ fn mirror_images_move_alike() {
 
 /// Energy that the first mechanism must gain to overturn; for a stack, turning as one about the nearer edge of its base.
 fn barrier_j(row: &Row) -> Option<f64> {
-    if row.supports() == Supports::Both {
+    if row.supports == Supports::Both {
         return FreeHinges::new(row.clone()).unwrap().barrier_j(GRAVITY);
     }
-    let blocks = row.blocks().iter();
+    let blocks = row.blocks.iter();
     let first: Vector2<f64> = blocks.map(|block| block.centre_m * block.mass_kg).sum();
     let centre_m = first / row.mass_kg();
     let rises_m = [Edge::Intrados, Edge::Extrados].map(|edge| {
-        let arm_m = centre_m - row.joints()[0].corner_m(edge);
+        let arm_m = centre_m - row.joints[0].corner_m(edge);
         arm_m.norm() - arm_m.y
     });
     Some(row.mass_kg() * GRAVITY * rises_m[0].min(rises_m[1]))
@@ -867,7 +867,7 @@ fn random_histories_create_no_energy() {
         let settings = equal(1e-4, length_s, coefficient);
         match simulate(&row, &ground, GRAVITY, &settings, None, None) {
             Ok(run) => {
-                let unit_j = row.mass_kg() * GRAVITY * row.size_m();
+                let unit_j = row.mass_kg() * GRAVITY * row.size_m;
                 let barrier = barrier_j(&row).map_or(USUAL_BARRIER, |barrier_j| barrier_j / unit_j);
                 worst = worst.max(run.energy_defect_ratio / barrier.max(LEAST_BARRIER));
                 unconverged += slid(&run).unconverged;
@@ -939,8 +939,8 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
             density_kg_m3,
         });
         let masonry = Masonry::new(shape, Piers::default(), fill, Vec::new()).unwrap();
-        let row = masonry.row();
-        let coefficient = least_coefficient(row).unwrap() * (1.0 + excess);
+        let row = masonry.row;
+        let coefficient = least_coefficient(&row).unwrap() * (1.0 + excess);
         let peak = amplitude_g * GRAVITY;
         let ground = Pulse::HalfSine
             .lasting_s(duration_s)
@@ -948,9 +948,9 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
             .unwrap();
         let settings = Settings {
             friction_coefficient: Some(coefficient),
-            ..Settings::equal(row, GRAVITY, end_s)
+            ..Settings::equal(&row, GRAVITY, end_s)
         };
-        let run = run(row, &ground, &settings);
+        let run = run(&row, &ground, &settings);
         assert!(
             slid(&run).unconverged == 0,
             "{coefficient} {:?}",
@@ -975,7 +975,7 @@ fn judged(
     [free, lags, before]: [&[Vector3<f64>]; 3],
     coefficient: f64,
 ) -> Vec<Vector3<f64>> {
-    let (blocks, joints) = (row.blocks().len(), faces.len());
+    let (blocks, joints) = (row.blocks.len(), faces.len());
     let mut gradients = DMatrix::zeros(3 * joints, 3 * blocks);
     for joint in 0..joints {
         let centre = |block: usize| {
@@ -999,7 +999,7 @@ fn judged(
     }
     let inverse_masses = DVector::from_iterator(
         3 * blocks,
-        row.blocks()
+        row.blocks
             .iter()
             .flat_map(|b| [b.mass_kg, b.mass_kg, b.inertia_kg_m2].map(|m| 1.0 / m)),
     );
@@ -1053,7 +1053,7 @@ fn every_step_solves_the_complementarity_problem() {
     let (coefficient, step) = (0.4, 5e-4);
     let faces = Faces::of_row(&row);
     let mut positions: Vec<Position> = row
-        .blocks()
+        .blocks
         .iter()
         .map(|block| Position::new(block.centre_m, 0.0))
         .collect();

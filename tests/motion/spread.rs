@@ -45,7 +45,7 @@ fn tied(stiffness: f64, prestress: f64) -> Row {
     let weight_n = row.mass_kg() * GRAVITY;
     let end = |block, joint: usize| Anchor {
         block: Some(block),
-        at_m: row.joints()[joint].intrados_m,
+        at_m: row.joints[joint].intrados_m,
     };
     let tie = Tie {
         ends: [end(4, 4), end(11, 12)],
@@ -144,7 +144,7 @@ fn a_settled_arch_stays_where_it_is() {
                     .collect();
                 assert_eq!(open, expected);
                 for (pose, there) in sample.poses.iter().zip(&follower.placement().poses) {
-                    let centre = row.blocks()[0].centre_m;
+                    let centre = row.blocks[0].centre_m;
                     assert!((pose.of(centre) - there.of(centre)).norm() < 1e-12);
                 }
             }
@@ -240,7 +240,7 @@ fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
         .unwrap();
     let stretch_m = follower.stance.ties[0].stretch_m.0[0];
     let on_supports = |bears: f64| {
-        let tie = row.ties()[0];
+        let tie = row.ties[0];
         let tie = Tie {
             breaks_at_strain: bears * stretch_m / tie.slack_length_m(),
             ..tie

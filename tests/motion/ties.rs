@@ -588,7 +588,7 @@ fn tied_arches_have_mirror_images() {
     let row = Row::arch(&ring, 10, 5.0, 1.0, 2000.0).unwrap();
     let end = |joint: usize, block: usize| Anchor {
         block: Some(block),
-        at_m: row.joints()[joint].intrados_m,
+        at_m: row.joints[joint].intrados_m,
     };
     let tie = Tie {
         ends: [end(2, 2), end(8, 7)],

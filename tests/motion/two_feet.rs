@@ -97,10 +97,7 @@ fn feet_go_apart_as_their_motions_do() {
 #[test]
 fn a_negative_delay_leaves_the_left_foot_as_it_is() {
     let at = |ground: &GroundMotion, time_s: f64| {
-        let piece = ground
-            .pieces()
-            .iter()
-            .rfind(|piece| piece.start_s <= time_s);
+        let piece = ground.pieces.iter().rfind(|piece| piece.start_s <= time_s);
         piece.unwrap().acceleration_m_s2(time_s)
     };
     for (from_s, start_s) in [(0.0, -0.3), (0.2, -0.1), (0.3, 0.0), (1.0, 0.0)] {
@@ -112,7 +109,7 @@ fn a_negative_delay_leaves_the_left_foot_as_it_is() {
         let early = ground.clone().with_delayed_right_foot(-0.3).unwrap();
         let right = early.right_foot().unwrap();
         assert!((early.start_s() - start_s).abs() < 1e-15 && early.start_s() == right.start_s());
-        assert_eq!(early.pieces()[0].start_s, early.start_s());
+        assert_eq!(early.pieces[0].start_s, early.start_s());
         let [left_s, right_s] = early.ends_s();
         assert!(left_s == ground.end_s() && (left_s - right_s - 0.3).abs() < 1e-15);
         for time_s in [0.05, 0.11, 0.33, 0.55, 1.1, 1.3] {
@@ -282,9 +279,9 @@ fn mirrored_feet_move_a_mirrored_arch() {
 fn a_translation_of_both_supports_changes_nothing() {
     let model = arch();
     let load_m_s2 = [0.0, -9.81];
-    let rest = model.structure().rest(load_m_s2).unwrap();
+    let rest = model.structure.rest(load_m_s2).unwrap();
     let by_m = [0.4, -0.2, 0.0];
-    let elsewhere = model.structure().clone().on_supports([by_m; 2]);
+    let elsewhere = model.structure.clone().on_supports([by_m; 2]);
     let moved = elsewhere.rest(load_m_s2).unwrap();
     for (rest, moved) in rest.moved.iter().zip(&moved.moved) {
         for axis in 0..3 {

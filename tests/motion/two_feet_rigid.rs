@@ -109,7 +109,7 @@ struct ThreeHinges<'a> {
 impl<'a> ThreeHinges<'a> {
     fn new(row: &'a Row) -> Self {
         let edges = [Edge::Intrados, Edge::Extrados, Edge::Intrados];
-        let pin = |joint: usize| row.joints()[joint].corner_m(edges[joint]);
+        let pin = |joint: usize| row.joints[joint].corner_m(edges[joint]);
         let pins = [0, 1, 2].map(pin);
         Self { row, pins }
     }
@@ -118,7 +118,7 @@ impl<'a> ThreeHinges<'a> {
     fn blocks(&self, apart_m: Vector2<f64>) -> [Vector3<f64>; 2] {
         let [left, crown, right] = self.pins;
         let crown_moved = middle_m(self.pins, left, right + apart_m);
-        let [one, other] = [&self.row.blocks()[0], &self.row.blocks()[1]];
+        let [one, other] = [&self.row.blocks[0], &self.row.blocks[1]];
         [
             moved(one, [left, crown], [left, crown_moved]),
             moved(other, [crown, right], [crown_moved, right + apart_m]),
@@ -130,7 +130,7 @@ impl<'a> ThreeHinges<'a> {
         const H: f64 = 1e-4;
         let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(way.at_m(time_s + by)));
         let energy_j = |block: usize| {
-            let body = &self.row.blocks()[block];
+            let body = &self.row.blocks[block];
             let velocity = (after[block] - before[block]) / (2.0 * H);
             let [x, y, rate] = velocity.into();
             0.5 * (body.mass_kg * (x * x + y * y) + body.inertia_kg_m2 * rate * rate)
@@ -274,7 +274,7 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
         Edge::Extrados,
         Edge::Intrados,
     ];
-    let pins = [0, 1, 2, 3].map(|joint: usize| row.joints()[joint].corner_m(edges[joint]));
+    let pins = [0, 1, 2, 3].map(|joint: usize| row.joints[joint].corner_m(edges[joint]));
     // Beside the left foot.
     let blocks = |angle: f64, time_s: f64| {
         let right = pins[3] + (right_m_s2 - left_m_s2) * (0.5 * time_s * time_s);
@@ -283,7 +283,7 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
         let now = [pins[0], second, third, right];
         [0, 1, 2].map(|block: usize| {
             let bar = |pins: [Vector2<f64>; 4]| [pins[block], pins[block + 1]];
-            moved(&row.blocks()[block], bar(pins), bar(now))
+            moved(&row.blocks[block], bar(pins), bar(now))
         })
     };
     let rates = |time_s: f64, [angle, rate]: [f64; 2]| {
@@ -291,7 +291,7 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
         let [before, now, after] = [-H, 0.0, H].map(at);
         let [less, more] = [-H, H].map(|by| blocks(angle + by, time_s));
         let (mut inertia, mut force) = (0.0, 0.0);
-        for (block, body) in row.blocks().iter().enumerate() {
+        for (block, body) in row.blocks.iter().enumerate() {
             let weights = Vector3::new(body.mass_kg, body.mass_kg, body.inertia_kg_m2);
             let slope = (more[block] - less[block]) / (2.0 * H);
             let curved = (after[block] - now[block] * 2.0 + before[block]) / (H * H);

@@ -296,7 +296,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
     let Structure::Masonry(masonry) = scenario.structure() else {
         panic!("{:?}", scenario.structure());
     };
-    let outlines_m = masonry.row().outlines_m();
+    let outlines_m = &masonry.row.outlines_m;
     let corner = |outlines: &[Vec<Vector2<f64>>], block: usize| outlines[block][0];
     let printed_json = printed(folder, &["limit", "s.toml", "--format", "json"]);
     let onset: serde_json::Value = serde_json::from_str(&printed_json).unwrap();

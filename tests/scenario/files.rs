@@ -61,15 +61,11 @@ fn defaults() {
         panic!("an arch")
     };
     assert_eq!(
-        [
-            arch.mean_radius_m(),
-            arch.thickness_ratio(),
-            arch.embrace_deg()
-        ],
+        [arch.mean_radius_m, arch.thickness_ratio, arch.embrace_deg],
         [5.0, 0.15, 180.0]
     );
-    assert_eq!([arch.depth_m(), arch.density_kg_m3()], [1.0, 2000.0]);
-    assert_eq!(arch.voussoirs(), None);
+    assert_eq!([arch.depth_m, arch.density_kg_m3], [1.0, 2000.0]);
+    assert_eq!(arch.voussoirs, None);
     assert_eq!(
         *scenario.simulation(),
         Simulation {
@@ -100,11 +96,11 @@ fn defaults() {
         panic!("a column")
     };
     assert_eq!(
-        [column.height_m(), column.width_m(), column.top_width_m()],
+        [column.height_m, column.width_m, column.top_width_m()],
         [4.0, 0.8, 0.8]
     );
     assert_eq!(column.drum_heights_m(), [4.0]);
-    assert_eq!([column.depth_m(), column.density_kg_m3()], [1.0, 2000.0]);
+    assert_eq!([column.depth_m, column.density_kg_m3], [1.0, 2000.0]);
     let none = RowOptions {
         longest_step_s: None,
         shortest_step_s: None,
@@ -894,7 +890,7 @@ fn pedestals() {
             .structure()
             .free_hinges(RowOptions::default())
             .unwrap();
-        model.row().supports_extend()
+        model.row().supports_extend
     };
     let free = "[free_hinges]\nfriction_coefficient = 0.7\n";
     let column = |pedestal: &str| format!("{COLUMN}{pedestal}drums = 3\n{free}");

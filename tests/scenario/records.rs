@@ -66,10 +66,10 @@ fn further_corners_change_nothing() {
     let ground = GroundMotion::record(&record, &[], 0.0).unwrap();
     let corners: Vec<_> = (1..300).map(|i| f64::from(i) * 0.0251).collect();
     let cut = ground.cut_at(&corners);
-    assert!(cut.pieces().len() > ground.pieces().len() + 250);
+    assert!(cut.pieces.len() > ground.pieces.len() + 250);
     for corner in &corners {
         let value = |ground: &GroundMotion| {
-            let pieces = ground.pieces();
+            let pieces = &ground.pieces;
             let piece = pieces.iter().rfind(|p| p.start_s <= *corner).unwrap();
             piece.at(*corner)
         };
@@ -131,7 +131,7 @@ fn the_way_a_record_is_written_changes_no_bit() {
     let text = at2(&record, "SYNTHETIC", &NGA_WEST2);
     let reference = scenario(folder.path(), &[("a.at2", &text)], "file = 'a.at2'").unwrap();
     let motion = reference.ground_motion();
-    assert_eq!(motion.pieces().len(), record.len());
+    assert_eq!(motion.pieces.len(), record.len());
     let Some(Ground::Record(read)) = reference.ground() else {
         panic!("a record")
     };
@@ -560,7 +560,7 @@ fn energy_balances_over_a_minute() {
     let vertical = scaled(&synthetic(2, 60.0, 0.005), 0.15 * G);
     for vertical in [Vec::new(), vertical] {
         let ground = GroundMotion::record(&horizontal, &vertical, 0.0).unwrap();
-        assert!(ground.pieces().len() >= 12_000);
+        assert!(ground.pieces.len() >= 12_000);
         let (history, _) = run(&arch, &ground, G, None, 70.0);
         assert_eq!(history.summary.outcome, Outcome::Rest);
         assert!(history.summary.impacts > 48);

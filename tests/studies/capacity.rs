@@ -95,7 +95,7 @@ fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     let Structure::Masonry(masonry) = scenario.structure() else {
         panic!("{:?}", scenario.structure());
     };
-    let model = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution).unwrap();
+    let model = FourLinks::of_row(&masonry.row, ImpactModel::MaxRestitution).unwrap();
     let unit_j = 9.81 * model.mass_unit_kg() * model.length_m();
     for (sway, side) in SIDES.into_iter().zip(&capacity(&scenario, None).unwrap()) {
         let mechanism = &model.link_from(sway, 0).unwrap().mechanism;
@@ -338,11 +338,11 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
                 let body = before.checked_sub(1).filter(|body| *body < 3);
                 body.map_or(at, |body| displaced.poses[body].of(at))
             };
-            let blocks = row.blocks().iter().enumerate();
+            let blocks = row.blocks.iter().enumerate();
             let sum: Vector2<f64> = blocks
                 .map(|(index, block)| place(index, block.centre_m) * block.mass_kg)
                 .sum();
-            let tie = &row.ties()[0];
+            let tie = &row.ties[0];
             let [one, other] =
                 [0, 1].map(|end| place(tie.ends[end].block.unwrap(), tie.ends[end].at_m));
             let stretch = (other - one).norm() - tie.slack_length_m();

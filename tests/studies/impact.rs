@@ -233,16 +233,16 @@ fn on_a_pier(folder: &Path) -> (Row, f64) {
     let Structure::Masonry(masonry) = scenario.structure() else {
         panic!("{:?}", scenario.structure());
     };
-    (masonry.row().clone(), 2.5)
+    (masonry.row.clone(), 2.5)
 }
 
 /// Velocities of the blocks in m/s and rad/s.
 fn velocities(field: &Field, row: &Row) -> Vec<Twist> {
-    let blocks = 0..row.blocks().len();
+    let blocks = 0..row.blocks.len();
     let twists = blocks.map(|block| field.at(block as f64 + 0.5, Side::After));
     twists
         .map(|twist| Twist {
-            at_center: twist.at_center * row.size_m(),
+            at_center: twist.at_center * row.size_m,
             ..twist
         })
         .collect()
@@ -270,7 +270,7 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
         let moved = after.mechanism.field().scaled(after.link.rate_ratio);
         let blocks = after_one_impact(&row, first);
         let momentum = |field: &Field| -> Vector2<f64> {
-            let moving = blocks.blocks().iter().zip(velocities(field, &blocks));
+            let moving = blocks.blocks.iter().zip(velocities(field, &blocks));
             moving
                 .map(|(block, twist)| twist.at(block.centre_m) * block.mass_kg)
                 .sum()
@@ -304,7 +304,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         let closing = closing_field(&chain.link(0).unwrap().mechanism, chain.profile(1));
         let blocks = after_one_impact(&row, first);
         let free = velocities(&closing, &blocks);
-        let joints = blocks.joints().len();
+        let joints = blocks.joints.len();
         let mut program = Program::new(&blocks);
         let load = Load {
             free: &free,
@@ -313,7 +313,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         };
         program.solve(&load).unwrap();
         let energy = |twists: &[Twist]| -> f64 {
-            let moving = blocks.blocks().iter().zip(twists);
+            let moving = blocks.blocks.iter().zip(twists);
             moving
                 .map(|(block, twist)| {
                     twist.power(&twist.momentum(&block.moments_at(block.centre_m)))

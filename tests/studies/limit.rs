@@ -92,9 +92,9 @@ fn maximise(goal: &[f64], constraints: &[Constraint], half_width: f64) -> Option
 /// given sections (sorted); `None` if not even the weight alone can be carried. The load is added up by
 /// Simpson's rule over thin slices: the weight of a slice is at `1 + t^2/12` from the centre.
 fn static_limit_g(ring: &Ring, sections: &[f64]) -> Option<f64> {
-    let t = ring.thickness_ratio();
+    let t = ring.thickness_ratio;
     let centre = 1.0 + t * t / 12.0;
-    let half = 0.5 * ring.embrace_rad();
+    let half = 0.5 * ring.embrace_rad;
     // Position of a slice; angles from the left springing.
     let place = |angle: f64| (centre * (angle - half).sin(), centre * (angle - half).cos());
     // Unknown (h, v, m, a): force of the left springing on the ring, its moment about O, the push.
@@ -143,7 +143,7 @@ const BOX: f64 = 1e3;
 
 fn even_sections(ring: &Ring, count: u32) -> Vec<f64> {
     (0..=count)
-        .map(|i| ring.embrace_rad() * f64::from(i) / f64::from(count))
+        .map(|i| ring.embrace_rad * f64::from(i) / f64::from(count))
         .collect()
 }
 
@@ -525,14 +525,14 @@ proptest! {
         };
         let mut random = Random(seed);
         for _ in 0..200 {
-            if let Some(push) = score(random.quadruple(ring.embrace_rad())) {
+            if let Some(push) = score(random.quadruple(ring.embrace_rad)) {
                 prop_assert!(-push >= found.acceleration_g - 1e-12);
             }
         }
         let mut climbs = 0;
         while climbs < 6 {
-            let start = random.quadruple(ring.embrace_rad());
-            if let Some((value, angles)) = climb(start, ring.embrace_rad(), score) {
+            let start = random.quadruple(ring.embrace_rad);
+            if let Some((value, angles)) = climb(start, ring.embrace_rad, score) {
                 climbs += 1;
                 prop_assert!(-value >= found.acceleration_g - 1e-12, "{value} {angles:?} {}", found.acceleration_g);
             }

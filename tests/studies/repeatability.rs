@@ -31,7 +31,7 @@ fn case(random: &mut Random, most: usize) -> (FreeHinges, GroundMotion, f64) {
         if !(0.02..1.5).contains(&onset_g) {
             continue;
         }
-        let scale_s = (model.row().size_m() / GRAVITY).sqrt();
+        let scale_s = (model.row().size_m / GRAVITY).sqrt();
         if random.chance(0.5) {
             let kind = Pulse::ALL[random.pick(5)];
             let amplitude = GRAVITY * onset_g * (1.1 + 1.4 * random.next());
@@ -83,7 +83,7 @@ fn campaign(cases: usize) -> Counts {
         let largest = spread
             .largest_rad
             .is_some_and(|largest| largest.is_certain());
-        let longest_s = 3.4e-4 * (model.row().size_m() / GRAVITY).sqrt();
+        let longest_s = 3.4e-4 * (model.row().size_m / GRAVITY).sqrt();
         let mut failed = [false; 4];
         for factor in OTHER_STEPS {
             let options = RowOptions {
@@ -305,7 +305,7 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
             .unwrap();
         let request = Request {
             end_s: 0.3,
-            output_step_s: 2e-5 * (row.size_m() / GRAVITY).sqrt(),
+            output_step_s: 2e-5 * (row.size_m / GRAVITY).sqrt(),
             ..Request::default()
         };
         let steps = |model: &dyn Model| {
@@ -429,7 +429,7 @@ fn elastic_case(
         if !(0.02..1.5).contains(&onset_g) {
             continue;
         }
-        let scale_s = (model.row().size_m() / GRAVITY).sqrt();
+        let scale_s = (model.row().size_m / GRAVITY).sqrt();
         if random.chance(0.6) {
             let kind = Pulse::ALL[random.pick(5)];
             let amplitude = GRAVITY * onset_g * random.within(0.6, 2.0);

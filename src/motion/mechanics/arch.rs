@@ -78,15 +78,21 @@ impl MeasuredAt {
 /// ```
 #[derive(Clone, Debug, Serialize)]
 pub struct Arch {
-    mean_radius_m: f64,
-    thickness_ratio: f64,
-    embrace_deg: f64,
-    depth_m: f64,
-    density_kg_m3: f64,
-    voussoirs: Option<usize>,
-    /// The line whose span and rise are its dimensions in drawings; `None`: the middle line, and captions give the mean radius.
+    /// Radius of the middle line, in metres.
+    pub mean_radius_m: f64,
+    /// Thickness over mean radius.
+    pub thickness_ratio: f64,
+    /// Angle from springing to springing, in degrees.
+    pub embrace_deg: f64,
+    /// Length out of plane, in metres.
+    pub depth_m: f64,
+    /// Density, in kg/m3.
+    pub density_kg_m3: f64,
+    /// Number of equal voussoirs; `None` where hinges may open at any section.
+    pub voussoirs: Option<usize>,
+    /// The line whose span and rise drawings and captions give, if it was set.
     #[serde(skip)]
-    measured_at: Option<MeasuredAt>,
+    pub measured_at: Option<MeasuredAt>,
     /// Onset of rocking, computed on the first request. It depends on the shape alone, so arches of the
     /// same shape share it.
     #[serde(skip)]
@@ -232,12 +238,6 @@ impl Arch {
         self
     }
 
-    /// The line whose span and rise drawings and captions give, if it was set.
-    #[must_use]
-    pub const fn measured_at(&self) -> Option<MeasuredAt> {
-        self.measured_at
-    }
-
     /// Radius of a line, in metres.
     #[must_use]
     pub fn radius_at_m(&self, line: MeasuredAt) -> f64 {
@@ -255,36 +255,6 @@ impl Arch {
         ]
     }
 
-    /// Radius of the middle line, in metres.
-    #[must_use]
-    pub const fn mean_radius_m(&self) -> f64 {
-        self.mean_radius_m
-    }
-
-    /// Thickness over mean radius.
-    #[must_use]
-    pub const fn thickness_ratio(&self) -> f64 {
-        self.thickness_ratio
-    }
-
-    /// Angle from springing to springing, in degrees.
-    #[must_use]
-    pub const fn embrace_deg(&self) -> f64 {
-        self.embrace_deg
-    }
-
-    /// Length out of plane, in metres.
-    #[must_use]
-    pub const fn depth_m(&self) -> f64 {
-        self.depth_m
-    }
-
-    /// Density, in kg/m3.
-    #[must_use]
-    pub const fn density_kg_m3(&self) -> f64 {
-        self.density_kg_m3
-    }
-
     /// Its voussoirs as a row of blocks.
     ///
     /// # Errors
@@ -292,17 +262,11 @@ impl Arch {
     pub fn row(&self) -> Result<Row, RowError> {
         Row::arch(
             &self.ring(),
-            self.voussoirs().ok_or(RowError::NoVoussoirs)?,
-            self.mean_radius_m(),
-            self.depth_m(),
-            self.density_kg_m3(),
+            self.voussoirs.ok_or(RowError::NoVoussoirs)?,
+            self.mean_radius_m,
+            self.depth_m,
+            self.density_kg_m3,
         )
-    }
-
-    /// Number of equal voussoirs; `None` where hinges may open at any section.
-    #[must_use]
-    pub const fn voussoirs(&self) -> Option<usize> {
-        self.voussoirs
     }
 
     /// Where hinges may open.

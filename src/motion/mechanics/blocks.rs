@@ -117,19 +117,24 @@ pub struct Drum {
 /// A row of rigid blocks in its undeformed shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    blocks: Vec<Block>,
-    joints: Vec<Joint>,
-    supports: Supports,
-    size_m: f64,
-    /// Polygons that the blocks are drawn as.
-    outlines_m: Vec<Vec<Vector2<f64>>>,
-    /// `e x n` of every joint, with `e` the unit vector along the face and `n` the normal towards the right block.
-    handedness: f64,
+    /// The blocks from left to right.
+    pub blocks: Vec<Block>,
+    /// The joints from left to right.
+    pub joints: Vec<Joint>,
+    /// The supports of the row.
+    pub supports: Supports,
+    /// The length, in metres, that scales energies and steps.
+    pub size_m: f64,
+    /// Closed polygons that the blocks are drawn as, from left to right, in metres.
+    pub outlines_m: Vec<Vec<Vector2<f64>>>,
+    /// `e x n` of its joints: -1 in an arch, 1 in a stack.
+    pub handedness: f64,
     /// Whether the left and the right support extend beyond their joints.
-    supports_extend: [bool; 2],
-    ties: Vec<Tie>,
-    /// The gravity that converts forces of ties where loads are in units of gravity.
-    gravity_m_s2: f64,
+    pub supports_extend: [bool; 2],
+    /// Its ties.
+    pub ties: Vec<Tie>,
+    /// The gravity that its ties were given with, in m/s2.
+    pub gravity_m_s2: f64,
 }
 
 impl Row {
@@ -387,48 +392,6 @@ impl Row {
         Self::stack(&drums, depth_m, density_kg_m3)
     }
 
-    /// The blocks from left to right.
-    #[must_use]
-    pub fn blocks(&self) -> &[Block] {
-        &self.blocks
-    }
-
-    /// The joints from left to right.
-    #[must_use]
-    pub fn joints(&self) -> &[Joint] {
-        &self.joints
-    }
-
-    /// The supports of the row.
-    #[must_use]
-    pub const fn supports(&self) -> Supports {
-        self.supports
-    }
-
-    /// Whether the left and the right support extend beyond their joints.
-    #[must_use]
-    pub const fn supports_extend(&self) -> [bool; 2] {
-        self.supports_extend
-    }
-
-    /// The length, in metres, that scales energies and steps.
-    #[must_use]
-    pub const fn size_m(&self) -> f64 {
-        self.size_m
-    }
-
-    /// Closed polygons that the blocks are drawn as, from left to right, in metres.
-    #[must_use]
-    pub fn outlines_m(&self) -> &[Vec<Vector2<f64>>] {
-        &self.outlines_m
-    }
-
-    /// Its ties.
-    #[must_use]
-    pub fn ties(&self) -> &[Tie] {
-        &self.ties
-    }
-
     /// Middles of the joints on its left and its right support; a stack has one support.
     #[must_use]
     pub fn feet_m(&self) -> [Vector2<f64>; 2] {
@@ -437,18 +400,6 @@ impl Row {
             Supports::Both => self.joints.len() - 1,
         };
         [0, last].map(|joint| self.joints[joint].middle_m())
-    }
-
-    /// The gravity that its ties were given with, in m/s2.
-    #[must_use]
-    pub const fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
-    }
-
-    /// `e x n` of its joints: -1 in an arch, 1 in a stack.
-    #[must_use]
-    pub const fn handedness(&self) -> f64 {
-        self.handedness
     }
 
     /// Mass of all blocks in kg.

@@ -117,10 +117,14 @@ const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 /// prismatic block; the others are simulated with free hinges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
-    height_m: f64,
-    width_m: f64,
-    depth_m: f64,
-    density_kg_m3: f64,
+    /// Height, in metres.
+    pub height_m: f64,
+    /// Width in the plane of the motion, in metres.
+    pub width_m: f64,
+    /// Length out of plane, in metres.
+    pub depth_m: f64,
+    /// Density, in kg/m3.
+    pub density_kg_m3: f64,
     drum_heights_m: Option<Vec<f64>>,
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -237,10 +241,10 @@ impl Column {
     pub fn row(&self) -> Result<Row, RowError> {
         let row = Row::tapered_stack(
             &self.drum_heights_m(),
-            self.width_m(),
+            self.width_m,
             self.top_width_m(),
-            self.depth_m(),
-            self.density_kg_m3(),
+            self.depth_m,
+            self.density_kg_m3,
         )?;
         let row = row.with_supports_that_extend([!self.pedestal, false]);
         Ok(match &self.ties {
@@ -294,36 +298,12 @@ impl Column {
         })
     }
 
-    /// Height, in metres.
-    #[must_use]
-    pub const fn height_m(&self) -> f64 {
-        self.height_m
-    }
-
-    /// Width in the plane of the motion, in metres.
-    #[must_use]
-    pub const fn width_m(&self) -> f64 {
-        self.width_m
-    }
-
     /// Sections at which the line of thrust of a single block is reported, in metres above the base: 21, from the base to the
     /// top.
     #[must_use]
     pub fn thrust_sections_m(&self) -> Vec<f64> {
         let parts = thrust_section_parts();
         parts.map(|part| part * self.height_m).collect()
-    }
-
-    /// Length out of plane, in metres.
-    #[must_use]
-    pub const fn depth_m(&self) -> f64 {
-        self.depth_m
-    }
-
-    /// Density, in kg/m3.
-    #[must_use]
-    pub const fn density_kg_m3(&self) -> f64 {
-        self.density_kg_m3
     }
 
     /// Slenderness `alpha`: angle of the diagonal with the vertical, in radians.

@@ -113,7 +113,7 @@ impl Program {
     /// A program for the undeformed row that starts with all joints of a stack shut, or with an arch of three pins.
     #[must_use]
     pub fn new(row: &Row) -> Self {
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let mut program = Self {
             active: vec![[true; 2]; joints],
             factor: Factor::new(row),
@@ -313,7 +313,7 @@ mod tests {
             let stack = Row::tapered_stack(&vec![0.5; blocks], 2.0, 1.0, 1.0, 2000.0);
             for row in [arch.unwrap(), stack.unwrap()] {
                 let mut program = Program::new(&row);
-                let joints = row.joints().len();
+                let joints = row.joints.len();
                 for _ in 0..20 {
                     let motion = |x: f64, y: f64, rate: f64| {
                         Twist::translation(Vector2::new(x - 0.5, y - 0.5))

@@ -147,8 +147,8 @@ impl Program {
     /// A program for a row with all joints shut, without impulses.
     #[must_use]
     pub fn new(row: &Row, coefficient: f64) -> Self {
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
-        let roots = row.blocks().iter().map(|block| {
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
+        let roots = row.blocks.iter().map(|block| {
             let mass = block.mass_kg.sqrt();
             Vector3::new(mass, mass, block.inertia_kg_m2.sqrt())
         });

@@ -43,10 +43,10 @@ struct Size {
 
 impl Size {
     fn of(arch: &Arch) -> Self {
-        let (length_m, density_kg_m3) = (arch.mean_radius_m(), arch.density_kg_m3());
+        let (length_m, density_kg_m3) = (arch.mean_radius_m, arch.density_kg_m3);
         Self {
             length_m,
-            mass_kg: density_kg_m3 * arch.depth_m() * length_m * length_m,
+            mass_kg: density_kg_m3 * arch.depth_m * length_m * length_m,
             impulse_n_s_per_m: density_kg_m3 * length_m.powi(3),
         }
     }
@@ -113,7 +113,7 @@ impl FourLinks {
     pub fn of_row(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
-        if !row.ties().is_empty() {
+        if !row.ties.is_empty() {
             return Err(FourLinkError::Ties);
         }
         let profiles = [Some(row), row.mirrored().as_ref()].map(|row| JointedProfile::new(row?));
@@ -124,7 +124,7 @@ impl FourLinks {
             return Err(LimitError::CannotStand.into());
         }
         let sections = own.sections(0);
-        let sites = HingeSites::Voussoirs(row.blocks().len());
+        let sites = HingeSites::Voussoirs(row.blocks.len());
         let [own, mirrored] = [own, mirrored].map(|profile| profile.shared());
         let chain = |sway| {
             let profiles = match sway {
@@ -141,9 +141,9 @@ impl FourLinks {
         };
         let chains = [chain(Sway::Right)?, chain(Sway::Left)?];
         let size = Size {
-            length_m: row.size_m(),
+            length_m: row.size_m,
             mass_kg: row.mass_kg(),
-            impulse_n_s_per_m: row.mass_kg() * row.size_m() / DEPTH_M,
+            impulse_n_s_per_m: row.mass_kg() * row.size_m / DEPTH_M,
         };
         Ok(Self {
             size,

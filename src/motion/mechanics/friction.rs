@@ -188,11 +188,11 @@ struct Program {
 
 /// Weights of the blocks less the pulls of ties, three numbers for each: what the forces at its joints have to balance.
 fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
-    let (size_m, mass_kg, centres_m) = (row.size_m(), row.mass_kg(), &stance.placement.centres_m);
-    let weights = row.blocks().iter().map(|block| block.mass_kg / mass_kg);
+    let (size_m, mass_kg, centres_m) = (row.size_m, row.mass_kg(), &stance.placement.centres_m);
+    let weights = row.blocks.iter().map(|block| block.mass_kg / mass_kg);
     let mut loads: Vec<f64> = weights.flat_map(|weight| [0.0, weight, 0.0]).collect();
     for (line, force_n) in stance.lines(row).zip(stance.forces_n()) {
-        let pull = line.along * (force_n / (row.gravity_m_s2() * mass_kg));
+        let pull = line.along * (force_n / (row.gravity_m_s2 * mass_kg));
         for (end, pull) in [pull, -pull].into_iter().enumerate() {
             if let Some(number) = line.ends[end] {
                 let moment = (line.ends_m[end] - centres_m[number]).perp(&pull) / size_m;
@@ -208,15 +208,15 @@ fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
 impl Program {
     fn new(row: &Row, stance: &Stance, coefficient: f64, goal: Goal) -> Self {
         let placement = &stance.placement;
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let centres_m = &placement.centres_m;
         let equations = 3 * blocks + placement.open_corners();
-        let size_m = row.size_m();
+        let size_m = row.size_m;
         let mut entries = Entries::default();
         let mut put = |row, column, value| entries.put(row, column, value);
         let mut right = loads(row, stance);
         if goal == Goal::Push {
-            for (index, block) in row.blocks().iter().enumerate() {
+            for (index, block) in row.blocks.iter().enumerate() {
                 put(3 * index, 0, block.mass_kg / row.mass_kg());
             }
         }

@@ -89,7 +89,7 @@ impl Placement {
     #[must_use]
     pub fn new(row: &Row) -> Self {
         let faces: Vec<Face> = row
-            .joints()
+            .joints
             .iter()
             .map(|joint| Face {
                 joint: *joint,
@@ -98,7 +98,7 @@ impl Placement {
                 thickness: joint.thickness_m(),
             })
             .collect();
-        let undeformed_m: Vec<_> = row.blocks().iter().map(|block| block.centre_m).collect();
+        let undeformed_m: Vec<_> = row.blocks.iter().map(|block| block.centre_m).collect();
         let nowhere = Frame {
             intrados_m: Vector2::zeros(),
             along: Vector2::zeros(),
@@ -106,8 +106,8 @@ impl Placement {
             thickness_m: 0.0,
         };
         let mut placement = Self {
-            handedness: row.handedness(),
-            supports: row.supports(),
+            handedness: row.handedness,
+            supports: row.supports,
             support_poses: [Pose::UNDEFORMED; 2],
             gaps_m: vec![[0.0; 2]; faces.len()],
             poses: vec![Pose::UNDEFORMED; undeformed_m.len()],

@@ -81,9 +81,9 @@ pub trait Parts {
 
 impl Parts for Arch {
     fn parts(&self) -> Vec<Part> {
-        let (ring, radius_m) = (self.ring(), self.mean_radius_m());
-        let unit_kg = self.density_kg_m3() * self.depth_m() * radius_m * radius_m;
-        let sections = ring.sections(self.voussoirs().unwrap_or(PARTS));
+        let (ring, radius_m) = (self.ring(), self.mean_radius_m);
+        let unit_kg = self.density_kg_m3 * self.depth_m * radius_m * radius_m;
+        let sections = ring.sections(self.voussoirs.unwrap_or(PARTS));
         let parts = sections.windows(2).map(|ends| {
             let sector = ring.sector(ends[0], ends[1]);
             Part {
@@ -98,42 +98,42 @@ impl Parts for Arch {
     fn outline(&self) -> Outline {
         let ring = self.ring();
         Outline::Ring {
-            joints_rad: self.voussoirs().map_or_else(Vec::new, |n| ring.sections(n)),
+            joints_rad: self.voussoirs.map_or_else(Vec::new, |n| ring.sections(n)),
             ring,
-            mean_radius_m: self.mean_radius_m(),
+            mean_radius_m: self.mean_radius_m,
         }
     }
 
     fn sections(&self) -> Vec<Section> {
-        let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m());
+        let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m);
         let sections = self.thrust_sections_rad().into_iter();
         let sections = sections.map(|angle_rad| Section {
             middle_m: ring.radial(angle_rad) * mean_radius_m,
-            across_m: ring.radial(angle_rad) * (ring.thickness_ratio() * mean_radius_m),
+            across_m: ring.radial(angle_rad) * (ring.thickness_ratio * mean_radius_m),
             angle_rad: Some(angle_rad),
         });
         sections.collect()
     }
 
     fn parts_in_words(&self) -> String {
-        match self.voussoirs() {
+        match self.voussoirs {
             Some(voussoirs) => format!("{voussoirs} voussoirs"),
             None => format!("{PARTS} equal parts of the ring"),
         }
     }
 
     fn crown(&self) -> (f64, Vector2<f64>) {
-        let middle = 0.5 * self.ring().embrace_rad();
-        let at_m = self.ring().point(middle, Edge::Extrados) * self.mean_radius_m();
+        let middle = 0.5 * self.ring().embrace_rad;
+        let at_m = self.ring().point(middle, Edge::Extrados) * self.mean_radius_m;
         (middle, at_m)
     }
 
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
-        let (ring, radius_m) = (self.ring(), self.mean_radius_m());
+        let (ring, radius_m) = (self.ring(), self.mean_radius_m);
         let ratio = at_m.norm() / radius_m;
-        let half = 0.5 * ring.thickness_ratio() * (1.0 + 1e-9);
-        let angle_rad = 0.5 * ring.embrace_rad() + at_m.x.atan2(at_m.y);
-        ((ratio - 1.0).abs() <= half && (0.0..=ring.embrace_rad()).contains(&angle_rad))
+        let half = 0.5 * ring.thickness_ratio * (1.0 + 1e-9);
+        let angle_rad = 0.5 * ring.embrace_rad + at_m.x.atan2(at_m.y);
+        ((ratio - 1.0).abs() <= half && (0.0..=ring.embrace_rad).contains(&angle_rad))
             .then_some(angle_rad)
     }
 }
@@ -142,8 +142,8 @@ impl Parts for Column {
     fn parts(&self) -> Vec<Part> {
         vec![Part {
             place: 0.5,
-            mass_kg: self.density_kg_m3() * self.depth_m() * self.height_m() * self.width_m(),
-            centre_m: Vector2::new(0.0, 0.5 * self.height_m()),
+            mass_kg: self.density_kg_m3 * self.depth_m * self.height_m * self.width_m,
+            centre_m: Vector2::new(0.0, 0.5 * self.height_m),
         }]
     }
 
@@ -152,11 +152,11 @@ impl Parts for Column {
         if let Some(row) = self.tied_row() {
             return row.outline();
         }
-        let half_m = [self.width_m(), self.top_width_m()].map(|width_m| 0.5 * width_m);
+        let half_m = [self.width_m, self.top_width_m()].map(|width_m| 0.5 * width_m);
         let corners = [
             (-half_m[0], 0.0),
-            (-half_m[1], self.height_m()),
-            (half_m[1], self.height_m()),
+            (-half_m[1], self.height_m),
+            (half_m[1], self.height_m),
             (half_m[0], 0.0),
         ];
         Outline::Block {
@@ -171,7 +171,7 @@ impl Parts for Column {
         let sections = self.thrust_sections_m().into_iter();
         let sections = sections.map(|height_m| Section {
             middle_m: Vector2::new(0.0, height_m),
-            across_m: Vector2::new(self.width_m(), 0.0),
+            across_m: Vector2::new(self.width_m, 0.0),
             angle_rad: None,
         });
         sections.collect()
@@ -182,12 +182,11 @@ impl Parts for Column {
     }
 
     fn crown(&self) -> (f64, Vector2<f64>) {
-        (0.5, Vector2::new(0.0, self.height_m()))
+        (0.5, Vector2::new(0.0, self.height_m))
     }
 
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
-        let inside =
-            at_m.x.abs() <= 0.5 * self.width_m() && (0.0..=self.height_m()).contains(&at_m.y);
+        let inside = at_m.x.abs() <= 0.5 * self.width_m && (0.0..=self.height_m).contains(&at_m.y);
         inside.then_some(0.5)
     }
 }
@@ -195,13 +194,13 @@ impl Parts for Column {
 impl Column {
     /// Its blocks, if it has ties.
     fn tied_row(&self) -> Option<Row> {
-        self.row().ok().filter(|row| !row.ties().is_empty())
+        self.row().ok().filter(|row| !row.ties.is_empty())
     }
 }
 
 impl Parts for Row {
     fn parts(&self) -> Vec<Part> {
-        let blocks = self.blocks().iter().enumerate();
+        let blocks = self.blocks.iter().enumerate();
         let part = |(index, block): (usize, &Block)| Part {
             place: middle_of(index),
             mass_kg: block.mass_kg,
@@ -212,12 +211,12 @@ impl Parts for Row {
 
     fn outline(&self) -> Outline {
         Outline::Row {
-            outlines_m: self.outlines_m().to_vec(),
+            outlines_m: self.outlines_m.to_vec(),
         }
     }
 
     fn sections(&self) -> Vec<Section> {
-        let sections = self.joints().iter().map(|joint| Section {
+        let sections = self.joints.iter().map(|joint| Section {
             middle_m: joint.middle_m(),
             across_m: joint.extrados_m - joint.intrados_m,
             angle_rad: None,
@@ -226,7 +225,7 @@ impl Parts for Row {
     }
 
     fn parts_in_words(&self) -> String {
-        match self.blocks().len() {
+        match self.blocks.len() {
             1 => "one block".to_owned(),
             blocks => format!("{blocks} blocks"),
         }
@@ -234,7 +233,7 @@ impl Parts for Row {
 
     /// For a stack on one support with a level top: the middle of the top.
     fn crown(&self) -> (f64, Vector2<f64>) {
-        let outlines = self.outlines_m().iter().enumerate();
+        let outlines = self.outlines_m.iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {
             outline
                 .iter()
@@ -250,10 +249,10 @@ impl Parts for Row {
                 }
             })
             .expect("a row has blocks");
-        if self.supports() == Supports::Both {
+        if self.supports == Supports::Both {
             return (place, highest_m);
         }
-        let level_m = highest_m.y - 1e-9 * self.size_m();
+        let level_m = highest_m.y - 1e-9 * self.size_m;
         let top = corners.filter(|corner| corner.0 == place && corner.1.y >= level_m);
         let (low_m, high_m) = top.fold(
             (f64::INFINITY, f64::NEG_INFINITY),
@@ -263,7 +262,7 @@ impl Parts for Row {
     }
 
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
-        let outlines = self.outlines_m();
+        let outlines = &self.outlines_m;
         (0..outlines.len())
             .find(|block| contains(&outlines[*block], at_m))
             .map(middle_of)
@@ -274,7 +273,7 @@ impl Row {
     /// The blocks that a point in metres is in, or on the edge of.
     #[must_use]
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
-        let outlines = self.outlines_m().iter().enumerate();
+        let outlines = self.outlines_m.iter().enumerate();
         outlines
             .filter(|(_, outline)| contains(outline, at_m))
             .map(|(block, _)| block)
@@ -284,7 +283,7 @@ impl Row {
     /// How far a point is from a block, in metres; 0 in it.
     #[must_use]
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
-        let outline = &self.outlines_m()[block];
+        let outline = &self.outlines_m[block];
         if contains(outline, at_m) {
             return 0.0;
         }

@@ -95,7 +95,7 @@ impl Movements {
     /// Whether both supports of a row have moved as one body, but for rounding.
     fn are_one_motion(&self, row: &Row) -> bool {
         let [left, right] = self.poses(row);
-        let gone_m = left.translation.norm().max(row.size_m());
+        let gone_m = left.translation.norm().max(row.size_m);
         (left.translation - right.translation).norm() <= ROUNDING * gone_m
             && (left.rotation_rad() - right.rotation_rad()).abs() <= ROUNDING
     }
@@ -116,7 +116,7 @@ impl Movements {
     /// Where the left and the right support of a row are then.
     #[must_use]
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
-        let joints = row.joints();
+        let joints = &row.joints;
         let pose = |joint: usize, [x, y, rotation_rad]: [f64; 3]| {
             let middle = joints[joint].middle_m();
             Pose::about(middle, middle + Vector2::new(x, y), rotation_rad)
@@ -234,7 +234,7 @@ impl<'a> Follower<'a> {
     /// # Errors
     /// When it is a stack, or does not stand.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
-        if row.supports() == Supports::Left {
+        if row.supports == Supports::Left {
             return Err(SettlingError::OneSupport);
         }
         if let Some(openings) = super::stability::falls(row)? {
@@ -298,7 +298,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Reached, SettlingError> {
         let (row, force_g) = (self.row, self.condition.force_g);
         let (first, last) = (movements(from), movements(to));
-        let extent = (last - first).extent(row.size_m());
+        let extent = (last - first).extent(row.size_m);
         if extent == 0.0 {
             return Ok(Reached::End);
         }
@@ -374,7 +374,7 @@ impl<'a> Follower<'a> {
     pub fn capacity_g(&self, sway: Sway, first_g: f64) -> Result<Option<f64>, SettlingError> {
         // Undeformed, its joints hold it until they are four; then only ties can.
         let is_built = self.hinges.is_none();
-        if is_built && self.row.ties().is_empty() {
+        if is_built && self.row.ties.is_empty() {
             return Ok(Some(first_g));
         }
         let from_g = if is_built { first_g } else { 0.0 };
@@ -428,7 +428,7 @@ impl<'a> Follower<'a> {
             }
             if let Some(state) = held {
                 // What ties remember depends on the way.
-                if !self.row.ties().is_empty() {
+                if !self.row.ties.is_empty() {
                     rates = self.rates(&state, next - low).collect();
                     self.stand(&condition, state);
                 }
@@ -506,7 +506,7 @@ impl<'a> Follower<'a> {
     /// Other hinges that hold the row in a condition beyond that of its own, where ties let it go there little by little: those that the last
     /// equilibrium lacks, without those that would shut.
     fn exchanged(&self, condition: &Condition) -> Option<(Pins, State)> {
-        if self.row.ties().is_empty() {
+        if self.row.ties.is_empty() {
             return None;
         }
         let mut pins = self.hinges.clone()?;

@@ -100,11 +100,11 @@ impl Faces {
     #[must_use]
     pub fn of_row(row: &Row) -> Vec<Self> {
         let centre = |block: Option<usize>| {
-            let block = block.and_then(|block| row.blocks().get(block));
+            let block = block.and_then(|block| row.blocks.get(block));
             block.map_or(Vector2::zeros(), |block| block.centre_m)
         };
-        let [first, last] = row.supports_extend();
-        let ends = row.joints().len() - 1;
+        let [first, last] = row.supports_extend;
+        let ends = row.joints.len() - 1;
         let faces = |(index, joint): (usize, &Joint)| Self {
             on_support: match index {
                 0 if first => Some(1),
@@ -115,9 +115,9 @@ impl Faces {
                 .map(|centre| joint.intrados_m - centre),
             along: joint.along(),
             thickness_m: joint.thickness_m(),
-            handedness: row.handedness(),
+            handedness: row.handedness,
         };
-        row.joints().iter().enumerate().map(faces).collect()
+        row.joints.iter().enumerate().map(faces).collect()
     }
 
     /// The joint between two blocks at these positions.
@@ -279,7 +279,7 @@ mod tests {
     /// Central differences of coordinates of order one over steps of 1e-6: errors of about 1e-10.
     fn check_gradients(row: &Row, joint: usize) {
         let faces = Faces::of_row(row)[joint];
-        let block = |index: Option<usize>| index.and_then(|index| row.blocks().get(index));
+        let block = |index: Option<usize>| index.and_then(|index| row.blocks.get(index));
         let sides = [block(joint.checked_sub(1)), block(Some(joint))];
         let centres = sides.map(|block| block.map_or(Vector2::zeros(), |block| block.centre_m));
         for (shift, turns) in [
@@ -320,7 +320,7 @@ mod tests {
         let ring = Ring::new(0.15, 2.7).unwrap();
         let row = Row::arch(&ring, 7, 10.0, 1.0, 1.0).unwrap();
         let position = |block: Option<usize>| {
-            let block = block.and_then(|block| row.blocks().get(block));
+            let block = block.and_then(|block| row.blocks.get(block));
             block.map_or(Position::HELD, |block| Position::new(block.centre_m, 0.0))
         };
         for (joint, faces) in Faces::of_row(&row).iter().enumerate() {

@@ -123,8 +123,8 @@ pub fn limit_with_yielding_ties(
     let Some(at_rest) = onset(row, sway)? else {
         return Ok(None);
     };
-    let weight_n = row.mass_kg() * row.gravity_m_s2();
-    let ties = row.ties().iter();
+    let weight_n = row.mass_kg() * row.gravity_m_s2;
+    let ties = row.ties.iter();
     let most: Vec<f64> = ties
         .map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST))
         .collect();
@@ -170,7 +170,7 @@ pub fn limit_with_yielding_ties(
         }
     }
     // What only the bounds of the programme hold is held by nothing.
-    let mut strongest = row.ties().iter().zip(&forces);
+    let mut strongest = row.ties.iter().zip(&forces);
     let unbounded = push_g >= 0.99 * LARGEST_PUSH
         || strongest
             .any(|(tie, force)| tie.yield_force_n > force * weight_n && *force >= 0.99 * STRONGEST);
@@ -188,7 +188,7 @@ pub fn limit_with_yielding_ties(
             lengthening: trial.lengthening(),
         },
         forces_n: {
-            let ties = row.ties().iter().zip(&forces);
+            let ties = row.ties.iter().zip(&forces);
             ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n))
                 .collect()
         },
@@ -366,7 +366,7 @@ impl Highest {
 
 /// Integral of the velocities over the masses.
 fn work(row: &Row, centres_m: &[Vector2<f64>], velocities: &[Twist]) -> Vector2<f64> {
-    let blocks = row.blocks().iter().zip(centres_m).zip(velocities);
+    let blocks = row.blocks.iter().zip(centres_m).zip(velocities);
     blocks
         .map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg)
         .sum()
@@ -395,13 +395,13 @@ impl<'a> Trial<'a> {
             row,
             centres_m: &placement.centres_m,
             program,
-            free: vec![Twist::ZERO; row.blocks().len()],
-            jumps: vec![Twist::ZERO; row.joints().len()],
+            free: vec![Twist::ZERO; row.blocks.len()],
+            jumps: vec![Twist::ZERO; row.joints.len()],
             touching: gaps_m.map(|gaps| gaps.map(|gap| gap == 0.0)).collect(),
             lines: stance.lines(row).collect(),
             ties_kg: stance
                 .forces_n()
-                .map(|force_n| force_n / row.gravity_m_s2())
+                .map(|force_n| force_n / row.gravity_m_s2)
                 .collect(),
         }
     }
@@ -447,7 +447,7 @@ impl<'a> Trial<'a> {
     ) -> Result<Option<Vector2<f64>>, ContactError> {
         self.free.fill(Twist::translation(load));
         if with_ties {
-            let (blocks, centres_m) = (self.row.blocks(), self.centres_m);
+            let (blocks, centres_m) = (&self.row.blocks, self.centres_m);
             let ties = self.lines.iter().zip(self.ties_kg.iter().copied());
             pull_blocks(blocks, centres_m, ties, &mut self.free);
         }
@@ -460,7 +460,7 @@ impl<'a> Trial<'a> {
         let blocks = self.centres_m.iter().zip(&self.program.velocities);
         let speed = |(centre_m, twist): (&Vector2<f64>, &Twist)| {
             let centre = twist.at(*centre_m).norm();
-            centre.max(twist.rate.abs() * self.row.size_m())
+            centre.max(twist.rate.abs() * self.row.size_m)
         };
         let fastest = blocks.map(speed).fold(0.0_f64, f64::max);
         Ok((fastest > STANDSTILL * load.norm()).then(|| self.work()))

@@ -21,7 +21,7 @@ impl Stance {
     pub fn undeformed(row: &Row) -> Self {
         Self {
             placement: Placement::new(row),
-            ties: row.ties().iter().map(TieMemory::undeformed).collect(),
+            ties: row.ties.iter().map(TieMemory::undeformed).collect(),
         }
     }
 
@@ -39,7 +39,7 @@ impl Stance {
     /// The ties follow the blocks, slowly. Returns how they lie then.
     pub(crate) fn stretch_ties(&mut self, row: &Row) -> Vec<TieLine> {
         let lines: Vec<TieLine> = self.lines(row).collect();
-        for ((memory, tie), line) in self.ties.iter_mut().zip(row.ties()).zip(&lines) {
+        for ((memory, tie), line) in self.ties.iter_mut().zip(&row.ties).zip(&lines) {
             *memory = memory.then(tie, line.stretch_m);
         }
         lines
@@ -59,7 +59,7 @@ pub fn lines(
     pose: impl Fn(usize) -> Pose,
 ) -> impl Iterator<Item = TieLine> {
     let feet_m = row.feet_m();
-    row.ties().iter().map(move |tie| {
+    row.ties.iter().map(move |tie| {
         tie.line(tie.ends.map(|anchor| {
             let support = || supports[anchor.support(feet_m)];
             anchor.block.map_or_else(support, &pose).of(anchor.at_m)

@@ -68,14 +68,14 @@ impl Structure {
         match self {
             Self::Arch(arch) => {
                 let ring = arch.ring();
-                let line = arch.measured_at();
+                let line = arch.measured_at;
                 let radius_m = arch.radius_at_m(line.unwrap_or(MeasuredAt::Mean));
-                let ends = [0.0, ring.embrace_rad()].map(|angle| ring.radial(angle) * radius_m);
+                let ends = [0.0, ring.embrace_rad].map(|angle| ring.radial(angle) * radius_m);
                 span_and_rise(ends, radius_m, line).into()
             }
             Self::Column(column) => {
-                let half_m = 0.5 * column.width_m();
-                let high = Vector2::new(half_m, column.height_m());
+                let half_m = 0.5 * column.width_m;
+                let high = Vector2::new(half_m, column.height_m);
                 width_and_height([Vector2::new(-half_m, 0.0), high]).into()
             }
             Self::Masonry(masonry) => of_masonry(masonry),
@@ -85,7 +85,7 @@ impl Structure {
 
 /// The circular arch, with whatever stands or lies beside it.
 pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
-    match masonry.shape() {
+    match &masonry.shape {
         Shape::Circular(circular) => Some(&circular.arch),
         _ => None,
     }
@@ -93,7 +93,7 @@ pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
 
 /// Lowest and highest coordinates of the blocks of a row.
 pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
-    let corners = row.outlines_m().iter().flatten();
+    let corners = row.outlines_m.iter().flatten();
     let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
     corners.fold(empty, |[low, high], corner| {
         [low.inf(corner), high.sup(corner)]
@@ -130,15 +130,15 @@ fn span_and_rise(
 
 fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     let Some([left, right]) = masonry.springings() else {
-        return width_and_height(bounds_m(masonry.row())).into();
+        return width_and_height(bounds_m(&masonry.row)).into();
     };
-    let line = circular(masonry).and_then(Arch::measured_at);
+    let line = circular(masonry).and_then(|arch| arch.measured_at);
     let ends = [left, right].map(|joint| match line {
         Some(MeasuredAt::Intrados) => joint.intrados_m,
         Some(MeasuredAt::Extrados) => joint.extrados_m,
         Some(MeasuredAt::Mean) | None => joint.middle_m(),
     });
-    let rise_m = match masonry.shape() {
+    let rise_m = match &masonry.shape {
         Shape::PointedArch(dimensions) | Shape::EllipticArch(dimensions) => dimensions.rise_m,
         Shape::BasketArch(arch) => arch.dimensions.rise_m,
         Shape::Circular(CircularArch { arch, .. }) => {

@@ -104,7 +104,7 @@ impl Structure {
         match self {
             Self::Arch(_) => &[],
             Self::Column(column) => column.ties(),
-            Self::Masonry(masonry) => masonry.row().ties(),
+            Self::Masonry(masonry) => &masonry.row.ties,
         }
     }
 
@@ -145,7 +145,7 @@ impl Structure {
         match self {
             Self::Arch(arch) => arch,
             Self::Column(column) => column,
-            Self::Masonry(masonry) => masonry.row(),
+            Self::Masonry(masonry) => &masonry.row,
         }
     }
 
@@ -170,7 +170,7 @@ impl Structure {
         match self {
             Self::Arch(_) => false,
             Self::Column(_) => true,
-            Self::Masonry(masonry) => masonry.row().supports() == Supports::Left,
+            Self::Masonry(masonry) => masonry.row.supports == Supports::Left,
         }
     }
 
@@ -192,10 +192,10 @@ impl Structure {
     /// Length out of plane in m and density in kg/m3; if densities differ, the first.
     pub(crate) fn depth_and_density(&self) -> (f64, f64) {
         match self {
-            Self::Arch(arch) => (arch.depth_m(), arch.density_kg_m3()),
-            Self::Column(column) => (column.depth_m(), column.density_kg_m3()),
+            Self::Arch(arch) => (arch.depth_m, arch.density_kg_m3),
+            Self::Column(column) => (column.depth_m, column.density_kg_m3),
             Self::Masonry(masonry) => {
-                let material = masonry.shape().material();
+                let material = masonry.shape.material();
                 (material.depth_m, material.density_kg_m3)
             }
         }
@@ -212,7 +212,7 @@ impl Structure {
             }
             Self::Column(_) => Some(FRAC_PI_2),
             Self::Masonry(masonry) => {
-                let row = FourLinks::of_row(masonry.row(), ImpactModel::MaxRestitution).ok()?;
+                let row = FourLinks::of_row(&masonry.row, ImpactModel::MaxRestitution).ok()?;
                 let sides = Sway::ALL.iter().map(|sway| row.limit_rad(*sway));
                 Some(sides.fold(f64::INFINITY, f64::min))
             }
@@ -227,7 +227,7 @@ impl Structure {
         match self {
             Self::Arch(arch) => arch.row(),
             Self::Column(column) => column.row(),
-            Self::Masonry(masonry) => Ok(masonry.row().clone()),
+            Self::Masonry(masonry) => Ok(masonry.row.clone()),
         }
     }
 
@@ -235,9 +235,9 @@ impl Structure {
     #[must_use]
     pub fn size_m(&self) -> f64 {
         match self {
-            Self::Arch(arch) => arch.mean_radius_m(),
+            Self::Arch(arch) => arch.mean_radius_m,
             Self::Column(column) => column.half_diagonal_m(),
-            Self::Masonry(masonry) => masonry.row().size_m(),
+            Self::Masonry(masonry) => masonry.row.size_m,
         }
     }
 
@@ -255,8 +255,8 @@ fn four_link_row(
     masonry: &Masonry,
     impact: impl Into<ImpactLaw>,
 ) -> Result<FourLinks, FourLinkError> {
-    let depth_m = masonry.shape().material().depth_m;
-    Ok(FourLinks::of_row(masonry.row(), impact)?.with_depth_m(depth_m)?)
+    let depth_m = masonry.shape.material().depth_m;
+    Ok(FourLinks::of_row(&masonry.row, impact)?.with_depth_m(depth_m)?)
 }
 
 /// The contents of a table that describes a structure.
@@ -330,7 +330,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
 
 /// Explains why limit analysis refuses the arch, and what to change.
 fn why_not(arch: &Arch, error: LimitError) -> String {
-    let embrace_deg = arch.embrace_deg();
+    let embrace_deg = arch.embrace_deg;
     match error {
         LimitError::CannotStand => {
             let least = least_thickness_ratio(embrace_deg.to_radians(), arch.sites(), 1e-12)

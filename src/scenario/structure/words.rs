@@ -14,12 +14,12 @@ impl Structure {
         let mut parts = Vec::new();
         match self {
             Self::Arch(arch) => {
-                let thick_m = arch.mean_radius_m() * arch.thickness_ratio();
-                let [degrees, thick] = [arch.embrace_deg(), thick_m].map(metres);
+                let thick_m = arch.mean_radius_m * arch.thickness_ratio;
+                let [degrees, thick] = [arch.embrace_deg, thick_m].map(metres);
                 parts.push(format!(
                     "circular arch of {degrees} degrees, {thick} m thick"
                 ));
-                parts.extend(arch.voussoirs().map(|count| format!("{count} voussoirs")));
+                parts.extend(arch.voussoirs.map(|count| format!("{count} voussoirs")));
                 parts.extend(measured(arch));
             }
             Self::Column(_) => parts.push("column".to_owned()),
@@ -56,7 +56,7 @@ impl Structure {
         }
         let words = match self {
             Self::Column(_) => "y = 0 at the base, x = 0 in its middle",
-            Self::Masonry(masonry) if matches!(masonry.shape(), Shape::Blocks(_)) => {
+            Self::Masonry(masonry) if matches!(masonry.shape, Shape::Blocks(_)) => {
                 "x and y as in the file of the joints"
             }
             _ => "y = 0 at the springings, x = 0 in the middle of the span",
@@ -89,12 +89,12 @@ impl Structure {
 
 /// Where its span and rise are measured, if the scenario gives them.
 fn measured(arch: &Arch) -> Option<String> {
-    let line = arch.measured_at()?;
+    let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {
-    let name = match masonry.shape() {
+    let name = match masonry.shape {
         Shape::Circular(_) => "circular arch",
         Shape::PointedArch(_) => "pointed arch",
         Shape::EllipticArch(_) => "elliptic arch",
@@ -107,7 +107,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<String> {
     });
     let mut parts = vec![format!("{name}{}", thick.unwrap_or_default())];
     parts.extend(circular(masonry).and_then(measured));
-    parts.push(format!("{} blocks", masonry.row().blocks().len()));
+    parts.push(format!("{} blocks", masonry.row.blocks.len()));
     parts.extend(masonry.fill.map(|fill| {
         let (height_m, line) = match fill.level {
             FillLevel::AboveSpringing(height_m) => (height_m, "springing"),

@@ -78,7 +78,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
         onsets.map(|onset| open_joints(row, onset.as_ref())),
         gravity_m_s2,
     );
-    if !row.ties().is_empty() {
+    if !row.ties.is_empty() {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure().tie_places();
     }
@@ -126,7 +126,7 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
         })
     })?;
     Ok(Ties {
-        forces_at_rest_n: row.ties().iter().map(|tie| tie.prestress_n).collect(),
+        forces_at_rest_n: row.ties.iter().map(|tie| tie.prestress_n).collect(),
         limits: Some(TieLimits {
             stands_without: without.is_some(),
             without: without.unwrap_or_default(),
@@ -189,7 +189,7 @@ fn of_moved_row(
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
     let hinges = follower.hinges().map(|pins| pins.hinges.clone());
     summary.hinges = Some(hinges.unwrap_or_default());
-    if !row.ties().is_empty() {
+    if !row.ties.is_empty() {
         summary.tie_places = scenario.structure().tie_places();
         summary.ties = Some(Ties {
             forces_at_rest_n: stance.forces_n().collect(),

@@ -286,7 +286,7 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge>
     let openings = onset.into_iter().flat_map(|onset| &onset.openings);
     let open = openings.map(|opening| {
         let corner = opening.hinge.unwrap_or(Edge::Intrados);
-        let corner_m = row.joints()[opening.joint].corner_m(corner);
+        let corner_m = row.joints[opening.joint].corner_m(corner);
         OpenHinge::Joint {
             joint: opening.joint,
             edge: opening.hinge,

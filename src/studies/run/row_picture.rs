@@ -44,7 +44,7 @@ pub(super) struct RowTimeline {
 impl RowTimeline {
     /// An empty timeline for this row.
     pub(super) fn new(row: &Row) -> Self {
-        let blocks = row.blocks().len();
+        let blocks = row.blocks.len();
         let columns = (COLUMNS_OF_ALL / blocks).clamp(LEAST_COLUMNS, COLUMNS);
         Self {
             rotations_rad: vec![Envelope::of_columns(columns); blocks],
@@ -52,8 +52,8 @@ impl RowTimeline {
             feet_mm: [Envelope::default(), Envelope::default()],
             slips_mm: Vec::new(),
             in_barriers: false,
-            joints: OpenJoints::new(row.joints().len()),
-            edges: match row.supports() {
+            joints: OpenJoints::new(row.joints.len()),
+            edges: match row.supports {
                 Supports::Both => ["hinge at the intrados", "hinge at the extrados"],
                 Supports::Left => ["hinge at the left edge", "hinge at the right edge"],
             },

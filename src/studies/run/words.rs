@@ -668,7 +668,7 @@ fn trust(thrust: &ThrustRecord, structure: &Structure, advice: Option<&str>) -> 
         "four links are a rough guide, not on the safe side"
     };
     let give = match structure.circular() {
-        Some(arch) if arch.voussoirs().is_none() => "give `voussoirs` and ",
+        Some(arch) if arch.voussoirs.is_none() => "give `voussoirs` and ",
         _ => "",
     };
     let compare = advice.map_or(String::new(), |advice| format!("; {give}{advice}"));
@@ -686,7 +686,7 @@ const SLIPPED: usize = 4;
 
 /// Which joints slipped, the slip that remains, and the energy lost in friction.
 fn slips(row: &Row, sliding: &Sliding, outcome: Outcome) -> String {
-    let joints = row.joints().iter().zip(&sliding.largest_offsets_m);
+    let joints = row.joints.iter().zip(&sliding.largest_offsets_m);
     let mut slipped: Vec<(usize, f64, f64)> = joints
         .zip(&sliding.offsets_m)
         .enumerate()

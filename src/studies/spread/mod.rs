@@ -225,7 +225,7 @@ pub enum NoSpread {
 pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     let row = scenario.structure().row()?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
-    let joints = row.joints();
+    let joints = &row.joints;
     let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
     let clear_span_m = across.norm();
     let settled = scenario.motion().supports().unwrap_or_default();

@@ -97,7 +97,7 @@ struct Cell<'a> {
 impl<'a> Cell<'a> {
     fn new(row: &'a Row, scene: &'a Scene, path: &'a Path, width_px: f64) -> Option<Self> {
         let stage = path.stages.last()?;
-        let blocks = row.outlines_m().iter().zip(&stage.poses);
+        let blocks = row.outlines_m.iter().zip(&stage.poses);
         let corners = blocks.flat_map(|(outline, pose)| {
             let corners = outline.iter();
             corners.flat_map(|corner| [*corner, pose.of(*corner)])
@@ -142,7 +142,7 @@ impl<'a> Cell<'a> {
         view.draw_blocks(drawing, |block, _| (format!("block {}", block + 1), STONE));
         view.draw_ties(drawing);
         if let Some(state) = &self.stage.state {
-            let joints = self.row.joints().iter().zip(&state.corners);
+            let joints = self.row.joints.iter().zip(&state.corners);
             let thrust = joints
                 .enumerate()
                 .filter_map(|(index, (joint, [inner, outer]))| {
@@ -153,7 +153,7 @@ impl<'a> Cell<'a> {
             let stroke = Stroke::new(color::BLUE, 1.6, "");
             drawing.curve("thrust line", thrust, stroke);
             for hinge in &state.hinges {
-                let corner_m = self.row.joints()[hinge.joint].corner_m(hinge.edge);
+                let corner_m = self.row.joints[hinge.joint].corner_m(hinge.edge);
                 let at = px(self.pose_at(hinge.joint).of(corner_m));
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }

@@ -299,9 +299,9 @@ impl Found {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
             let twist = onset.velocities[block];
-            twist.at(row.blocks()[block].centre_m).norm() + twist.rate.abs() * row.size_m()
+            twist.at(row.blocks[block].centre_m).norm() + twist.rate.abs() * row.size_m
         };
-        let blocks = row.blocks().len();
+        let blocks = row.blocks.len();
         let most = (0..blocks).map(fastest).fold(0.0, f64::max);
         let mut body_of_block = vec![None; blocks];
         let mut bodies: Vec<(f64, Vector2<f64>, usize)> = Vec::new();
@@ -319,7 +319,7 @@ impl Found {
                 bodies.push((0.0, Vector2::zeros(), block));
                 bodies.len() - 1
             });
-            let own = &row.blocks()[block];
+            let own = &row.blocks[block];
             bodies[index].0 += own.mass_kg;
             bodies[index].1 += own.centre_m * own.mass_kg;
             *body_of = Some(index);
@@ -337,15 +337,15 @@ impl Found {
         let bodies: Vec<MovingBody> = bodies.collect();
         let hinges = onset.openings.iter().map(|open| {
             let (joint, edge) = (open.joint, open.hinge);
-            let at_m = row.joints()[joint].corner_m(edge.unwrap_or(Edge::Intrados));
+            let at_m = row.joints[joint].corner_m(edge.unwrap_or(Edge::Intrados));
             (Hinge::Joint { joint, edge }, at_m)
         });
-        let ties = row.ties().iter().zip(&onset.lengthening);
+        let ties = row.ties.iter().zip(&onset.lengthening);
         let ties = ties.map(|(tie, lengthening)| MovingTie {
-            force_kg: tie.prestress_n / row.gravity_m_s2(),
+            force_kg: tie.prestress_n / row.gravity_m_s2,
             lengthening: *lengthening,
         });
-        let way = if row.ties().is_empty() {
+        let way = if row.ties.is_empty() {
             Way::of_row(row, sway, &bodies, gravity_m_s2)
         } else {
             Err(

@@ -32,9 +32,11 @@ use crate::mechanics::sway::Sway;
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {
     rigid: RigidRow,
-    properties: ElasticProperties,
+    /// Properties of its joints.
+    pub properties: ElasticProperties,
     options: ElasticOptions,
-    structure: ElasticStructure,
+    /// Bodies and joints.
+    pub structure: ElasticStructure,
     /// A gravity, and the equilibrium at rest under it.
     rest: (f64, Rest),
     /// A gravity, and the energy beyond which it overturns under it, once requested.
@@ -145,18 +147,6 @@ impl ElasticJoints {
     #[must_use]
     pub const fn row(&self) -> &Row {
         &self.rigid.row
-    }
-
-    /// Properties of its joints.
-    #[must_use]
-    pub const fn properties(&self) -> &ElasticProperties {
-        &self.properties
-    }
-
-    /// Bodies and joints.
-    #[must_use]
-    pub const fn structure(&self) -> &ElasticStructure {
-        &self.structure
     }
 
     /// Its equilibrium at rest under this gravity.
@@ -398,7 +388,7 @@ impl ElasticJoints {
             && let Some(barrier_j) = self.elastic_barrier_j(gravity_m_s2)
         {
             let weight_n = self.row().mass_kg() * gravity_m_s2;
-            let defect_j = summary.energy_defect_ratio * weight_n * self.row().size_m();
+            let defect_j = summary.energy_defect_ratio * weight_n * self.row().size_m;
             row.energy_error = defect_j / barrier_j.max(row.largest_kinetic_j);
         }
         match row.energy_error {

@@ -222,10 +222,10 @@ impl<'a> Lane<'a> {
 
 impl<'a, const L: usize> Group<'a, L> {
     pub fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
-        let [left, right] = row.supports_extend();
-        let last = row.joints().len() - 1;
+        let [left, right] = row.supports_extend;
+        let last = row.joints.len() - 1;
         // At the right support the block is the left one.
-        let slides = match row.supports() {
+        let slides = match row.supports {
             Supports::Left => vec![(0, 1.0, left, 1.0)],
             Supports::Both => vec![(0, 1.0, left, 0.5), (last, -1.0, right, 0.5)],
         };
@@ -234,7 +234,7 @@ impl<'a, const L: usize> Group<'a, L> {
             support: usize::from(joint > 0),
             sense,
             goes_on,
-            along_x: part * sense * row.joints()[joint].along().x,
+            along_x: part * sense * row.joints[joint].along().x,
         };
         Self {
             row,
@@ -258,7 +258,7 @@ impl<'a, const L: usize> Group<'a, L> {
         self.motion.start(lane, self.start.rest);
         let mut begun = Lane::new(task, until, recorder);
         let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
-        let weighted = self.row.blocks().iter().zip(&self.start.rest.bent);
+        let weighted = self.row.blocks.iter().zip(&self.start.rest.bent);
         let moved_kg_m: f64 = weighted
             .map(|(block, moved)| block.mass_kg * moved_m(moved))
             .sum();
@@ -377,7 +377,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
         lane.returns = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
-        let far = OVERTURNED_RATIO * self.row.size_m();
+        let far = OVERTURNED_RATIO * self.row.size_m;
         course.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + taken);
@@ -634,7 +634,7 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     fn write(&mut self, sample: &mut Sample, _: bool) -> Result<f64, RowMotionError> {
         let half = self.group.half_kick();
         let motion = &self.group.motion;
-        for (index, block) in self.group.row.blocks().iter().enumerate() {
+        for (index, block) in self.group.row.blocks.iter().enumerate() {
             sample
                 .rates_rad_s
                 .push(motion.velocity(index, &half)[2].0[0]);
@@ -683,14 +683,14 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
 
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
         let link = &self.group.start.structure.joints[joint].link;
-        let blocks = self.group.row.blocks();
+        let blocks = &self.group.row.blocks;
         // The face of the block, or of the first of two.
         let end = usize::from(link.bodies[0] >= blocks.len());
         let centre_m = blocks[link.bodies[end]].centre_m;
         let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies[end], 0));
         let (rotation_rad, _) = self.group.motion.turn(link.bodies[end], 0);
         Pose::about(centre_m, centre_m + moved_m, rotation_rad)
-            .of(self.group.row.joints()[joint].corner_m(edge))
+            .of(self.group.row.joints[joint].corner_m(edge))
     }
 
     fn momentum(&self) -> Vector2<f64> {

@@ -163,15 +163,15 @@ impl<'a> LandingStepper<'a> {
             gravity_m_s2: gravity,
             ..
         } = task;
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
         let mut program = Program::new(row);
         program.place(&standing.placement);
         if rest.is_on_hinges() {
             program.start_from(&rest.touching);
         }
-        let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
-        let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m();
+        let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
+        let fallen = -FALLEN_ENERGY_RATIO * row.mass_kg() * gravity * row.size_m;
         let right = RightSupport::new(row, ground);
         let may_end_on_hinges = rest.is_on_hinges() || right.moves();
         let mut stepper = Self {
@@ -264,7 +264,7 @@ impl<'a> LandingStepper<'a> {
             .filter(|corners| **corners != [true; 2])
             .count();
         // Fewer than three hinges do not hold an arch: then the initial active set stays.
-        if self.row.supports() == Supports::Left || open >= 3 {
+        if self.row.supports == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
         self.program.place(&self.placement);
@@ -372,7 +372,7 @@ impl<'a> LandingStepper<'a> {
     fn jump(&mut self, step: f64) {
         self.jumps.fill(Twist::ZERO);
         let count = self.pieces.len();
-        let boundaries = if self.row.supports() == Supports::Both {
+        let boundaries = if self.row.supports == Supports::Both {
             count + 1
         } else {
             count
@@ -400,7 +400,7 @@ impl<'a> LandingStepper<'a> {
         for (joint, rates) in self.landing.iter().enumerate() {
             if *rates != [0.0; 2] {
                 let frame = &self.placement.frames[joint];
-                let rate = self.row.handedness() * (rates[1] - rates[0]) / frame.thickness_m;
+                let rate = self.row.handedness * (rates[1] - rates[0]) / frame.thickness_m;
                 self.jumps[joint] = self.jumps[joint]
                     + Twist::translation(frame.normal * rates[0])
                     + Twist::rotation(frame.intrados_m, rate);
@@ -580,7 +580,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Centres of the pieces in the present position.
     fn weigh_pieces(&mut self) {
-        let blocks = self.row.blocks();
+        let blocks = &self.row.blocks;
         for index in 0..self.pieces.len() {
             let end = self
                 .pieces
@@ -638,7 +638,7 @@ impl<'a> LandingStepper<'a> {
         loop {
             // Where supports have moved three joints stay open.
             let moved = self.rest.is_on_hinges() || self.right_support_is_gone();
-            let may_shut = self.row.supports() == Supports::Both && !moved;
+            let may_shut = self.row.supports == Supports::Both && !moved;
             let few = may_shut && self.placement.open_corners() <= 3;
             let near = self.placement.largest_gap_ratio() < LAST_THREE_RATIO;
             let ratio = if few && near {
@@ -687,7 +687,7 @@ mod tests {
     /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
     /// are per block the velocity of its centre and its rate times the radius of gyration, all times the root of its mass.
     fn judged(stepper: &LandingStepper) -> Option<Vec<Twist>> {
-        let blocks = stepper.row.blocks();
+        let blocks = &stepper.row.blocks;
         let centres = &stepper.placement.centres_m;
         let gyration = |b: usize| (blocks[b].inertia_kg_m2 / blocks[b].mass_kg).sqrt();
         let root = |b: usize| (blocks[b].mass_kg / blocks[0].mass_kg).sqrt();
@@ -700,7 +700,7 @@ mod tests {
             })
             .collect();
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
-        let joints = stepper.row.joints().len();
+        let joints = stepper.row.joints.len();
         let gates: usize = stepper.touching.iter().flatten().filter(|t| **t).count();
         let mut right = vec![0.0; joints + gates];
         let mut gate = joints;

@@ -54,7 +54,7 @@ impl<'a> Rest<'a> {
 
     fn moved_kg_m(&self, centres_m: &[Vector2<f64>], part: impl Fn(Vector2<f64>) -> f64) -> f64 {
         let stood = self.placement.centres_m.iter();
-        let blocks = self.row.blocks().iter().zip(centres_m.iter().zip(stood));
+        let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
         blocks
             .map(|(block, (now, stood))| block.mass_kg * part(now - stood))
             .sum()

@@ -41,7 +41,7 @@ impl Settings {
     /// over gravity. The shortest step is a thirtieth of the longest.
     #[must_use]
     pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        let longest_step_s = 3.4e-4 * (row.size_m() / gravity_m_s2).sqrt();
+        let longest_step_s = 3.4e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
             longest_step_s,
             may_halve: false,
@@ -56,7 +56,7 @@ impl Settings {
     /// Equal steps, for joints that slip: 0.1 ms for a size of 10 m.
     #[must_use]
     pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
-        let step_s = 1e-4 * (row.size_m() / gravity_m_s2).sqrt();
+        let step_s = 1e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
             longest_step_s: step_s,
             shortest_step_s: step_s,
@@ -66,7 +66,7 @@ impl Settings {
 
     /// These settings with steps that are short beside the vibration of blocks on the ties of the row.
     pub(super) fn for_ties(self, row: &Row) -> Self {
-        let square = square_frequency(row.ties(), row.blocks());
+        let square = square_frequency(&row.ties, &row.blocks);
         if square == 0.0 {
             return self;
         }

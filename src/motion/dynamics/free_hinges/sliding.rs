@@ -111,7 +111,7 @@ impl<'a> SlidingStepper<'a> {
             gravity_m_s2: gravity,
             ..
         } = task;
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
         let faces = Faces::of_row(row);
         let thicknesses_m = faces.iter().map(|faces| faces.thickness_m);
@@ -360,7 +360,7 @@ impl<'a> SlidingStepper<'a> {
             self.contacts[joint] = contact;
         }
         let kinetic = self.kinetic();
-        let (blocks, positions) = (self.row.blocks(), &self.positions);
+        let (blocks, positions) = (&self.row.blocks, &self.positions);
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
         let happened = self.course.note_ties(self.ties.memories());
@@ -391,11 +391,11 @@ impl<'a> SlidingStepper<'a> {
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
-            let along = support.turned(self.row.joints()[joint].along());
+            let along = support.turned(self.row.joints[joint].along());
             along * (sign * self.contacts[joint].coordinates_m.z)
         };
         // At the right support the block is the left one.
-        match self.row.supports() {
+        match self.row.supports {
             Supports::Left => [slide(0, 1.0); 2],
             Supports::Both => [slide(0, 1.0), slide(self.contacts.len() - 1, -1.0)],
         }
@@ -405,7 +405,7 @@ impl<'a> SlidingStepper<'a> {
     fn has_fallen(&self) -> bool {
         let [left, right] = self.slides();
         let gone = [left, right + self.right.gone_m];
-        let far = (OVERTURNED_RATIO * self.row.size_m()).powi(2);
+        let far = (OVERTURNED_RATIO * self.row.size_m).powi(2);
         let stood = &self.rest.placement;
         let stood = stood.centres_m.iter().zip(&stood.poses);
         let mut blocks = stood.zip(&self.positions);
@@ -497,7 +497,7 @@ impl<'a> SlidingStepper<'a> {
     /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground; from between the
     /// feet, where these part.
     fn displacement(&self) -> f64 {
-        let on_ground = match (self.row.supports(), self.row.supports_extend()) {
+        let on_ground = match (self.row.supports, self.row.supports_extend) {
             (Supports::Left, [base, _]) => [base; 2],
             (Supports::Both, both) => both,
         };
@@ -508,7 +508,7 @@ impl<'a> SlidingStepper<'a> {
             .sum();
         let mass = self.row.mass_kg();
         let sway = self.rest.sway_kg_m(&self.centres) - mass * (slid + 0.5 * self.right.gone_m.x);
-        if sway.abs() > SWAY_RATIO * mass * self.row.size_m() {
+        if sway.abs() > SWAY_RATIO * mass * self.row.size_m {
             sway
         } else {
             0.0
@@ -609,7 +609,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError> {
         let kinetic_j = self.synchronise();
-        let blocks = self.row.blocks().iter().zip(&self.positions);
+        let blocks = self.row.blocks.iter().zip(&self.positions);
         for (index, (block, position)) in blocks.enumerate() {
             sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
             sample.poses.push(position.pose(block.centre_m));
@@ -651,7 +651,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn momentum(&self) -> Vector2<f64> {
-        let blocks = self.row.blocks().iter().zip(&self.velocities);
+        let blocks = self.row.blocks.iter().zip(&self.velocities);
         blocks.map(|(block, v)| v.xy() * block.mass_kg).sum()
     }
 

@@ -31,7 +31,7 @@ impl<'a> Ties<'a> {
     pub fn new(row: &'a Row, standing: &Stance) -> Self {
         let lines = standing.lines(row).zip(&standing.ties);
         let ties = row
-            .ties()
+            .ties
             .iter()
             .zip(lines)
             .map(|(tie, (line, memory))| Pulling {
@@ -90,7 +90,7 @@ impl<'a> Ties<'a> {
         for tie in &self.ties {
             let impulse = tie.memory.force_n.0[0] * lasts_s;
             tie.line
-                .pull(self.row.blocks(), centres_m, impulse, &mut gain);
+                .pull(&self.row.blocks, centres_m, impulse, &mut gain);
         }
     }
 

@@ -15,7 +15,8 @@ use crate::mechanics::blocks::{Row, Supports};
 /// It is that of the whole ground, or of that under the left foot of a structure whose right foot moves in another way.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
-    pieces: Vec<Piece>,
+    /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.
+    pub pieces: Vec<Piece>,
     /// Whether the ground stops dead after the last corner, where it otherwise keeps its velocity.
     pub(super) stops: bool,
     /// The ground under the right foot, where that moves in another way.
@@ -126,7 +127,7 @@ impl GroundMotion {
 
     /// The motion under the right foot of this row, where it is another one: a stack has only a left one.
     pub(in crate::dynamics) fn right_foot_of(&self, row: &Row) -> Option<&Self> {
-        match row.supports() {
+        match row.supports {
             Supports::Both => self.right_foot(),
             Supports::Left => None,
         }
@@ -173,12 +174,6 @@ impl GroundMotion {
             (end_s, origin_s, piece.formula)
         });
         Self::join(from_s + delay_s, moved)
-    }
-
-    /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.
-    #[must_use]
-    pub fn pieces(&self) -> &[Piece] {
-        &self.pieces
     }
 
     /// Largest magnitudes of the horizontal and the vertical acceleration up to a time, in m/s2: pieces are
@@ -303,7 +298,7 @@ mod tests {
                     .starting_at_s(start)
                     .horizontal_m_s2(2.0)
                     .unwrap();
-                let pieces = ground.pieces();
+                let pieces = ground.pieces;
                 assert!(pieces[0].start_s == 0.0);
                 assert!(
                     pieces
@@ -362,7 +357,7 @@ mod tests {
             };
             assert_eq!(ground(1.0).scaled(0.5), Ok(ground(0.5)));
             let scaled = ground(1.0).scaled(1.7).unwrap();
-            for (ours, direct) in scaled.pieces().iter().zip(ground(1.7).pieces()) {
+            for (ours, direct) in scaled.pieces.iter().zip(ground(1.7).pieces) {
                 let time_s = ours.start_s + 0.01;
                 assert!((ours.at(time_s).0 - direct.at(time_s).0).norm() < 1e-14);
                 assert!((ours.start_s, ours.end_s) == (direct.start_s, direct.end_s));
@@ -382,10 +377,10 @@ mod tests {
             .horizontal_m_s2(2.0)
             .unwrap();
         let cut = ground.cut_at(&[0.05, 0.11, 0.3, 5.0]);
-        assert_eq!(cut.pieces().len(), ground.pieces().len() + 4);
-        for piece in cut.pieces() {
+        assert_eq!(cut.pieces.len(), ground.pieces.len() + 4);
+        for piece in cut.pieces {
             let time = piece.start_s;
-            let original = ground.pieces().iter().rfind(|p| p.start_s <= time).unwrap();
+            let original = ground.pieces.iter().rfind(|p| p.start_s <= time).unwrap();
             assert!(piece.acceleration_m_s2(time) == original.acceleration_m_s2(time));
         }
     }

@@ -323,7 +323,7 @@ mod tests {
                 .with_train(train)
                 .inclined_m_s2(amplitude)
                 .unwrap();
-            for piece in ground.pieces() {
+            for piece in ground.pieces {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;
                 for direction in [Vector2::x(), Vector2::y(), Vector2::new(-1.0, 0.35)] {
@@ -357,7 +357,7 @@ mod tests {
                 .unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
             // The pieces end at the extrema, which bound what is between.
-            let moving = ground.pieces().iter().filter(|p| !p.stays_still());
+            let moving = ground.pieces.iter().filter(|p| !p.stays_still());
             let inside = moving.flat_map(|piece| {
                 let width = piece.end_s - piece.start_s;
                 (1..500)
@@ -373,7 +373,7 @@ mod tests {
     }
 
     fn acceleration_at(ground: &GroundMotion, time_s: f64) -> f64 {
-        let piece = ground.pieces().iter().rfind(|p| p.start_s <= time_s);
+        let piece = ground.pieces.iter().rfind(|p| p.start_s <= time_s);
         piece.unwrap().acceleration_m_s2(time_s)
     }
 
@@ -452,7 +452,7 @@ mod tests {
                 .sum::<f64>()
         };
         ground
-            .pieces()
+            .pieces
             .iter()
             .filter(|piece| piece.end_s.is_finite())
             .map(integral)
@@ -495,7 +495,7 @@ mod tests {
                 .unwrap();
             let inside = |p: &&Piece| p.start_s <= 0.1 + at && 0.1 + at < p.end_s;
             ground
-                .pieces()
+                .pieces
                 .iter()
                 .find(inside)
                 .unwrap()
@@ -513,6 +513,6 @@ mod tests {
             .starting_at_s(100.0)
             .horizontal_m_s2(2.0)
             .unwrap();
-        assert_eq!(short.pieces().len(), 3);
+        assert_eq!(short.pieces.len(), 3);
     }
 }

@@ -147,10 +147,10 @@ mod tests {
         let horizontal = [(0.5, 1.0), (1.0, -2.0), (1.5, 0.5)];
         let vertical = [(0.75, 4.0), (1.0 + 1e-12, 2.0), (3.0, 0.0)];
         let ground = GroundMotion::record(&horizontal, &vertical, 0.25).unwrap();
-        let corners: Vec<_> = ground.pieces().iter().map(|p| p.start_s).collect();
+        let corners: Vec<_> = ground.pieces.iter().map(|p| p.start_s).collect();
         assert_eq!(corners, [0.0, 0.75, 1.0, 1.25, 1.75, 3.25]);
         let at = |time: f64| {
-            let piece = ground.pieces().iter().rfind(|p| p.start_s <= time).unwrap();
+            let piece = ground.pieces.iter().rfind(|p| p.start_s <= time).unwrap();
             piece.at(time).0
         };
         for (time, x, y) in [

@@ -18,7 +18,7 @@ impl<'a> GroundVelocity<'a> {
     #[must_use]
     pub fn new(ground: &'a GroundMotion) -> Self {
         let mut at_starts_m_s = ground
-            .pieces()
+            .pieces
             .iter()
             .scan(Vector2::zeros(), |velocity_m_s, piece| {
                 let at_start = *velocity_m_s;
@@ -41,7 +41,7 @@ impl<'a> GroundVelocity<'a> {
     /// before the start.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
-        let pieces = self.ground.pieces();
+        let pieces = &self.ground.pieces;
         let after = pieces.partition_point(|piece| piece.start_s <= time_s);
         let index = after.max(1) - 1;
         self.at_starts_m_s[index] + pieces[index].velocity_gained_m_s(time_s)
@@ -99,7 +99,7 @@ impl<'a> Way<'a> {
 
     /// Where the ground will be at a time, and the piece of that time.
     fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
-        let pieces = self.velocity.ground.pieces();
+        let pieces = &self.velocity.ground.pieces;
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
         while from_s < time_s {
             let piece = &pieces[index];
@@ -188,7 +188,7 @@ mod tests {
                     .unwrap();
                 let exact = GroundVelocity::new(&ground);
                 let (mut velocity, n) = (Vector2::zeros(), 400);
-                for piece in ground.pieces().iter().filter(|p| p.end_s.is_finite()) {
+                for piece in ground.pieces.iter().filter(|p| p.end_s.is_finite()) {
                     let h = (piece.end_s - piece.start_s) / f64::from(n);
                     for i in 0..n {
                         let time = piece.start_s + h * f64::from(i);

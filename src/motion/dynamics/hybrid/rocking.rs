@@ -163,7 +163,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     fn piece(&self, piece: usize) -> &'a Piece {
-        &self.ground.pieces()[piece]
+        &self.ground.pieces[piece]
     }
 
     /// Ground acceleration in the frame of a mechanism with this sway.

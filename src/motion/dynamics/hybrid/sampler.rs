@@ -70,7 +70,7 @@ impl<'r> Sampler<'r> {
 
     fn sample<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, now: &Now<'_, C>) -> Sample {
         let mut sample = mem::replace(&mut self.spare, Sample::at_rest(0.0));
-        let (ground_m_s2, _) = rocking.ground.pieces()[now.piece].at(now.time_s);
+        let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
         sample.begin(now.time_s, ground_m_s2, self.phase);
         let (rotations, rates) = posture(rocking, now.mode, &now.state);
         sample.state = state(now.mode);
@@ -144,7 +144,7 @@ impl<'r> Sampler<'r> {
         rocking: &Rocking<'_, C>,
         now: &Now<'_, C>,
     ) -> ControlFlow<()> {
-        let pieces = rocking.ground.pieces();
+        let pieces = &rocking.ground.pieces;
         let piece = pieces.partition_point(|piece| piece.start_s <= now.time_s) - 1;
         let last = self.sample(rocking, &Moment { piece, ..*now });
         // A sample that differs from the end by rounding only is replaced.
@@ -179,7 +179,7 @@ impl<'r> Sampler<'r> {
         };
         let mut ended = ControlFlow::Continue(());
         let mut end = FallEnd::Slow;
-        for (piece, motion) in rocking.ground.pieces().iter().enumerate() {
+        for (piece, motion) in rocking.ground.pieces.iter().enumerate() {
             if motion.end_s <= now.time_s || now.time_s >= until_s || ended.is_break() {
                 continue;
             }

@@ -172,8 +172,8 @@ impl<'a> Course<'a> {
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let Task { row, clock, .. } = task;
-        let joints = row.joints().len();
-        let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m();
+        let joints = row.joints.len();
+        let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m;
         let start_s = task.ground.start_s();
         Self {
             time: start_s,
@@ -195,7 +195,7 @@ impl<'a> Course<'a> {
             peak_potential: 0.0,
             before_fall: UpTo {
                 time_s: start_s,
-                peak_rotations_rad: vec![0.0; row.blocks().len()],
+                peak_rotations_rad: vec![0.0; row.blocks.len()],
                 ..UpTo::default()
             },
             cycle: None,
@@ -205,17 +205,17 @@ impl<'a> Course<'a> {
             recorder,
             recent_j: [0.0; 2],
             recent_from_s: start_s,
-            recent_s: RECENT_RATIO * (row.size_m() / task.gravity_m_s2).sqrt(),
+            recent_s: RECENT_RATIO * (row.size_m / task.gravity_m_s2).sqrt(),
             is_safe: false,
             stopped: false,
             falls: false,
             sample: Sample::at_rest(0.0),
-            pieces: task.ground.pieces(),
+            pieces: &task.ground.pieces,
             phase: 0,
             later: None,
             thrust: ThrustRecord::default(),
             impacts: 0,
-            peak_rotations_rad: vec![0.0; row.blocks().len()],
+            peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
             cost: Cost::default(),
             of_row: RowSummary {
@@ -289,12 +289,12 @@ impl<'a> Course<'a> {
 
     /// How long it must be quiet to rest, in seconds.
     pub fn rest_time_s(&self) -> f64 {
-        REST_TIME_RATIO * (self.task.row.size_m() / self.task.gravity_m_s2).sqrt()
+        REST_TIME_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt()
     }
 
     /// Normal force below which a joint does not count in the friction that is needed, in N.
     pub fn least_load_n(&self) -> f64 {
-        LEAST_LOAD * self.energy_unit / self.task.row.size_m()
+        LEAST_LOAD * self.energy_unit / self.task.row.size_m
     }
 
     /// Whether a row that has hardly moved since then rests.

@@ -46,7 +46,7 @@ enum FirstMechanism {
 
 impl FirstMechanism {
     fn of(row: &Row) -> Option<Self> {
-        match row.supports() {
+        match row.supports {
             Supports::Left => Some(Self::Base),
             // The impact model is required, but not used: the first mechanism comes before any impact.
             Supports::Both => FourLinks::of_row(row, ImpactModel::MaxRestitution)
@@ -78,20 +78,20 @@ impl RigidRow {
 
     /// The names of its blocks.
     pub fn bodies(&self) -> Vec<String> {
-        let blocks = 1..=self.row.blocks().len();
+        let blocks = 1..=self.row.blocks.len();
         blocks.map(|block| block.to_string()).collect()
     }
 
     /// The size of its samples, by whether joints slip, and whether pressures are reported.
     pub fn shape(&self, slips: bool, presses: bool) -> Shape {
-        let joints = self.row.joints().len();
+        let joints = self.row.joints.len();
         let where_it_is = |told: bool| if told { joints } else { 0 };
         Shape {
-            bodies: self.row.blocks().len(),
+            bodies: self.row.blocks.len(),
             joints,
             slipping: where_it_is(slips),
             pressing: where_it_is(presses),
-            ties: self.row.ties().len(),
+            ties: self.row.ties.len(),
         }
     }
 
@@ -154,7 +154,7 @@ impl RigidRow {
     /// not known.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        if self.is_on_hinges() || !self.row.ties().is_empty() {
+        if self.is_on_hinges() || !self.row.ties.is_empty() {
             return None;
         }
         self.built_barrier_j(gravity_m_s2)
@@ -171,7 +171,7 @@ impl RigidRow {
         let built_j = self.built_barrier_j(gravity_m_s2);
         // Where its feet part the feet do work, so it overturns at another energy, if at all.
         let parts = ground.right_foot_of(&self.row).is_some();
-        let known = self.is_on_hinges() || self.row.ties().is_empty();
+        let known = self.is_on_hinges() || self.row.ties.is_empty();
         Task {
             row: &self.row,
             ground,
@@ -196,7 +196,8 @@ impl RigidRow {
                 let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
                 Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
-            Some(FirstMechanism::Base) | None => match (self.row.blocks(), self.row.joints()) {
+            Some(FirstMechanism::Base) | None => match (&self.row.blocks[..], &self.row.joints[..])
+            {
                 ([block], [base]) => {
                     let rise_m = rise_to_overturn_m(block.centre_m, base);
                     Some(block.mass_kg * gravity_m_s2 * rise_m)
@@ -213,7 +214,7 @@ impl RigidRow {
             value: initial.rotation_rad,
             allowed,
         };
-        let blocks = self.row.blocks().len();
+        let blocks = self.row.blocks.len();
         // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
         let side = match initial.sway {
             Sway::Right => 1.0,
@@ -262,17 +263,17 @@ const BARRIER_RATIO: f64 = 1e-3;
 /// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
 /// its joints overturns as one block, where that is least.
 pub fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
-    if row.supports() == Supports::Both {
-        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m();
+    if row.supports == Supports::Both {
+        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m;
     }
     let above = |(index, joint): (usize, &Joint)| {
-        let blocks = &row.blocks()[index..];
+        let blocks = &row.blocks[index..];
         let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
         let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
         let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
         mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
     };
-    let joints = row.joints().iter().enumerate();
+    let joints = row.joints.iter().enumerate();
     joints.map(above).fold(f64::INFINITY, f64::min)
 }
 

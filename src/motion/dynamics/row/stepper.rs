@@ -115,7 +115,7 @@ pub trait Stepper<'a>: Sized {
                 .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
         };
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
-        let hinges = (0..course.task.row.joints().len()).filter_map(hinge);
+        let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
         // A row that lands where it stood came from the other side.
@@ -157,7 +157,7 @@ pub trait Stepper<'a>: Sized {
             return;
         }
         let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
-        let joints = 0..course.task.row.joints().len();
+        let joints = 0..course.task.row.joints.len();
         let moves = course.moved;
         let state = if moves { self.moving() } else { State::Rest };
         let event = Event {
@@ -178,7 +178,7 @@ pub trait Stepper<'a>: Sized {
         sample
             .rotations_rad
             .extend(self.turns().map(|(rotation, _)| rotation));
-        for joint in 0..self.course().task.row.joints().len() {
+        for joint in 0..self.course().task.row.joints.len() {
             let gaps = self.gaps(joint);
             sample.gaps_m.push(gaps);
             if let Some(hinge) = self.hinge(joint) {

@@ -24,8 +24,8 @@ impl Closer {
     /// For placements of a row.
     #[must_use]
     pub fn new(row: &Row) -> Self {
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
-        let thicknesses = row.joints().iter().map(|joint| joint.thickness_m());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
+        let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
         Self {
             program: Program::new(row),
             still: vec![Twist::ZERO; blocks],

@@ -73,7 +73,7 @@ pub(super) struct Factor {
 
 impl Factor {
     pub fn new(row: &Row) -> Self {
-        let joints = row.joints().len();
+        let joints = row.joints.len();
         Self {
             row: Placed::new(row),
             active: vec![[true; 2]; joints],

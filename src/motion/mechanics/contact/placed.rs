@@ -25,12 +25,12 @@ pub(super) struct Placed {
 
 impl Placed {
     pub fn new(row: &Row) -> Self {
-        let (blocks, joints) = (row.blocks().len(), row.joints().len());
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         Self {
-            supports: row.supports(),
-            handedness: row.handedness(),
+            supports: row.supports,
+            handedness: row.handedness,
             masses: row
-                .blocks()
+                .blocks
                 .iter()
                 .map(|b| (b.mass_kg, b.inertia_kg_m2))
                 .collect(),

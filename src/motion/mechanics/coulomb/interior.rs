@@ -357,7 +357,7 @@ mod tests {
             let row = Row::arch(&ring, 4 + case % 9, 10.0, 1.0, 2000.0).unwrap();
             let faces = Faces::of_row(&row);
             let positions: Vec<Position> = row
-                .blocks()
+                .blocks
                 .iter()
                 .map(|block| Position::new(block.centre_m, 0.0))
                 .collect();

@@ -198,7 +198,7 @@ impl ElasticStructure {
     /// When a property is out of range.
     pub fn of_row(row: &Row, properties: &ElasticProperties) -> Result<Self, ArgumentError> {
         properties.check()?;
-        let blocks = row.blocks();
+        let blocks = &row.blocks;
         let ground = blocks.len();
         let bodies = blocks.iter().map(|block| Body {
             mass_kg: block.mass_kg,
@@ -230,7 +230,7 @@ impl ElasticStructure {
                     pair,
                     arms_m.map(|arm| [arm.x, arm.y]),
                     [along.x, along.y],
-                    row.handedness(),
+                    row.handedness,
                     length_m,
                 ),
                 normal_n_m: stiffness.normal_pa_m * area_m2,
@@ -239,14 +239,14 @@ impl ElasticStructure {
                 area_m2,
             })
         };
-        debug_assert!(row.supports() == Supports::Both || row.joints().len() == ground);
-        let joints: Result<_, ArgumentError> = row.joints().iter().enumerate().map(joint).collect();
+        debug_assert!(row.supports == Supports::Both || row.joints.len() == ground);
+        let joints: Result<_, ArgumentError> = row.joints.iter().enumerate().map(joint).collect();
         let feet_m = row.feet_m();
-        let ties = row.ties().iter();
+        let ties = row.ties.iter();
         let ties = ties.map(|tie| BoundTie::new(*tie, blocks, feet_m));
         Ok(Self {
             ties: ties.collect(),
-            ties_square_frequency: square_frequency(row.ties(), blocks),
+            ties_square_frequency: square_frequency(&row.ties, blocks),
             ..Self::new(bodies.collect(), joints?, properties)
         })
     }

@@ -22,13 +22,13 @@ impl JointedProfile {
     /// The profile of a row; `None` for a stack, which has no right support.
     #[must_use]
     pub fn new(row: &Row) -> Option<Self> {
-        if row.supports() == Supports::Left {
+        if row.supports == Supports::Left {
             return None;
         }
-        let (per_m, per_kg) = (row.size_m().recip(), row.mass_kg().recip());
+        let (per_m, per_kg) = (row.size_m.recip(), row.mass_kg().recip());
         let mut before = MassMoments::NONE;
         let mut moments = vec![before];
-        for block in row.blocks() {
+        for block in &row.blocks {
             let own = block.moments_at(block.centre_m);
             before = before
                 + MassMoments {
@@ -38,7 +38,7 @@ impl JointedProfile {
                 };
             moments.push(before);
         }
-        let joints = row.joints().iter();
+        let joints = row.joints.iter();
         Some(Self {
             joints: joints
                 .map(|joint| Joint {
@@ -47,7 +47,7 @@ impl JointedProfile {
                 })
                 .collect(),
             moments,
-            outlines: (row.outlines_m().iter())
+            outlines: (row.outlines_m.iter())
                 .map(|outline| outline.iter().map(|corner| corner * per_m).collect())
                 .collect(),
         })

@@ -53,7 +53,7 @@ struct Bound {
 
 impl SymmetricLines {
     fn new(ring: &Ring, sites: HingeSites) -> Self {
-        let half = 0.5 * ring.embrace_rad();
+        let half = 0.5 * ring.embrace_rad;
         let sections_rad = match sites {
             HingeSites::Anywhere => vec![0.0, half],
             HingeSites::Voussoirs(count) => {
@@ -65,7 +65,7 @@ impl SymmetricLines {
             ring: *ring,
             sites,
             sections_rad,
-            slice_radius: 1.0 + ring.thickness_ratio().powi(2) / 12.0,
+            slice_radius: 1.0 + ring.thickness_ratio.powi(2) / 12.0,
         }
     }
 
@@ -117,13 +117,13 @@ impl SymmetricLines {
             let (sin, cos) = angle.sin_cos();
             radius * angle * cos > (radius * (h - 1.0) + self.slice_radius) * sin
         };
-        last(0.0, 0.5 * self.ring.embrace_rad(), rises)
+        last(0.0, 0.5 * self.ring.embrace_rad, rises)
     }
 
     /// The largest room for `k` at any thrust: positive if the ring stands; `None` if it is unbounded, since a
     /// straight line fits into the ring.
     fn largest_margin(&self) -> Option<f64> {
-        let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad());
+        let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad);
         let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
         if slope(Edge::Extrados, springing) >= slope(Edge::Intrados, first) {
             return None;

@@ -285,7 +285,7 @@ mod tests {
     fn a_sector_between_arcs_has_the_moments_of_the_ring() {
         let ring = Ring::new(0.3, 2.5).unwrap();
         let (from, to) = (0.4, 1.3);
-        let angle = |section: f64| FRAC_PI_2 + 0.5 * ring.embrace_rad() - section;
+        let angle = |section: f64| FRAC_PI_2 + 0.5 * ring.embrace_rad - section;
         let (outer, inner) = (
             arc(1.15, angle(from), angle(to)),
             arc(0.85, angle(from), angle(to)),

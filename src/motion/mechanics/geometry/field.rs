@@ -161,11 +161,11 @@ mod tests {
         let (n, m) = (2800, 40);
         let mut sum = 0.0;
         for i in 0..n {
-            let angle = ring.embrace_rad() * (f64::from(i) + 0.5) / f64::from(n);
+            let angle = ring.embrace_rad * (f64::from(i) + 0.5) / f64::from(n);
             for j in 0..m {
                 let r = 0.9 + 0.2 * (f64::from(j) + 0.5) / f64::from(m);
                 let point = ring.radial(angle) * r;
-                let mass = r * ring.embrace_rad() / f64::from(n) * 0.2 / f64::from(m);
+                let mass = r * ring.embrace_rad / f64::from(n) * 0.2 / f64::from(m);
                 sum += mass
                     * u.at(angle, Side::Before)
                         .at(point)

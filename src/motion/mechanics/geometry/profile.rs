@@ -76,7 +76,7 @@ pub trait Profile: Debug + Send + Sync {
 
 impl Profile for Ring {
     fn end(&self) -> f64 {
-        self.embrace_rad()
+        self.embrace_rad
     }
 
     fn point(&self, section: f64, edge: Edge) -> Vector2<f64> {
@@ -96,7 +96,7 @@ impl Profile for Ring {
     }
 
     fn thickness(&self, _: f64) -> f64 {
-        self.thickness_ratio()
+        self.thickness_ratio
     }
 
     fn moments_to(&self, section: f64) -> MassMoments {

@@ -53,8 +53,10 @@ pub enum RingError {
 /// (`embrace_rad`), in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    thickness_ratio: f64,
-    embrace_rad: f64,
+    /// Thickness over mean radius.
+    pub thickness_ratio: f64,
+    /// Embrace angle in radians, also the angle of the right springing.
+    pub embrace_rad: f64,
 }
 
 impl Ring {
@@ -73,18 +75,6 @@ impl Ring {
             thickness_ratio,
             embrace_rad,
         })
-    }
-
-    /// Thickness over mean radius.
-    #[must_use]
-    pub const fn thickness_ratio(&self) -> f64 {
-        self.thickness_ratio
-    }
-
-    /// Embrace angle in radians, also the angle of the right springing.
-    #[must_use]
-    pub const fn embrace_rad(&self) -> f64 {
-        self.embrace_rad
     }
 
     /// Radius of an edge, in mean radii.
@@ -192,8 +182,8 @@ mod tests {
             let angle = from + (to - from) * (f64::from(i) + 0.5) / f64::from(n);
             for j in 0..m {
                 let r = ring.radius(Edge::Intrados)
-                    + ring.thickness_ratio() * (f64::from(j) + 0.5) / f64::from(m);
-                let mass = r * (to - from) / f64::from(n) * ring.thickness_ratio() / f64::from(m);
+                    + ring.thickness_ratio * (f64::from(j) + 0.5) / f64::from(m);
+                let mass = r * (to - from) / f64::from(n) * ring.thickness_ratio / f64::from(m);
                 sum = sum
                     + MassMoments {
                         mass,

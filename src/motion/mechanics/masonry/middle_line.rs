@@ -76,7 +76,7 @@ impl CircularArch {
     /// # Errors
     /// When it has neither, or both, or the angles do not rise from zero to the embrace angle.
     pub fn new(arch: Arch, joints_deg: Option<Vec<f64>>) -> Result<Self, ArgumentError> {
-        match (&joints_deg, arch.voussoirs()) {
+        match (&joints_deg, arch.voussoirs) {
             (None, Some(_)) => {}
             (None, None) | (Some(_), Some(_)) => {
                 return Err(ArgumentError {
@@ -91,7 +91,7 @@ impl CircularArch {
                     value,
                     allowed,
                 };
-                let embrace_deg = arch.embrace_deg();
+                let embrace_deg = arch.embrace_deg;
                 let [first, .., last] = joints_deg[..] else {
                     let allowed = "at least the two springings".to_owned();
                     return Err(wrong(f64::NAN, allowed));
@@ -117,23 +117,20 @@ impl CircularArch {
 
     pub(super) fn material(&self) -> Material {
         Material {
-            depth_m: self.arch.depth_m(),
-            density_kg_m3: self.arch.density_kg_m3(),
+            depth_m: self.arch.depth_m,
+            density_kg_m3: self.arch.density_kg_m3,
         }
     }
 
     pub(super) fn cut(&self) -> CutArch {
-        let (radius, embrace_rad) = (
-            self.arch.mean_radius_m(),
-            self.arch.embrace_deg().to_radians(),
-        );
+        let (radius, embrace_rad) = (self.arch.mean_radius_m, self.arch.embrace_deg.to_radians());
         let middle = Curve::Arc {
             centre: Vector2::zeros(),
             radius,
             from_rad: FRAC_PI_2 + 0.5 * embrace_rad,
             to_rad: FRAC_PI_2 - 0.5 * embrace_rad,
         };
-        let at_m = match (&self.joints_deg, self.arch.voussoirs()) {
+        let at_m = match (&self.joints_deg, self.arch.voussoirs) {
             (Some(joints_deg), _) => joints_deg
                 .iter()
                 .map(|deg| deg.to_radians() * radius)
@@ -144,7 +141,7 @@ impl CircularArch {
                 (0..=voussoirs).map(at).collect::<Vec<_>>()
             }
         };
-        cut(&[middle], self.arch.thickness_ratio() * radius, &at_m)
+        cut(&[middle], self.arch.thickness_ratio * radius, &at_m)
     }
 }
 

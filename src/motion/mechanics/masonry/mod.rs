@@ -168,7 +168,7 @@ impl Shape {
     /// the diagonal of the rectangle around their joints.
     fn size_m(&self) -> f64 {
         match self {
-            Self::Circular(arch) => arch.arch.mean_radius_m(),
+            Self::Circular(arch) => arch.arch.mean_radius_m,
             Self::PointedArch(dimensions)
             | Self::EllipticArch(dimensions)
             | Self::BasketArch(BasketArch { dimensions, .. }) => 0.5 * dimensions.span_m,
@@ -180,8 +180,9 @@ impl Shape {
 /// An arch of any shape with what it stands on and what it carries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Masonry {
+    /// Its shape.
     #[serde(flatten)]
-    shape: Shape,
+    pub shape: Shape,
     /// The piers that its springings stand on.
     #[serde(skip_serializing_if = "Piers::are_none")]
     pub piers: Piers,
@@ -190,8 +191,9 @@ pub struct Masonry {
     /// The masses on its extrados.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<PlacedLoad>,
+    /// Its blocks and joints.
     #[serde(skip)]
-    row: Row,
+    pub row: Row,
     /// Fill and loads in pictures.
     #[serde(skip)]
     pub carried: Carried,
@@ -327,23 +329,11 @@ impl Masonry {
         })
     }
 
-    /// Its shape.
-    #[must_use]
-    pub const fn shape(&self) -> &Shape {
-        &self.shape
-    }
-
-    /// Its blocks and joints.
-    #[must_use]
-    pub const fn row(&self) -> &Row {
-        &self.row
-    }
-
     /// The joints at the springings of the arch; `None` of blocks, whose arch may begin anywhere.
     #[must_use]
     pub fn springings(&self) -> Option<[Joint; 2]> {
         let joints = self.springing_joints()?;
-        Some(joints.map(|joint| self.row.joints()[joint]))
+        Some(joints.map(|joint| self.row.joints[joint]))
     }
 
     /// Whether it stands under its own weight.
@@ -362,7 +352,7 @@ impl Masonry {
         }
         let courses =
             [self.piers.left, self.piers.right].map(|pier| pier.map_or(0, |pier| pier.blocks));
-        Some([courses[0], self.row.joints().len() - 1 - courses[1]])
+        Some([courses[0], self.row.joints.len() - 1 - courses[1]])
     }
 
     /// This masonry with these ties and no others, under this gravity.

@@ -56,7 +56,7 @@ impl Shape {
             | Self::EllipticArch(dimensions)
             | Self::BasketArch(BasketArch { dimensions, .. }) => dimensions.thickness_m *= factor,
             Self::Circular(CircularArch { arch, .. }) => {
-                let ratio = arch.thickness_ratio() * factor;
+                let ratio = arch.thickness_ratio * factor;
                 *arch = arch.clone().with_thickness_ratio(ratio).ok()?;
             }
             Self::Blocks(_) => return None,

@@ -69,14 +69,14 @@ struct Step<'a> {
 
 impl<'a> Step<'a> {
     fn new(row: &Row, stance: &'a Stance, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
-        let ties = row.ties().iter().zip(&stance.ties);
+        let ties = row.ties.iter().zip(&stance.ties);
         let most_kg = ties.map(|(tie, memory)| {
             let most_n = if memory.is_broken() {
                 0.0
             } else {
                 tie.yield_force_n
             };
-            most_n / row.gravity_m_s2()
+            most_n / row.gravity_m_s2
         });
         Self {
             stance,
@@ -106,19 +106,19 @@ pub(super) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     pub fn new(row: &'a Row) -> Self {
-        let joints = row.joints().len();
+        let joints = row.joints.len();
         Self {
             row,
             program: Program::new(row),
             closer: Closer::new(row),
-            free: vec![Twist::ZERO; row.blocks().len()],
+            free: vec![Twist::ZERO; row.blocks.len()],
             jumps: vec![Twist::ZERO; joints],
             touching: vec![[true; 2]; joints],
-            ties_kg: vec![0.0; row.ties().len()],
+            ties_kg: vec![0.0; row.ties.len()],
             ties_m_kg: row
-                .ties()
+                .ties
                 .iter()
-                .map(|tie| row.gravity_m_s2() / tie.stiffness_n_m)
+                .map(|tie| row.gravity_m_s2 / tie.stiffness_n_m)
                 .collect(),
         }
     }
@@ -132,9 +132,9 @@ impl<'a> Descent<'a> {
         to: &Condition,
         tilt_g: f64,
     ) -> Result<bool, SettlingError> {
-        let size_m = self.row.size_m();
+        let size_m = self.row.size_m;
         let force_g = to.force_g + Vector2::new(tilt_g, 0.0);
-        let gravity_m_s2 = self.row.gravity_m_s2();
+        let gravity_m_s2 = self.row.gravity_m_s2;
         let forces = stance.forces_n().map(|force_n| force_n / gravity_m_s2);
         self.ties_kg = forces.collect();
         self.program.reset();
@@ -219,7 +219,7 @@ impl<'a> Descent<'a> {
             self.jumps.fill(Twist::ZERO);
             self.jumps[0] = moved[0];
             self.jumps[last] = self.jumps[last] - moved[1];
-            self.solve(stance, &lines, force_g, self.row.size_m())?;
+            self.solve(stance, &lines, force_g, self.row.size_m)?;
             let (part, shut) = self.first_shut(&stance.placement, 1.0);
             here = match shut {
                 None => to.supports,
@@ -241,7 +241,7 @@ impl<'a> Descent<'a> {
     ) -> Result<f64, ContactError> {
         let placement = &stance.placement;
         self.free.fill(Twist::translation(force_g * times));
-        let (blocks, centres_m) = (self.row.blocks(), &placement.centres_m);
+        let (blocks, centres_m) = (&self.row.blocks, &placement.centres_m);
         let pulls_kg = self.ties_kg.iter().map(|kg| kg * times);
         pull_blocks(
             blocks,
@@ -259,7 +259,7 @@ impl<'a> Descent<'a> {
         })?;
         let velocities = self.program.velocities.iter();
         let speeds = velocities.zip(&placement.centres_m).map(|(twist, centre)| {
-            let turning = twist.rate.abs() * self.row.size_m();
+            let turning = twist.rate.abs() * self.row.size_m;
             twist.at(*centre).norm().max(turning)
         });
         Ok(speeds.fold(0.0, f64::max))
@@ -397,10 +397,7 @@ impl<'a> Descent<'a> {
         let (row, count) = (self.row, step.lines.len());
         let centres_m = &step.stance.placement.centres_m;
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
-            let pairs = one
-                .iter()
-                .zip(other)
-                .zip(row.blocks().iter().zip(centres_m));
+            let pairs = one.iter().zip(other).zip(row.blocks.iter().zip(centres_m));
             pairs
                 .map(|((one, other), (block, centre_m))| {
                     block.mass_kg * one.at(*centre_m).dot(&other.at(*centre_m))
@@ -446,7 +443,7 @@ impl<'a> Descent<'a> {
         self.free.fill(Twist::ZERO);
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
-        pull_blocks(self.row.blocks(), centres_m, ties, &mut self.free);
+        pull_blocks(&self.row.blocks, centres_m, ties, &mut self.free);
         self.program.solve_alike(&Load {
             free: &self.free,
             jumps: &self.jumps,
@@ -595,7 +592,7 @@ mod tests {
         let across = |(joint, stiffness_n_m): &(usize, f64)| Tie {
             ends: [(*joint, *joint), (7 - joint, 8 - joint)].map(|(block, joint)| Anchor {
                 block: Some(block),
-                at_m: row.joints()[joint].intrados_m,
+                at_m: row.joints[joint].intrados_m,
             }),
             stiffness_n_m: *stiffness_n_m,
             prestress_n: 0.0,
@@ -634,9 +631,9 @@ mod tests {
         let mut step = step(&row, &stance, push_g, length);
         let fastest = descent.balance_ties(&mut step).unwrap();
         assert!(fastest > 0.01, "{fastest}");
-        for (index, (tie, line)) in row.ties().iter().zip(&stance.1).enumerate() {
+        for (index, (tie, line)) in row.ties.iter().zip(&stance.1).enumerate() {
             let longer_m = length * line.lengthening(&descent.program.velocities);
-            let then_kg = tie.stiffness_n_m * longer_m / row.gravity_m_s2();
+            let then_kg = tie.stiffness_n_m * longer_m / row.gravity_m_s2;
             let kg = descent.ties_kg[index];
             assert!(kg > 0.01 * row.mass_kg(), "{kg}");
             assert!(

@@ -82,7 +82,7 @@ impl<'a> Held<'a> {
             pins: pins(row, sway, &onset)?,
             sense: 1.0,
             end_rad: 0.0,
-            ties: vec![row.ties().iter().map(TieMemory::undeformed).collect()],
+            ties: vec![row.ties.iter().map(TieMemory::undeformed).collect()],
         };
         let first = held.pins.hinges[0].joint;
         held.sense = onset.velocities[first].rate.signum();
@@ -99,7 +99,7 @@ impl<'a> Held<'a> {
                 return Ok(held);
             }
         }
-        Err(if row.ties().is_empty() {
+        Err(if row.ties.is_empty() {
             CapacityError::Locks { sway }.into()
         } else {
             HeldError::Holds(sway)
@@ -115,7 +115,7 @@ impl<'a> Held<'a> {
     /// How many bodies move.
     #[must_use]
     pub fn bodies(&self) -> usize {
-        match self.row.supports() {
+        match self.row.supports {
             Supports::Left => 1,
             Supports::Both => self.hinges().len() - 1,
         }
@@ -147,7 +147,7 @@ impl<'a> Held<'a> {
     /// Where on its way each tie gives way. One that has broken yields no more.
     #[must_use]
     pub fn ties_give_way(&self) -> Vec<GivesWay> {
-        let ties = self.row.ties().iter().enumerate();
+        let ties = self.row.ties.iter().enumerate();
         ties.map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;
             let yields = self.first(index, |memory| {
@@ -228,8 +228,8 @@ impl<'a> Held<'a> {
         let pushed = self.pins.loads(row, &poses, push, &[]);
         let pins_m = self.pins.at_m(&poses);
         let joint = |hinge: usize| self.hinges()[hinge].joint;
-        if row.supports() == Supports::Left {
-            let blocks = row.blocks().len();
+        if row.supports == Supports::Left {
+            let blocks = row.blocks.len();
             let [held, pushed] = [held, pushed].map(|loads| loads[blocks] - loads[joint(0)]);
             return Some(-held.about(pins_m[0]) / pushed.about(pins_m[0]));
         }
@@ -258,7 +258,7 @@ fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
             Some(Pin { joint, edge })
         })
         .collect();
-    let due = match row.supports() {
+    let due = match row.supports {
         Supports::Left => 1,
         Supports::Both => 4,
     };

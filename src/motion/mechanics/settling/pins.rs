@@ -124,7 +124,7 @@ impl Pins {
         let pins = hinges.iter();
         Self {
             pins_m: pins
-                .map(|hinge| row.joints()[hinge.joint].corner_m(hinge.edge))
+                .map(|hinge| row.joints[hinge.joint].corner_m(hinge.edge))
                 .collect(),
             hinges,
         }
@@ -219,12 +219,12 @@ impl Pins {
         let mut openings_rad = turns_rad.clone();
         for (opening, hinge) in openings_rad.iter_mut().zip(&self.hinges) {
             let inside = hinge.edge == Edge::Intrados;
-            *opening *= row.handedness() * if inside { 1.0 } else { -1.0 };
+            *opening *= row.handedness * if inside { 1.0 } else { -1.0 };
         }
         let (ties, pulls) = self.pulls(row, &condition.supports, poses, before);
         let loads = self.loads(row, poses, condition.force_g, &pulls);
-        let blocks = row.blocks().len();
-        let start = match row.supports() {
+        let blocks = row.blocks.len();
+        let start = match row.supports {
             // Nothing holds a stack from above.
             Supports::Left => loads[blocks] * -1.0,
             Supports::Both => {
@@ -240,8 +240,8 @@ impl Pins {
             }
         };
         let mut friction = 0.0_f64;
-        let mut corners = Vec::with_capacity(row.joints().len());
-        for (index, joint) in row.joints().iter().enumerate() {
+        let mut corners = Vec::with_capacity(row.joints.len());
+        for (index, joint) in row.joints.iter().enumerate() {
             let force = start + loads[index];
             // Either face of a shut joint, and the corner of a hinge, are where the block after it is.
             let pose = poses[body_of(index)];
@@ -254,7 +254,7 @@ impl Pins {
                 }
                 None => pose.turned(joint.along()),
             };
-            let normal = turned(along) * row.handedness();
+            let normal = turned(along) * row.handedness;
             let pressed = force.linear.dot(&normal);
             if pressed >= LEAST_LOAD {
                 friction = friction.max((force.linear.dot(&along) / pressed).abs());
@@ -264,7 +264,7 @@ impl Pins {
                 Some(Edge::Extrados) => [0.0, pressed],
                 None => {
                     let about = force.about(pose.of(joint.intrados_m));
-                    let outer = row.handedness() * about / joint.thickness_m();
+                    let outer = row.handedness * about / joint.thickness_m();
                     [pressed - outer, outer]
                 }
             });
@@ -294,7 +294,7 @@ impl Pins {
         before: &[TieMemory<Lanes<1>>],
     ) -> Pulls {
         let lines = lines(row, supports, |block| poses[self.part_of(block)]);
-        let ties = row.ties().iter().zip(lines).zip(before);
+        let ties = row.ties.iter().zip(lines).zip(before);
         let ties = ties.map(|((tie, line), memory)| {
             let memory = memory.then(tie, line.stretch_m);
             (memory, (line, memory.force_n.0[0]))
@@ -311,13 +311,13 @@ impl Pins {
         pulls: &[(TieLine, f64)],
     ) -> Vec<Momentum> {
         let weight = 1.0 / row.mass_kg();
-        let own = row.blocks().iter().enumerate().map(|(block, body)| {
+        let own = row.blocks.iter().enumerate().map(|(block, body)| {
             let centre = poses[self.part_of(block)].of(body.centre_m);
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
         let mut loads: Vec<Momentum> = [Momentum::ZERO].into_iter().chain(own).collect();
         for (line, force_n) in pulls {
-            let pull = line.along * (force_n * weight / row.gravity_m_s2());
+            let pull = line.along * (force_n * weight / row.gravity_m_s2);
             for (end, pull) in [pull, -pull].into_iter().enumerate() {
                 if let Some(block) = line.ends[end] {
                     let load = Momentum::applied_at(line.ends_m[end], pull);
@@ -510,7 +510,7 @@ impl<'a> Chain<'a> {
         for (body, moment) in moments_m.iter_mut().enumerate() {
             let [first, after] = [body, body + 1].map(|pin| pins.hinges[pin].joint);
             let last = pins.hinges[count].joint;
-            for (index, block) in row.blocks().iter().enumerate().take(last).skip(first) {
+            for (index, block) in row.blocks.iter().enumerate().take(last).skip(first) {
                 let arm_m = if index < after {
                     block.centre_m - pins.pins_m[body]
                 } else {
@@ -522,15 +522,15 @@ impl<'a> Chain<'a> {
         let poses = &before.placement.poses;
         let bodies = pins.hinges.iter().take(count);
         let support = |anchor: &Anchor| anchor.support(row.feet_m()) * (count + 1);
-        let parts: Vec<usize> = (0..row.blocks().len())
+        let parts: Vec<usize> = (0..row.blocks.len())
             .map(|block| pins.part_of(block))
             .collect();
         let part = |anchor: Anchor| {
             let block = anchor.block;
             block.map_or_else(|| support(&anchor), |block| parts[block])
         };
-        let weight_n = row.mass_kg() * row.gravity_m_s2();
-        let ties = row.ties().iter().zip(&before.ties);
+        let weight_n = row.mass_kg() * row.gravity_m_s2;
+        let ties = row.ties.iter().zip(&before.ties);
         let ties = ties.filter(|(_, memory)| !memory.is_broken());
         let bars = ties.map(|(tie, memory)| {
             let yielded_m = memory.yielded_m.0[0];
@@ -649,7 +649,7 @@ impl<'a> Chain<'a> {
     /// Turns the bodies until they rest; `None` where they go far, or come to where the energy does not rise whatever they do.
     fn rest(mut self) -> Option<Vec<Pose>> {
         let count = self.rotations_rad.len();
-        let size_m = self.row.size_m();
+        let size_m = self.row.size_m;
         // The force that balances the energy best.
         let mut free = self.unbalanced();
         let squares = &free.reach * free.reach.transpose();
@@ -716,7 +716,7 @@ mod tests {
         let weight_n = row.mass_kg() * 9.81;
         let end = |block: usize| Anchor {
             block: Some(block),
-            at_m: row.blocks()[block].centre_m,
+            at_m: row.blocks[block].centre_m,
         };
         let foot = Anchor {
             block: None,

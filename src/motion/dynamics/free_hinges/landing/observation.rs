@@ -92,7 +92,7 @@ impl LandingStepper<'_> {
     fn observe_hinges(&mut self) {
         let height = (!self.right.moves()).then_some(self.course.potential);
         self.course.note_height(height);
-        let far_m = OVERTURNED_RATIO * self.row.size_m();
+        let far_m = OVERTURNED_RATIO * self.row.size_m;
         let stood = &self.rest.placement;
         let moved_m = self.placement.centres_m.iter().zip(&stood.centres_m);
         let gone_m = [Vector2::zeros(), self.right.gone_m];
@@ -163,7 +163,7 @@ impl LandingStepper<'_> {
         self.stands = opened.is_empty() && !self.right_support_is_gone();
         if !self.stands {
             // Until then it stood still.
-            let blocks = self.row.blocks().len();
+            let blocks = self.row.blocks.len();
             self.report_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
         }
     }
