@@ -5,10 +5,11 @@
 //! once: an **impact**. The arch then sways to the other side along another mechanism, with less
 //! energy. This crate follows the arch through all its impacts until it rests or overturns.
 //!
-//! Four links are one model of motion ([`FourLinks`], and for a column [`RockingColumn`]). Nothing forces an arch
-//! to keep to them: with **free hinges** ([`FreeHinges`]) it is a row of rigid blocks ([`mechanics::blocks`]) any of whose joints may
-//! open, shut, and slip, at any time. That costs more and is computed in steps; repetitions show how far the answer depends on
-//! these ([`Model::repetitions`]). Both are a [`Model`]: a history, a [threshold](studies::threshold) or a [map](studies::map) takes either.
+//! Three models of motion implement [`Model`]. **Four links** ([`FourLinks`], and for a column [`RockingColumn`]) move as one mechanism at a
+//! time. With **free hinges** ([`FreeHinges`]) the structure is a row of rigid blocks ([`mechanics::blocks`]), and any joint may open, close and slip
+//! at any time. **Elastic joints** ([`ElasticJoints`]) have a stiffness as well. The latter two cost more and are computed in steps; repetitions
+//! ([`Model::repetitions`]) show how far the answer depends on these. A history, a [threshold](studies::threshold) and a
+//! [map](studies::map) take any model.
 //!
 //! The modules, from the bottom up:
 //!
@@ -16,9 +17,9 @@
 //!   ([`mechanics::arch`]) and the column ([`mechanics::column`]); arches of other shapes, on piers, with fill and loads
 //!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::blocks`]); four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms through which
-//!   impacts lead, and the certificate of its restitution; joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
+//!   impacts lead, and the certificate of its restitution; limit analysis of joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
 //! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
-//!   their histories ([`dynamics::history`]); rows of blocks on rigid joints ([`dynamics::free_hinges`]) and on joints that give way
+//!   their histories ([`dynamics::history`]); rows of blocks with rigid joints ([`dynamics::free_hinges`]) and with elastic joints
 //!   ([`dynamics::elastic_joints`]).
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
@@ -42,7 +43,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The same arch of 36 voussoirs with free hinges:
+//! An arch of 36 voussoirs with free hinges:
 //!
 //! ```
 //! use archrock::{Arch, FreeHinges, Model, Outcome, Pulse, Request, Sway};
