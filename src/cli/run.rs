@@ -272,10 +272,11 @@ impl Job {
         if several {
             results.words += &compared(&own);
             for (run, own) in runs.iter().zip(&own) {
-                let _ = write!(results.words, "{}\n{}", run.name(), own.words);
+                let (name, verdict, words) = (run.name(), &own.verdict, &own.words);
+                let _ = write!(results.words, "{name}\n  {verdict}{words}");
             }
         } else {
-            results.words += &own[0].words;
+            let _ = write!(results.words, "  {}{}", own[0].verdict, own[0].words);
         }
         if let Some(mut folder) = folder {
             folder

@@ -2,7 +2,7 @@
 
 use rmpv::Value as Number;
 use rmpv::ext::to_value as numbers_of;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 
 use super::OutputError;
@@ -16,6 +16,16 @@ pub(crate) fn summary_of(result: &impl Serialize) -> Result<Value, OutputError> 
     let json = serde_json::to_value(result).map_err(|error| failed(error.to_string()))?;
     let numbers = numbers_of(result).map_err(|error| failed(error.to_string()))?;
     not_finite(&numbers, &json).map_or(Ok(json), |path| Err(failed(path)))
+}
+
+/// Values with their names, which are the keys of an object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named<V>(pub Vec<(String, V)>);
+
+impl<V: Serialize> Serialize for Named<V> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
 }
 
 /// The path to a number that is not finite. The names along it are those of the JSON.

@@ -95,6 +95,23 @@ pub(crate) mod filters {
         Ok(Safe(set))
     }
 
+    /// In scientific notation with two digits.
+    #[filter_fn]
+    pub fn scientific(number: &f64, _: &dyn Values) -> Result<String> {
+        Ok(format!("{number:.1e}"))
+    }
+
+    /// A fraction in percent, rounded down, so that a limit that was not reached does not read as reached.
+    #[filter_fn]
+    pub fn percent(part: &f64, _: &dyn Values, decimals: i32) -> Result<String> {
+        let percent = (10_f64.powi(2 + decimals) * part).floor() / 10_f64.powi(decimals);
+        Ok(if decimals == 0 && percent < 1.0 {
+            "below 1 %".to_owned()
+        } else {
+            format!("{percent:.0$} %", decimals as usize)
+        })
+    }
+
     /// With the fewest digits that read back as the same number.
     #[filter_fn]
     pub fn exact(number: &f64, _: &dyn Values) -> Result<String> {

@@ -7,7 +7,7 @@ for (const [index, told] of data.entries()) {
   const text = (id) => frames[index].contentDocument.getElementById(id).textContent;
   const where = `page ${index + 1}`;
   verify(text("outcome") === told.verdict, `${where}: ${text("outcome")}`);
-  const words = frames[index].contentDocument.querySelector("ul").textContent;
+  const words = frames[index].contentDocument.querySelector("div.words").textContent;
   verify(words.includes(told.happens), `${where}: ${words}`);
   const end = page.data.end_s;
   verify(end === told.end_s, `${where} ends at ${end}`);

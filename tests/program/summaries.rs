@@ -142,6 +142,7 @@ fn words(kind: &Type) -> (String, String) {
         ("f64", _) => ("number".to_owned(), name),
         ("usize" | "u64" | "u32" | "u8", _) => ("whole number".to_owned(), name),
         ("bool", _) => ("true or false".to_owned(), name),
+        ("Named", Some(inner)) => wrapped(inner, "by name: ", ""),
         ("Value" | "Map", _) => ("object".to_owned(), name),
         _ => ("text".to_owned(), name),
     }

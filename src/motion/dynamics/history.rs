@@ -1,8 +1,10 @@
 //! The parts of a history, for every model: samples, events and a summary.
 
+use std::fmt;
 use std::time::Duration;
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
@@ -38,6 +40,15 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// The side to which the structure overturned.
+    #[must_use]
+    pub const fn overturning_sway(self) -> Option<Sway> {
+        match self {
+            Self::Overturned(sway) => Some(sway),
+            _ => None,
+        }
+    }
+
     /// The name in machine-readable results.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -49,6 +60,21 @@ impl Outcome {
             Self::StillRocking => "still_rocking",
             Self::Incomplete => "incomplete",
         }
+    }
+}
+
+impl fmt::Display for Outcome {
+    /// In words.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NeverMoved => "never moved",
+            Self::Vibrates => "vibrated, and no joint opened",
+            Self::Rest => "came to rest",
+            Self::Overturned(Sway::Right) => "overturned to the right",
+            Self::Overturned(Sway::Left) => "overturned to the left",
+            Self::StillRocking => "still rocking",
+            Self::Incomplete => "incomplete",
+        })
     }
 }
 
@@ -167,7 +193,7 @@ impl TieSample {
 }
 
 /// The largest force of a tie in a history, and its state at the end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TieSummary {
     /// The largest force with which it pulled, in N; of a tie that breaks, also where it broke.
     pub peak_force_n: f64,
@@ -542,18 +568,22 @@ pub struct Cost {
 }
 
 /// Additional summary of a row of blocks.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RowSummary {
     /// All half cycles, however small; [`Summary::half_cycles`] omits those that are no rocking.
+    #[serde(skip)]
     pub half_cycles: Vec<HalfCycle>,
     /// Number of half cycles, with those of the fall after the row has overturned.
+    #[serde(skip)]
     pub half_cycles_with_fall: usize,
     /// Slip; `None` where joints do not slip.
+    #[serde(flatten)]
     pub sliding: Option<Sliding>,
     /// Largest potential energy over the barrier of its first mechanism, which may not be the one by which it overturns. `None` where no
     /// barrier is known, or if joints slipped so far that friction took a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
-    /// Forces and energies of its ties.
+    /// Forces and energies of its ties; absent without ties.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
@@ -567,8 +597,10 @@ pub struct RowSummary {
     /// Work of the right foot as it goes away from the left one, in J.
     pub right_foot_j: f64,
     /// Error of the energy balance, over the larger of the largest kinetic energy and the barrier, where that is known.
+    #[serde(rename = "energy_defect_over_largest")]
     pub energy_error: f64,
-    /// Least normal force at a joint outside impacts, in N; infinite without any step, and with elastic joints.
+    /// Least normal force at a joint outside impacts, in N; infinite without any step, and with elastic joints, and then absent from results.
+    #[serde(skip_serializing_if = "is_infinite")]
     pub least_normal_n: f64,
     /// Largest error of closure of an arch, in m.
     pub closure_error_m: f64,
@@ -585,13 +617,19 @@ pub struct RowSummary {
     /// Steps with more than one landing, or with landings too close to end at.
     pub merged: u64,
     /// How often the longest step was halved on the way, where the energy balance needed it.
+    #[serde(rename = "step_halvings")]
     pub halvings: u32,
     /// Time that the longest step took to compute, where samples are made.
+    #[serde(skip)]
     pub longest_step: Elapsed,
 }
 
+const fn is_infinite(number: &f64) -> bool {
+    number.is_infinite()
+}
+
 /// A half cycle: from one passage of the centre of gravity through its undeformed place to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HalfCycle {
     /// To which side.
     pub sway: Sway,
@@ -630,17 +668,21 @@ impl HalfCycle {
 }
 
 /// The slip in a motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Sliding {
     /// Energy that friction took, in J.
     pub friction_j: f64,
     /// Offsets at the end: of the right face of every joint towards the extrados, in metres.
+    #[serde(rename = "slips_m")]
     pub offsets_m: Vec<f64>,
     /// Largest magnitudes of the offsets, in metres.
+    #[serde(rename = "largest_slips_m")]
     pub largest_offsets_m: Vec<f64>,
     /// Steps whose bounds of friction did not converge; none with elastic joints, whose bounds are known in every step.
+    #[serde(rename = "unconverged_steps")]
     pub unconverged: u64,
     /// The largest error of such a bound, as a fraction of the largest bound.
+    #[serde(rename = "friction_bound_error")]
     pub bound_error: f64,
 }
 
@@ -659,9 +701,10 @@ impl Sliding {
 }
 
 /// Additional summary of a motion with elastic joints; energies are totals from the beginning to the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ElasticSummary {
     /// The largest elastic compressive stress; damping adds to it, and the strength caps both together.
+    #[serde(flatten)]
     pub largest_stress: Stress,
     /// Elastic energy at the end, in J.
     pub elastic_j: f64,
@@ -679,14 +722,17 @@ pub struct ElasticSummary {
     pub rest_eccentricity_joint: usize,
 }
 
-/// A compressive stress, with its place and time.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+/// A largest compressive stress, with its place and time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Stress {
-    /// In Pa.
+    /// The largest elastic compressive stress, in Pa; damping adds to it, and the strength caps both together.
+    #[serde(rename = "largest_compressive_stress_pa")]
     pub stress_pa: f64,
     /// The joint at whose edge it was.
+    #[serde(rename = "largest_compressive_stress_joint")]
     pub joint: usize,
     /// When, in seconds.
+    #[serde(rename = "largest_compressive_stress_time_s")]
     pub time_s: f64,
 }
 

@@ -7,6 +7,7 @@
 
 use std::collections::VecDeque;
 
+use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use super::ground::GroundMotion;
@@ -30,11 +31,13 @@ const LEAST_SLIP_M: f64 = 1e-6;
 /// A motion beside its repetitions: only results on which they agree are reliable.
 ///
 /// After the first change of side, the order of impacts that almost coincide decides the rest of the motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Repeatability {
     /// How the repetitions were computed.
+    #[serde(skip)]
     pub repeated: Vec<&'static str>,
     /// Outcomes of the motion itself, then of the repetitions.
+    #[serde(skip)]
     pub outcomes: Vec<Outcome>,
     /// The half cycles of the motion itself that peak at a hundredth of its largest peak or more.
     pub half_cycles: Vec<RepeatedHalfCycle>,
@@ -43,31 +46,49 @@ pub struct Repeatability {
     /// When the first of these that differs begins, in seconds; `None` where none differs.
     pub parts_at_s: Option<f64>,
     /// The largest rotation of a block; `None` if one of the motions overturns.
+    #[serde(rename = "largest_rotation_rad")]
     pub largest_rad: Option<RepeatedValue>,
     /// The first difference that makes the outcome of a row with rigid joints uncertain.
+    #[serde(rename = "early_difference")]
     pub early: Option<EarlyDifference>,
     /// Slips of the joints at the end; empty if one of the motions overturns, and without slip.
     pub slips_m: Vec<RepeatedValue>,
 }
 
 /// A half cycle before the largest rotation that differs by more than [`SAME_PEAK_RATIO`] in a repetition.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EarlyDifference {
     /// When it peaks, in seconds.
     pub peak_time_s: f64,
-    /// Its difference as a fraction of the larger peak; 1 where the repetition has no [counterpart](HalfCycle::counterpart) of it.
+    /// Its difference as a fraction of the larger peak; 1 where the repetition has no half cycle to the same side at that time.
     pub ratio: f64,
     /// The repetition.
+    #[serde(serialize_with = "as_key")]
     pub repetition: &'static str,
 }
 
+/// The name of a repetition as a key in results.
+#[must_use]
+pub fn key(repetition: &str) -> String {
+    repetition.replace(' ', "_")
+}
+
+fn as_key<S: Serializer>(repetition: &str, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(&key(repetition))
+}
+
 /// A half cycle of a motion beside its counterparts in the repetitions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RepeatedHalfCycle {
-    /// The half cycle of the motion itself.
+    /// The half cycle of the motion itself; in results, the time of its peak, in seconds.
+    #[serde(rename = "peak_time_s", serialize_with = "peak_time")]
     pub own: HalfCycle,
-    /// Its peak in all motions; `None` if a repetition has no [counterpart](HalfCycle::counterpart) of it.
+    /// Its peak in all motions; `None` if a repetition has no half cycle to the same side at that time.
     pub peak_rad: Option<RepeatedValue>,
+}
+
+fn peak_time<S: Serializer>(cycle: &HalfCycle, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_f64(cycle.peak_time_s)
 }
 
 impl RepeatedHalfCycle {
@@ -79,7 +100,7 @@ impl RepeatedHalfCycle {
 }
 
 /// A quantity of a motion beside that of its repetitions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RepeatedValue {
     /// In the motion itself.
     pub own: f64,

@@ -1,19 +1,22 @@
 //! How far feet that move differently go apart in a run.
 
 use nalgebra::Vector2;
+use serde::Serialize;
 
 use crate::dynamics::history::Summary;
 use crate::scenario::Scenario;
 
 /// How far the right foot goes from where it was beside the left one, to the right and upwards.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FeetApart {
-    /// Where it is when it is farthest away, at output steps, in m.
-    pub farthest_m: Vector2<f64>,
-    /// When, in s.
-    pub farthest_s: f64,
-    /// Where it is at the end of the run, in m.
-    pub last_m: Vector2<f64>,
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FeetApart {
+    /// When the history starts, in seconds: zero or negative.
+    pub start_s: f64,
+    /// Where the right foot is when it is farthest away from where it was beside the left one, at output steps, in metres.
+    pub feet_farthest_apart_m: Vector2<f64>,
+    /// When, in seconds.
+    pub feet_farthest_apart_time_s: f64,
+    /// Where it is at the end of the run, in metres.
+    pub feet_apart_at_end_m: Vector2<f64>,
 }
 
 impl FeetApart {
@@ -29,13 +32,14 @@ impl FeetApart {
         times_s.push(history.end_s);
         let apart_m = ground.feet_apart_m(&times_s);
         let all = || times_s.iter().copied().zip(apart_m.iter().copied());
-        let (farthest_s, farthest_m) =
+        let (feet_farthest_apart_time_s, feet_farthest_apart_m) =
             all().max_by(|one, other| one.1.norm().total_cmp(&other.1.norm()))?;
-        let (_, last_m) = all().next_back()?;
+        let (_, feet_apart_at_end_m) = all().next_back()?;
         Some(Self {
-            farthest_m,
-            farthest_s,
-            last_m,
+            start_s: ground.start_s(),
+            feet_farthest_apart_m,
+            feet_farthest_apart_time_s,
+            feet_apart_at_end_m,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! A run: one history of a scenario, with its model of motion, as tables, pictures, a page, a summary and words.
 
+mod caveats;
 mod comparison;
 mod feet;
 mod film;
@@ -12,7 +13,6 @@ mod scales;
 mod snapshots;
 mod summary;
 mod tables;
-mod verdict;
 mod words;
 
 use std::fmt::Write as _;
@@ -25,6 +25,7 @@ use nalgebra::Vector2;
 use serde_json::Value;
 use thiserror::Error;
 
+pub use self::caveats::warnings;
 pub use self::comparison::compared;
 use self::overlay::Curves;
 use self::picture::{Picture, Timeline};
@@ -35,17 +36,19 @@ use self::row_picture::RowTimeline;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::summary;
-use self::verdict::Evidence;
-use self::words::{Notable, words};
-pub use self::words::{heading, warnings};
+use self::summary::{Evidence, Summary};
+pub use self::words::heading;
+use self::words::{Notable, VerdictLine, Words};
 use crate::dynamics::fall::FallEnd;
-use crate::dynamics::history::{Event, Sample, Summary};
+use crate::dynamics::history::{Event, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::{Variation, Variations, Varied};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
+use crate::output::summary::summary_of;
 use crate::output::table::{Column, TableWriter};
+use crate::output::template::render;
 use crate::output::{Figure, Folder, OutputError, Subject, pretty};
 use crate::scenario::{Hinges, Scenario};
 
@@ -123,12 +126,14 @@ pub enum Stage {
 
 /// The results of a run. Its pictures and page are written by [`RunResults::complete`].
 pub struct RunResults<'r> {
-    /// For people.
+    /// The verdict, a line for people.
+    pub verdict: String,
+    /// The other lines for people.
     pub words: String,
     /// For programs, as in `summary.json`.
     pub summary: Value,
     /// The summary of the motion.
-    pub history: Summary,
+    pub history: History,
     /// The motions with other properties that are as likely.
     pub varied: Vec<Varied>,
     run: &'r Run<'r>,
@@ -242,33 +247,30 @@ impl<'a> Run<'a> {
             recording.written?;
             (history, recording.tables.finish()?)
         };
-        let spread = repetitions.map(|repetitions| {
+        let repeated = repetitions.map(|repetitions| {
             watch(Stage::Repeating);
             repetitions.compare(&history)
         });
-        let spread = spread.as_ref();
         let varied = variations.ended();
         let evidence = Evidence {
             scenario,
+            model,
             history: &history,
-            spread,
+            repeated: repeated.as_ref(),
             varied: &varied,
         };
-        let text = words(&evidence, model, &shown, &self.wanted.beside);
-        let mut summary = summary(scenario, model, &history, spread)?;
-        if !varied.is_empty() {
-            summary["variations"] = summary::of_variations(&varied)?;
-        }
-        if !self.wanted.points_m.is_empty() {
-            summary["points"] = shown.points.summary()?;
-        }
-        let row = history.row();
-        if let Some(longest_step) = row.and_then(|row| row.longest_step.0) {
-            // The cost of a computation is reported here; the results do not contain it.
-            summary["longest_step_us"] = (longest_step.as_secs_f64() * 1e6).round().into();
-        }
+        let summary = Summary::of(&evidence, shown.points.peaks());
+        let words = Words {
+            evidence,
+            summary: &summary,
+            impacts: &shown.notable,
+            beside: &self.wanted.beside,
+        };
+        let (verdict, words) = (render(&VerdictLine(evidence)), render(&words));
+        let summary = summary_of(&summary)?;
         Ok(RunResults {
-            words: text,
+            verdict,
+            words: format!("  {words}"),
             summary,
             history,
             varied,
@@ -310,8 +312,13 @@ impl RunResults<'_> {
             return Ok(());
         };
         let text = &mut self.words;
-        self.shown
-            .write(self.run, &mut folder, &self.history, samples, text)?;
+        self.shown.write(
+            self.run,
+            &mut folder,
+            &self.history,
+            [samples, &self.verdict],
+            text,
+        )?;
         write(&mut folder, SUMMARY, "the summary", &pretty(&self.summary))?;
         let path = folder.path().to_owned();
         folder.complete()?;
@@ -460,9 +467,9 @@ impl Shown {
         &self,
         run: &Run<'_>,
         folder: &mut Folder,
-        history: &Summary,
-        samples: &str,
-        said: &mut String,
+        history: &History,
+        opening: [&str; 2],
+        words: &mut String,
     ) -> Result<(), OutputError> {
         let (scenario, figure) = (run.scenario, run.wanted.figure);
         let title = scenario.title().unwrap_or("Rocking history");
@@ -470,7 +477,7 @@ impl Shown {
         let picture = self.picture.draw(figure, &subject, history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
-            let page = report.page(scenario, history, samples, said);
+            let page = report.page(scenario, history, opening, words);
             write(folder, REPORT, "the report", &page)?;
         }
         if let Some(film) = &self.film {
@@ -478,7 +485,7 @@ impl Shown {
             let stills = film.stills(figure, title);
             write_film(folder, &stills)?;
             let _ = writeln!(
-                said,
+                words,
                 "  {} pictures of a film in {}",
                 stills.len(),
                 path.display()
@@ -492,7 +499,7 @@ impl Shown {
                 let times_s: Vec<_> = times_s.iter().map(f64::to_string).collect();
                 if !times_s.is_empty() {
                     let _ = writeln!(
-                        said,
+                        words,
                         "  snapshots at {} s are {place}: they show its {shown} instant",
                         times_s.join(", ")
                     );

@@ -1,10 +1,9 @@
 //! Observed points of blocks, such as the crown, and their displacements.
 
-use std::fmt::Write as _;
-
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
+use super::summary::PointPeaks;
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
@@ -14,7 +13,6 @@ use crate::output::point::Point;
 use crate::output::scene::Scene;
 use crate::output::svg::CURVES;
 use crate::output::table::{Cell, Column, several};
-use crate::output::{OutputError, finite};
 
 /// The largest number of points: each has two curves in the pictures, all of different looks.
 pub const MOST_POINTS: usize = CURVES.len() / 2;
@@ -44,11 +42,8 @@ struct Displacement {
     time_s: f64,
 }
 
-/// The axes of displacements in columns, with words for the positive and the negative direction.
-const AXES: [(&str, [&str; 2]); 2] = [
-    ("x", ["to the right", "to the left"]),
-    ("y", ["up", "down"]),
-];
+/// The axes of displacements in columns, with words for the positive direction.
+const AXES: [(&str, &str); 2] = [("x", "to the right"), ("y", "up")];
 
 impl Points {
     /// Points of a structure, given by their undeformed positions in metres.
@@ -119,48 +114,20 @@ impl Points {
         self.watched.iter().map(column).collect()
     }
 
-    /// Their largest displacements, one line each.
-    pub(super) fn words(&self) -> String {
-        let mut text = String::new();
-        for watched in &self.watched {
-            let axes = AXES.iter().zip(&watched.displacements);
-            let farthest = axes.map(|((_, [positive, negative]), along)| {
-                let to = if along.farthest_m < 0.0 {
-                    negative
-                } else {
-                    positive
-                };
-                let most_mm = 1e3 * along.farthest_m.abs();
-                format!("{most_mm:.3} mm {to} (at {:.4} s)", along.time_s)
-            });
-            let _ = writeln!(
-                text,
-                "  the point {} moves by up to {}",
-                place(watched.point.at_m),
-                farthest.collect::<Vec<_>>().join(" and ")
-            );
-        }
-        text
-    }
-
-    /// Their largest displacements as JSON.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub(super) fn summary(&self) -> Result<Value, OutputError> {
-        let point = |watched: &Watched| {
+    /// Their largest displacements.
+    pub(super) fn peaks(&self) -> Vec<PointPeaks> {
+        let peaks = self.watched.iter().map(|watched| {
             let [x, y] = &watched.displacements;
-            finite("points", &[x.farthest_m, x.time_s, y.farthest_m, y.time_s])?;
-            Ok(json!({
-                "x_m": watched.point.at_m.x,
-                "y_m": watched.point.at_m.y,
-                "peak_x_m": x.farthest_m,
-                "peak_x_time_s": x.time_s,
-                "peak_y_m": y.farthest_m,
-                "peak_y_time_s": y.time_s,
-            }))
-        };
-        self.watched.iter().map(point).collect()
+            PointPeaks {
+                x_m: watched.point.at_m.x,
+                y_m: watched.point.at_m.y,
+                peak_x_m: x.farthest_m,
+                peak_x_time_s: x.time_s,
+                peak_y_m: y.farthest_m,
+                peak_y_time_s: y.time_s,
+            }
+        });
+        peaks.collect()
     }
 
     /// Adds the panel of their displacements.
@@ -186,7 +153,7 @@ impl Points {
     pub(super) fn names(&self) -> Vec<[String; 2]> {
         let named = self.watched.iter().map(|watched| {
             let place = place(watched.point.at_m);
-            AXES.map(|(_, [positive, _])| format!("point {place}, {positive}"))
+            AXES.map(|(_, positive)| format!("point {place}, {positive}"))
         });
         named.collect()
     }
@@ -225,7 +192,7 @@ fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64>
 }
 
 /// A position as people would type it.
-fn place(at_m: Vector2<f64>) -> String {
+pub(super) fn place(at_m: Vector2<f64>) -> String {
     let text = |x: f64| {
         // Rounded to a millimetre, without trailing zeros.
         let rounded = (1e3 * x).round() / 1e3;

@@ -120,29 +120,17 @@ impl Report {
         self.fall_end = Some(end);
     }
 
-    /// The page for a scenario, the report on its samples, if there are any, and the words of `run`: first a line with the outcome, then the other
-    /// lines. A line that continues the one before begins with four spaces.
+    /// The page for a scenario: the report on its samples, if there are any, the verdict, and the other words of `run`.
     #[must_use]
     pub fn page(
         &self,
         scenario: &Scenario,
         history: &Summary,
-        samples: &str,
-        said: &str,
+        [samples, verdict]: [&str; 2],
+        words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
         let title = scenario.title().unwrap_or("Rocking history");
-        let lines = joined(said);
-        let (outcome, others) = lines
-            .split_first()
-            .map_or(("", &[][..]), |(first, rest)| (first, rest));
-        let samples = joined(samples);
-        let samples = samples
-            .iter()
-            .map(|line| format!("<p class=\"samples\">{}</p>\n", escaped(line)));
-        let items = others
-            .iter()
-            .map(|line| format!("<li>{}</li>\n", escaped(line)));
         let mut frames = self.film.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
@@ -157,10 +145,10 @@ impl Report {
             &[
                 ("PROGRAM", &program),
                 ("TITLE", &escaped(title)),
-                ("SAMPLES", &samples.collect::<String>()),
-                ("OUTCOME", &escaped(outcome)),
+                ("SAMPLES", &escaped(samples.trim_end())),
+                ("OUTCOME", &escaped(verdict.trim_end())),
                 ("WHAT", &escaped(&what)),
-                ("WORDS", &items.collect::<String>()),
+                ("WORDS", &escaped(words.trim_end())),
                 ("SCENARIO", &escaped(&scenario.to_toml())),
                 ("FRAMES", &frames.len().to_string()),
                 ("STYLE", include_str!("report/page.css")),
@@ -415,18 +403,6 @@ impl Report {
         all.extend(others.map(|(name, value)| (name.to_owned(), value)));
         Value::Object(all)
     }
-}
-
-/// The lines of a report, each with those that continue it.
-fn joined(text: &str) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for line in text.lines() {
-        match lines.last_mut() {
-            Some(last) if line.starts_with("    ") => *last += &format!(" {}", line.trim()),
-            _ => lines.push(line.trim().to_owned()),
-        }
-    }
-    lines
 }
 
 /// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.

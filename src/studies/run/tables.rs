@@ -10,7 +10,6 @@ use crate::output::mechanisms::columns;
 use crate::output::table::{Cell, Column, column, numbers, row_number, several};
 
 use super::Scales;
-use super::words::taken_j;
 
 /// Columns of `rotations.csv`, one row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
 /// bodies; for mechanisms `thrust_excess_ratio`, for rows `open_joints`, because their line of thrust stays inside;
@@ -293,6 +292,11 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
         all.push(of_impact("friction_j", |impact| impact.friction_j));
     }
     all
+}
+
+/// Energy lost in an impact, in J.
+pub(super) fn taken_j(impact: &Impact) -> f64 {
+    impact.energy_before_j - impact.energy_after_j
 }
 
 fn impact(event: &Event) -> Option<&Impact> {

@@ -1,0 +1,144 @@
+//! Limits of the trust in a motion, in sentences that words, warnings and the verdict share.
+
+use crate::dynamics::history::{Outcome, Summary};
+use crate::dynamics::model::Model;
+use crate::dynamics::peak::Peak;
+use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::scenario::{Hinges, Scenario, Structure};
+
+/// A rotation of at most this is zero in print: a block that rotates no more slides without rocking.
+pub(super) const STRAIGHT_RAD: f64 = 5e-7;
+
+/// Coefficients of friction of stone on stone: the smallest and the largest that can be relied on.
+pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+
+/// Peak of the first half cycle that rocks.
+pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
+    let cycles = history.half_cycles().into_iter();
+    let mut peaks = cycles.map(|cycle| cycle.peak_rad);
+    peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
+}
+
+/// Warnings about a run: unlikely numbers of its scenario, and limits of the trust in its history. Programs and the Python package issue
+/// them, so they name no options.
+#[must_use]
+pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
+    let mut warnings = scenario.unlikely_of(model);
+    let structure = scenario.structure();
+    // The ground cannot hold a column down; an arch is four links as long as its line of thrust stays almost inside.
+    let most = if structure.thrusts() {
+        EXCESS_LEVELS[1]
+    } else {
+        0.0
+    };
+    let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
+    let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
+    warnings.extend(no_verdict(scenario, history));
+    if leaves && let Some(trust) = trust(history, structure, Some("compare with free hinges")) {
+        warnings.push(trust.join(" "));
+    }
+    warnings.extend(friction_need(scenario, history));
+    warnings
+}
+
+/// Why an incomplete run has no verdict, and what to do; `None` for a complete one.
+pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<String> {
+    let (end_s, ground_s) = (history.end_s, scenario.ground_motion().end_s());
+    let why = if end_s < ground_s {
+        format!("the run ends at {end_s:.4} s and the ground moves until {ground_s:.4} s")
+    } else {
+        format!(
+            "at {end_s:.4} s, the end of the run, it moves with more than a quarter of the energy that overturns it"
+        )
+    };
+    let is_incomplete = history.outcome == Outcome::Incomplete;
+    is_incomplete.then(|| format!("NO VERDICT: {why}; give a longer duration_s in [simulation]"))
+}
+
+/// A coefficient of friction. One that no stone has stands for an almost unloaded joint.
+pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
+    if friction > 10.0 {
+        "more than 10".to_owned()
+    } else {
+        format!("{friction:.decimals$}")
+    }
+}
+
+/// The friction that a motion without sliding needs, if stone may not have it.
+pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<String> {
+    let needed = history.thrust.as_ref()?.largest_friction.value;
+    let [low, high] = STONE_FRICTION;
+    if scenario.motion().friction_coefficient().is_some() || needed <= low {
+        return None;
+    }
+    Some(if needed > high {
+        let needed = coefficient(needed, 2);
+        format!("would slide: needs a friction of {needed}, and stone has {low} to {high}")
+    } else {
+        format!("needs a friction of {needed:.2}")
+    })
+}
+
+/// How well four links describe a motion whose line of thrust leaves the arch by this many thicknesses, after a conjunction.
+const fn grade(excess_ratio: f64) -> [&'static str; 2] {
+    if excess_ratio <= EXCESS_LEVELS[0] {
+        ["and", "four links suffice"]
+    } else if excess_ratio <= EXCESS_LEVELS[1] {
+        ["and", "four links are close"]
+    } else {
+        ["but", "four links are a rough guide"]
+    }
+}
+
+/// The grade of four links of an arch that rocked.
+pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<String> {
+    let is_arch = scenario.structure().thrusts();
+    let four = scenario.motion().hinges() == Hinges::Four && is_arch;
+    let thrust = history.thrust.as_ref().filter(|_| four)?;
+    thrust.shares_within()?;
+    Some(grade(thrust.largest_excess.value).join(" "))
+}
+
+/// How far the motion can be trusted to be that of four links, or of a column on its toe, in parts of a sentence, with advice where four links are not
+/// enough; `None` if it did not rock, empty for a column that the ground need not hold down.
+pub(super) fn trust(
+    history: &Summary,
+    structure: &Structure,
+    advice: Option<&str>,
+) -> Option<Vec<String>> {
+    let thrust = history.thrust.as_ref()?;
+    let [_, near] = thrust.shares_within()?;
+    let Peak { value, time_s } = thrust.largest_excess;
+    let [close, most] = EXCESS_LEVELS;
+    if !structure.thrusts() {
+        let flies = format!(
+            "the ground would have to hold the column down (at {time_s:.4} s): it flies off"
+        );
+        return Some(Vec::from_iter((value > 0.0).then_some(flies)));
+    }
+    let [_, grade] = grade(value);
+    if value <= close {
+        return Some(vec![format!(
+            "{grade}: the thrust line leaves the arch by {value:.4} t at most"
+        )]);
+    }
+    let safe = if value > most {
+        ", not on the safe side"
+    } else {
+        ""
+    };
+    let give = match structure.circular() {
+        Some(arch) if arch.voussoirs.is_none() => "give `voussoirs` and ",
+        _ => "",
+    };
+    let compare = advice.map_or(String::new(), |advice| format!("; {give}{advice}"));
+    Some(vec![
+        format!(
+            "{grade}{safe}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),"
+        ),
+        format!(
+            "and stays within {most} t for {:.1} % of the rocking time{compare}",
+            100.0 * near
+        ),
+    ])
+}
