@@ -71,12 +71,6 @@ impl Quantity {
         }
     }
 
-    /// Whether it measures the strength of the ground motion.
-    #[must_use]
-    pub const fn is_strength(self) -> bool {
-        matches!(self, Self::Amplitude | Self::Scale | Self::PeakG)
-    }
-
     /// True if it belongs to records, false if it belongs to pulses; `None`: to neither.
     const fn is_of_records(self) -> Option<bool> {
         match self {

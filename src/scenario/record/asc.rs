@@ -32,7 +32,8 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFaul
     let step_s = number(step).and_then(|step_s| checked_step(STEP, step_s));
     let step_s = step_s.map_err(LineFault::on(step_line))?;
     let (line, written) = needed("UNITS")?;
-    let unit = read_unit(written, quantity).map_err(LineFault::on(line))?;
+    let remedy = "must be one of acceleration or velocity, such as cm/s^2";
+    let unit = Unit::of_header(written, quantity, remedy).map_err(LineFault::on(line))?;
     if let Some((line, held)) = header.get("DATA_TYPE") {
         check_quantity(held, quantity).map_err(LineFault::on(*line))?;
     }
@@ -42,15 +43,6 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFaul
         values.check_count((*line, count), "NDATA")?;
     }
     Ok(Contents::new(values.evenly(step_s, step_line, STEP)?, unit))
-}
-
-fn read_unit(written: &str, quantity: Recorded) -> Result<Unit, String> {
-    let wrong = match Unit::written(written) {
-        Some(unit) if unit.quantity() == quantity => return Ok(unit),
-        Some(unit) => format!(", {}", unit.other_quantity()),
-        None => "; must be one of acceleration or velocity, such as cm/s^2".to_owned(),
-    };
-    Err(format!("the unit is {}{wrong}", excerpt(written)))
 }
 
 fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {

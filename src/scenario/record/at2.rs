@@ -7,7 +7,6 @@
 use super::samples::{Contents, LineFault, MAX_SAMPLES, Values, checked_step, number};
 use super::unit::{Recorded, Unit};
 use crate::argument::plain;
-use crate::scenario::error::excerpt;
 
 /// The header is searched up to this line.
 const MAX_HEADER_LINES: usize = 64;
@@ -75,54 +74,42 @@ enum Item {
 
 impl Header {
     fn parse(text: &str, known: Option<Unit>, quantity: Recorded) -> Result<Self, LineFault> {
-        let mut items = Vec::new();
-        let mut unit = None;
-        for (index, line) in text.lines().enumerate().take(MAX_HEADER_LINES) {
+        let (mut unit, mut items, mut last) = (None, Vec::new(), 1);
+        for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
+            last = number;
             let end = line.char_indices().nth(MAX_HEADER_LINE_CHARS);
             let line = end.map_or(line, |(end, _)| &line[..end]);
-            let fault = |message: String| Err(LineFault::on(index + 1)(message));
+            let fault = LineFault::on::<String>(number);
             if let Some(what) = wrong_quantity(line, quantity) {
-                return fault(what);
+                return Err(fault(what));
             }
             if let Some(named) = unit_named(line) {
-                unit = Unit::written(named).or(known);
-                let wrong = match unit {
-                    None => "; give `unit`: what the samples are in".to_owned(),
-                    Some(unit) if known.is_none() && unit.quantity() != quantity => {
-                        format!(", {}", unit.other_quantity())
-                    }
-                    Some(_) => String::new(),
+                let remedy = "give `unit`: what the samples are in";
+                unit = match known {
+                    Some(_) => Unit::written(named).or(known),
+                    None => Some(Unit::of_header(named, quantity, remedy).map_err(fault)?),
                 };
-                if !wrong.is_empty() {
-                    return fault(format!("the unit is {}{wrong}", excerpt(named)));
-                }
             }
             let here = Item::all(line);
-            // The number of samples and their spacing may be on two consecutive lines.
-            if here.contains(&Item::Count) || !items.is_empty() {
-                items.extend_from_slice(&here);
+            let begins = here.contains(&Item::Count);
+            if begins || !items.is_empty() {
+                items.extend(here);
             }
-            match (items.contains(&Item::Count), items.contains(&Item::Step)) {
-                (false, _) => {}
-                (true, true) => {
-                    let Some((count, step_s)) = values(&items) else {
-                        return fault("gives no numbers for NPTS and DT".to_owned());
-                    };
-                    return Self::checked(index + 1, count, step_s, unit).or_else(fault);
-                }
-                (true, false) if here.contains(&Item::Count) => {}
-                (true, false) => {
-                    return fault("the header has no DT (time step) up to here".to_owned());
-                }
+            if items.contains(&Item::Step) {
+                let missing = || fault("gives no numbers for NPTS and DT".to_owned());
+                let (count, step_s) = values(&items).ok_or_else(missing)?;
+                return Self::checked(number, count, step_s, unit).map_err(fault);
+            }
+            // The number of samples and their spacing may be on two consecutive lines.
+            if !items.is_empty() && !begins {
+                break;
             }
         }
-        let line = text.lines().take(MAX_HEADER_LINES).count().max(1);
-        let message = if items.is_empty() {
-            "there is no NPTS (number of samples) up to here: is this an AT2 file?"
-        } else {
-            "the header has no DT (time step) up to here"
+        let message = match items.is_empty() {
+            true => "there is no NPTS (number of samples) up to here: is this an AT2 file?",
+            false => "the header has no DT (time step) up to here",
         };
-        Err(LineFault::on(line)(message))
+        Err(LineFault::on(last)(message))
     }
 
     fn checked(line: usize, count: f64, step_s: f64, unit: Option<Unit>) -> Result<Self, String> {
@@ -204,8 +191,7 @@ fn wrong_quantity(line: &str, wanted: Recorded) -> Option<String> {
         return Some(wrong.to_owned());
     }
     let other = Recorded::ALL.iter().find(|quantity| holds(quantity.name()));
-    let other = other.filter(|quantity| **quantity != wanted)?;
-    let wrong = match other {
+    let wrong = match other.filter(|quantity| **quantity != wanted)? {
         Recorded::Velocity => "the file holds a velocity history: give `quantity = \"velocity\"`",
         Recorded::Acceleration => {
             "the file holds an acceleration history: leave out `quantity = \"velocity\"`"

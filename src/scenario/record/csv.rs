@@ -101,19 +101,18 @@ fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
 /// Refuses a time that is out of range, or not later than the time before it.
 fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     if time_s.abs() > MAX_TIME_S {
+        let (time, most) = (plain(time_s), short(MAX_TIME_S));
         return Err(format!(
-            "the time {} s is out of range; its magnitude must be at most {} s",
-            plain(time_s),
-            short(MAX_TIME_S)
+            "the time {time} s is out of range; its magnitude must be at most {most} s"
         ));
     }
     match before_s {
-        Some(before_s) if time_s - before_s < MIN_STEP_S => Err(format!(
-            "the time does not increase: {} s follows {} s; allowed are steps of at least {} s",
-            short(time_s),
-            short(before_s),
-            short(MIN_STEP_S)
-        )),
+        Some(before_s) if time_s - before_s < MIN_STEP_S => {
+            let [time, before, least] = [time_s, before_s, MIN_STEP_S].map(short);
+            Err(format!(
+                "the time does not increase: {time} s follows {before} s; allowed are steps of at least {least} s"
+            ))
+        }
         _ => Ok(()),
     }
 }
@@ -144,23 +143,22 @@ impl Columns {
         let chosen = layout.acceleration_column.as_ref();
         let is_name = |column: &&TableColumn| matches!(column, TableColumn::Name(_));
         let by_name = time.iter().chain(&chosen).any(is_name);
-        let columns = Self {
-            time: time.map(index).transpose()?,
-            acceleration: match chosen {
-                Some(column) => index(column)?,
-                None => usize::from(time.is_some()),
-            },
+        let (time, acceleration) = (
+            time.map(index).transpose()?,
+            chosen.map_or(Ok(usize::from(time.is_some())), index)?,
+        );
+        let mut read = time.iter().chain([&acceleration]);
+        let is_named = |at: &usize| {
+            let cell = names.get(*at);
+            cell.is_none_or(|cell| names_column(cell, layout.decimal))
+        };
+        Ok(Self {
+            has_names: by_name || read.all(is_named),
+            time,
+            acceleration,
             is_chosen: chosen.is_some(),
             decimal: layout.decimal,
             by_name,
-            has_names: by_name,
-        };
-        let mut cells = columns.all().filter_map(|index| names.get(index));
-        let has_names = by_name || cells.all(|cell| names_column(cell, layout.decimal));
-        drop(cells);
-        Ok(Self {
-            has_names,
-            ..columns
         })
     }
 
@@ -175,11 +173,6 @@ impl Columns {
             _ => None,
         });
         units.next_back().unwrap_or(1.0)
-    }
-
-    /// The columns that are read.
-    fn all(&self) -> impl Iterator<Item = usize> {
-        self.time.into_iter().chain([self.acceleration])
     }
 
     /// Time, or zero if the table has none, and acceleration.
@@ -211,17 +204,12 @@ impl Columns {
     }
 
     fn no_column(&self, index: usize, row: &Row<'_>) -> String {
-        let single = self.time.is_some() && row.cells().count() == 1;
-        let hint = if single {
-            "; if the file has accelerations only, give `dt_s`"
-        } else {
-            ""
+        let hint = match self.time.is_some() && row.cells().count() == 1 {
+            true => "; if the file has accelerations only, give `dt_s`",
+            false => "",
         };
-        let place = index + 1;
-        format!(
-            "there is no column {place} in `{}`{hint}",
-            excerpt(row.text)
-        )
+        let (place, text) = (index + 1, excerpt(row.text));
+        format!("there is no column {place} in `{text}`{hint}")
     }
 }
 

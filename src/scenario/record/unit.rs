@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::scenario::error::excerpt;
 use crate::scenario::rule::{OneOf, Rule, one_of};
 
 named! {
@@ -63,6 +64,16 @@ impl Unit {
                 "a unit of acceleration; leave out `quantity = \"velocity\"` if the record is one of accelerations"
             }
         }
+    }
+
+    /// The unit that a header names, which must be one of this quantity; the remedy is for units that are unknown.
+    pub(super) fn of_header(text: &str, quantity: Recorded, remedy: &str) -> Result<Self, String> {
+        let wrong = match Self::written(text) {
+            Some(unit) if unit.quantity() == quantity => return Ok(unit),
+            Some(unit) => format!(", {}", unit.other_quantity()),
+            None => format!("; {remedy}"),
+        };
+        Err(format!("the unit is {}{wrong}", excerpt(text)))
     }
 
     /// The unit in one of the spellings that files have: `cm/s^2`, `CM/SEC/SEC`, `gal`.
