@@ -104,7 +104,7 @@ pub fn ground_in_words(scenario: &Scenario) -> String {
 
 fn ground(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
     let left = of_left_foot(scenario, varies)?;
-    let right = match scenario.right_foot() {
+    let right = match &scenario.right_foot {
         None => return Some(left),
         Some(RightFoot::Late(delay_s)) if !varies("ground.right.delay_s") => {
             let when = if *delay_s < 0.0 { "earlier" } else { "later" };

@@ -128,20 +128,28 @@ pub struct Changes<'a> {
 pub struct Scenario {
     title: Option<String>,
     structure: Structure,
-    ties: Vec<TieTable>,
+    /// Its ties, as they are given.
+    pub ties: Vec<TieTable>,
     motion: Motion,
     /// Whether the text has an `[impact]` that is ignored.
     ignores_impact: bool,
     ground: Option<Ground>,
     /// `[ground]` as it was given, if its files are missing or faulty and nothing is to move.
     unread_ground: Option<Value>,
-    right_foot: Option<RightFoot>,
-    initial: Option<Initial>,
-    simulation: Simulation,
-    map: Option<Map>,
-    suite: Option<Suite>,
-    demand: Option<Demand>,
-    verify: Option<Verify>,
+    /// How the right foot moves, if not with the ground.
+    pub right_foot: Option<RightFoot>,
+    /// The initial state of the motion; `None`: rest.
+    pub initial: Option<Initial>,
+    /// How the motion is computed.
+    pub simulation: Simulation,
+    /// The quantities that vary over an overturning map.
+    pub map: Option<Map>,
+    /// The records that shake the structure for its fragility.
+    pub suite: Option<Suite>,
+    /// The demand of a check.
+    pub demand: Option<Demand>,
+    /// The options of a check; `None`: the defaults.
+    pub verify: Option<Verify>,
     uncertain: Option<Uncertain>,
     /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
     as_given: Entries,
@@ -166,12 +174,6 @@ impl Scenario {
         &self.structure
     }
 
-    /// Its ties, as they are given.
-    #[must_use]
-    pub fn ties(&self) -> &[TieTable] {
-        &self.ties
-    }
-
     /// The model of motion.
     #[must_use]
     pub const fn motion(&self) -> &Motion {
@@ -182,12 +184,6 @@ impl Scenario {
     #[must_use]
     pub const fn ground(&self) -> Option<&Ground> {
         self.ground.as_ref()
-    }
-
-    /// How the right foot moves, if not with the ground.
-    #[must_use]
-    pub const fn right_foot(&self) -> Option<&RightFoot> {
-        self.right_foot.as_ref()
     }
 
     /// The records of its ground, under both feet.
@@ -211,42 +207,6 @@ impl Scenario {
         series
             .map(|series| format!("{} {:08x}", series.file, series.checksum()))
             .collect()
-    }
-
-    /// The initial state of the motion; `None`: rest.
-    #[must_use]
-    pub const fn initial(&self) -> Option<Initial> {
-        self.initial
-    }
-
-    /// How the motion is computed.
-    #[must_use]
-    pub const fn simulation(&self) -> &Simulation {
-        &self.simulation
-    }
-
-    /// The quantities that vary over an overturning map.
-    #[must_use]
-    pub const fn map(&self) -> Option<&Map> {
-        self.map.as_ref()
-    }
-
-    /// The records that shake the structure for its fragility.
-    #[must_use]
-    pub const fn suite(&self) -> Option<&Suite> {
-        self.suite.as_ref()
-    }
-
-    /// The demand of a check.
-    #[must_use]
-    pub const fn demand(&self) -> Option<&Demand> {
-        self.demand.as_ref()
-    }
-
-    /// The options of a check; `None`: the defaults.
-    #[must_use]
-    pub const fn verify(&self) -> Option<&Verify> {
-        self.verify.as_ref()
     }
 
     /// The uncertain numbers of the scenario; `None`: none.

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
 use super::hinges::Hinges;
+use super::relation::Relation::{self, Excludes};
 use super::structure::{DRUM_KEYS, ModelError, Structure};
 use super::table::{Reading, Table};
 use super::{free_hinges, impact, supports};
@@ -45,20 +46,15 @@ impl Motion {
     /// Its name in sentences.
     #[must_use]
     pub const fn words(&self) -> &'static str {
-        match self {
-            Self::FourLinks(_) => "four links",
-            Self::FreeHinges(_) => "free hinges",
-            Self::ElasticJoints(_) => "elastic joints",
-        }
+        ["four links", "free hinges", "elastic joints"][self.hinges() as usize]
     }
 
     /// The name in results of the model built from a structure.
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
         match self {
-            Self::FreeHinges(_) => "free_hinges",
-            Self::ElasticJoints(_) => "elastic_joints",
             Self::FourLinks(_) if structure.thrusts() => "four_links",
             Self::FourLinks(_) => "column",
+            Self::FreeHinges(_) | Self::ElasticJoints(_) => self.table_name(),
         }
     }
 
@@ -197,11 +193,7 @@ impl Motion {
     /// The name of its table.
     #[must_use]
     pub const fn table_name(&self) -> &'static str {
-        match self {
-            Self::FourLinks(_) => "impact",
-            Self::FreeHinges(_) => "free_hinges",
-            Self::ElasticJoints(_) => "elastic_joints",
-        }
+        ["impact", "free_hinges", "elastic_joints"][self.hinges() as usize]
     }
 
     /// The contents of its table.
@@ -213,6 +205,25 @@ impl Motion {
         }
     }
 }
+
+/// Tables of different models of motion.
+const ALONE: &[Relation<'_>] = &[
+    Excludes(
+        "elastic_joints",
+        "free_hinges",
+        "cannot be combined with [elastic_joints]; leave one out, or choose the model of motion",
+    ),
+    Excludes(
+        "elastic_joints",
+        "impact",
+        "cannot be combined with [elastic_joints], which have no impacts; leave one out",
+    ),
+    Excludes(
+        "free_hinges",
+        "impact",
+        "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out",
+    ),
+];
 
 /// Whether the scenario gives a structure that only models with joints can move: on springings that have moved, or of drums.
 fn needs_joints(table: &Table<'_>) -> bool {
@@ -254,18 +265,8 @@ impl Tables {
     /// Reads the impact law. Returns the model, and whether there is an `[impact]` that is ignored.
     pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
-        let (elastic, free) = (table.gives("elastic_joints"), table.gives("free_hinges"));
-        if !self.asked && elastic && free {
-            let wrong = "cannot be combined with [elastic_joints]; leave one out, or choose the model of motion";
-            return Err(table.wrong("free_hinges", wrong));
-        }
-        if !self.asked && (elastic || free) && table.gives("impact") {
-            let wrong = if elastic {
-                "cannot be combined with [elastic_joints], which have no impacts; leave one out"
-            } else {
-                "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out"
-            };
-            return Err(table.wrong("impact", wrong));
+        if !self.asked {
+            table.relate(ALONE)?;
         }
         let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);
         let supports = self.supports?;
@@ -274,21 +275,19 @@ impl Tables {
             return Err(table.wrong("supports", wrong));
         }
         let supports = supports.unwrap_or_default();
-        let motion = match self.hinges {
-            Hinges::Four => Motion::FourLinks(law),
-            Hinges::Free => Motion::FreeHinges(FreeTable {
-                options: free_hinges.unwrap_or_default(),
-                supports,
-            }),
-            Hinges::Elastic => match elastic_joints {
-                Some(joints) => Motion::ElasticJoints(ElasticTable { supports, ..joints }),
-                None => {
-                    return Err(table.wrong_itself(
-                        "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \
-                         docs/elastic-joints.md tells how to choose",
-                    ));
-                }
-            },
+        let options = free_hinges.unwrap_or_default();
+        let motion = match (self.hinges, elastic_joints) {
+            (Hinges::Four, _) => Motion::FourLinks(law),
+            (Hinges::Free, _) => Motion::FreeHinges(FreeTable { options, supports }),
+            (Hinges::Elastic, Some(joints)) => {
+                Motion::ElasticJoints(ElasticTable { supports, ..joints })
+            }
+            (Hinges::Elastic, None) => {
+                return Err(table.wrong_itself(
+                    "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \
+                     docs/elastic-joints.md explains how to choose",
+                ));
+            }
         };
         Ok((motion, law != motion.impact()))
     }

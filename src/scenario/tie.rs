@@ -17,7 +17,7 @@ use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
 use super::rule::{Count, List, Number, one_of, within};
 use super::table::{Reading, Table};
 use crate::argument::short;
-use crate::mechanics::blocks::{MAX_BLOCKS, Row};
+use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError};
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::Masonry;
 use crate::mechanics::stability::falls;
@@ -290,18 +290,20 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     }
 }
 
-/// The ties of a structure, in it.
-///
-/// # Errors
-/// With the index of the tie, in words, what to change.
-fn placed(
+/// A structure with its ties, which `tied` adds to it.
+fn bound<T>(
+    table: &mut Table<'_>,
     ties: &[TieTable],
-    row: &Row,
-    springings: Option<[usize; 2]>,
-) -> Result<Vec<Tie>, (usize, String)> {
+    (row, springings): (&Row, Option<[usize; 2]>),
+    tied: impl FnOnce(Vec<Tie>) -> Result<T, (usize, TieError)>,
+) -> Reading<T> {
     let each = ties.iter().enumerate();
-    each.map(|(index, tie)| tie.placed(row, springings).map_err(|wrong| (index, wrong)))
-        .collect()
+    let placed =
+        each.map(|(index, tie)| tie.placed(row, springings).map_err(|wrong| (index, wrong)));
+    let placed = placed.collect::<Result<Vec<_>, _>>();
+    placed
+        .and_then(|ties| tied(ties).map_err(|(index, error)| (index, error.to_string())))
+        .map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))
 }
 
 /// Masonry with its ties.
@@ -311,12 +313,10 @@ pub(super) fn tied(
     masonry: Masonry,
     gravity_m_s2: f64,
 ) -> Reading<Masonry> {
-    let placed = placed(ties, &masonry.row, masonry.springing_joints());
-    let tied = placed.and_then(|ties| {
-        let tied = masonry.with_ties(ties, gravity_m_s2);
-        tied.map_err(|(index, error)| (index, error.to_string()))
-    });
-    tied.map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))
+    let (row, springings) = (masonry.row.clone(), masonry.springing_joints());
+    bound(table, ties, (&row, springings), |ties| {
+        masonry.with_ties(ties, gravity_m_s2)
+    })
 }
 
 /// A column of any number of drums with its ties.
@@ -329,27 +329,21 @@ pub(super) fn tied_column(
     if ties.is_empty() {
         return Ok(column);
     }
-    let row = match column.row() {
-        Ok(row) => row,
-        Err(error) => return Err(table.wrong("column", format!("makes no row of blocks: {error}"))),
+    let no_row = |error: RowError| format!("makes no row of blocks: {error}");
+    let row = column
+        .row()
+        .map_err(|error| table.wrong("column", no_row(error)))?;
+    let column = bound(table, ties, (&row, None), |ties| {
+        column.with_ties(ties, gravity_m_s2)
+    })?;
+    let falls = match column.row() {
+        Ok(row) => falls(&row).map_err(|error| error.to_string()),
+        Err(error) => Err(error.to_string()),
     };
-    let tied = placed(ties, &row, None).and_then(|ties| {
-        let tied = column.with_ties(ties, gravity_m_s2);
-        tied.map_err(|(index, error)| (index, error.to_string()))
-    });
-    let column = tied.map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))?;
-    let wrong = |wrong: String| Err(format!("cannot be checked to stand: {wrong}"));
-    let stands = match column.row() {
-        Ok(row) => falls(&row).map_or_else(
-            |error| wrong(error.to_string()),
-            |falls| Ok(falls.is_none()),
-        ),
-        Err(error) => wrong(error.to_string()),
-    };
-    match stands {
-        Ok(true) => Ok(column),
-        Ok(false) => Err(table.wrong("tie", PULLS_OVER)),
-        Err(wrong) => Err(table.wrong("column", wrong)),
+    match falls {
+        Ok(None) => Ok(column),
+        Ok(Some(_)) => Err(table.wrong("tie", PULLS_OVER)),
+        Err(wrong) => Err(table.wrong("column", format!("cannot be checked to stand: {wrong}"))),
     }
 }
 

@@ -150,7 +150,7 @@ pub const VERIFY: StudyKind = StudyKind {
     files: &verify::FILES,
     run: |scenario, _, _, _| {
         scenario.check_as_built().map_err(StudyError::Scenario)?;
-        if scenario.right_foot().is_some() {
+        if scenario.right_foot.is_some() {
             let message =
                 "the histories of a check shake both feet alike: leave [ground.right] out";
             return Err(StudyError::scenario(message));

@@ -284,7 +284,7 @@ fn a_default_is_not_frozen() {
     let name = folder.path().join("t.toml");
     let resolved = Scenario::parse(&text, &name.to_string_lossy()).unwrap();
     assert_eq!(
-        resolved.simulation().duration_s,
+        resolved.simulation.duration_s,
         Some(scenario.request().end_s)
     );
 }

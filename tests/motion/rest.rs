@@ -18,7 +18,7 @@ fn halving_the_rest_energy_changes_no_scenario() {
         let scenario = Scenario::read(&path).unwrap();
         // Models other than four links have a rest criterion of their own, and only they follow feet that move differently.
         let model = match scenario.mechanisms() {
-            Ok(model) if scenario.right_foot().is_none() => model,
+            Ok(model) if scenario.right_foot.is_none() => model,
             _ => {
                 assert!(scenario.motion().hinges().has_joints());
                 continue;

@@ -67,7 +67,7 @@ fn defaults() {
     assert_eq!([arch.depth_m, arch.density_kg_m3], [1.0, 2000.0]);
     assert_eq!(arch.voussoirs, None);
     assert_eq!(
-        *scenario.simulation(),
+        scenario.simulation,
         Simulation {
             duration_s: None,
             output_step_s: 0.005,
@@ -81,12 +81,12 @@ fn defaults() {
         ImpactModel::MaxRestitution.into()
     );
     assert!(
-        scenario.title().is_none() && scenario.ground().is_none() && scenario.initial().is_none()
+        scenario.title().is_none() && scenario.ground().is_none() && scenario.initial.is_none()
     );
     assert!(
         !scenario.motion().hinges().has_joints()
-            && scenario.map().is_none()
-            && scenario.suite().is_none()
+            && scenario.map.is_none()
+            && scenario.suite.is_none()
     );
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
@@ -159,7 +159,7 @@ fn releases_of_rows() {
     assert_eq!(
         released(&drums, "1.57")
             .unwrap()
-            .initial()
+            .initial
             .unwrap()
             .rotation_rad,
         1.57
@@ -290,8 +290,8 @@ amplitude_g = [1.0, 2.0]
         rest_energy_ratio: 0.1,
         gravity_m_s2: 1.62,
     };
-    assert_eq!(*scenario.simulation(), simulation);
-    let map = scenario.map().unwrap();
+    assert_eq!(scenario.simulation, simulation);
+    let map = scenario.map.as_ref().unwrap();
     let axes = [&map.x, &map.y].map(|axis| (axis.quantity, axis.sequence.values()));
     assert_eq!(axes[0], (Quantity::Duration, vec![0.1, 0.55, 1.0]));
     assert_eq!(axes[1], (Quantity::Amplitude, vec![1.0, 2.0]));
@@ -300,7 +300,7 @@ amplitude_g = [1.0, 2.0]
         scenario.motion().impact(),
         ImpactModel::Prescribed { restitution: 1.0 }.into()
     );
-    let initial = scenario.initial().unwrap();
+    let initial = scenario.initial.unwrap();
     assert_eq!((initial.sway, initial.rotation_rad), (Sway::Left, 0.02));
 }
 

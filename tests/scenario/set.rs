@@ -74,7 +74,7 @@ fn an_assignment_does_what_an_edit_of_the_text_does() {
         "map.amplitude_g=[0.2, 0.3]",
         "map.duration_s={from=0.1, to=0.2, count=3}",
     ]);
-    assert!(map.unwrap().map().is_some());
+    assert!(map.unwrap().map.is_some());
 }
 
 #[test]

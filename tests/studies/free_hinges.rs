@@ -448,7 +448,7 @@ fn what_is_of_four_links_is_refused() {
     assert!(
         Scenario::parse(&repeat, "s.toml")
             .unwrap()
-            .map()
+            .map
             .unwrap()
             .repeat
     );

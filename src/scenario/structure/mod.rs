@@ -383,21 +383,19 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     table
         .relate(&[AtMostOne(&["drums", "drum_heights_m"], "give one of them")])
         .and(table.sound())?;
-    let mut column = Column::new(height_m, width_m)
+    let column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
+        .and_then(|column| match drums {
+            Some(drums) => column.with_drums(drums),
+            None => Ok(column),
+        })
+        .and_then(|column| match top_width_m {
+            Some(top_width_m) => column.with_top_width_m(top_width_m),
+            None => Ok(column),
+        })
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
-    if let Some(drums) = drums {
-        column = column
-            .with_drums(drums)
-            .expect("the count is within that of a column");
-    }
-    if let Some(top_width_m) = top_width_m {
-        column = column
-            .with_top_width_m(top_width_m)
-            .expect("the range of the key is within that of a column");
-    }
     match drum_heights_m {
         Some(heights_m) => column
             .with_drum_heights_m(heights_m)

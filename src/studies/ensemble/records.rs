@@ -61,7 +61,8 @@ impl Capacities {
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario
-            .suite()
+            .suite
+            .as_ref()
             .ok_or("the scenario has no [suite], whose records shake the samples")?;
         Ok(Self {
             levels: suite.levels.values(),

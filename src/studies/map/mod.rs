@@ -167,8 +167,8 @@ impl<'a> OverturningMap<'a> {
     /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
-        if let Some(map) = scenario.map() {
-            map.check(scenario.ground(), scenario.simulation())?;
+        if let Some(map) = &scenario.map {
+            map.check(scenario.ground(), &scenario.simulation)?;
         }
         let map = Self::new(scenario).ok_or_else(|| {
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
@@ -186,8 +186,8 @@ impl<'a> OverturningMap<'a> {
     /// The cells of a scenario's map; `None` if it has no map or no ground motion.
     #[must_use]
     pub fn new(scenario: &'a Scenario) -> Option<Self> {
-        let (ground, simulation) = (scenario.ground(), scenario.simulation());
-        let suits = scenario.map()?.check(ground, simulation);
+        let (ground, simulation) = (scenario.ground(), &scenario.simulation);
+        let suits = scenario.map.as_ref()?.check(ground, simulation);
         suits
             .ok()
             .and_then(|()| Self::of_sample(scenario, scenario.clone()))
@@ -195,7 +195,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The cells of the map of a scenario, where all that its axes do not vary is as in another one, a sample of it.
     pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
-        let (Some(map), Some(_)) = (scenario.map(), scenario.ground()) else {
+        let (Some(map), Some(_)) = (&scenario.map, scenario.ground()) else {
             return None;
         };
         let axes = [&map.x, &map.y];

@@ -141,7 +141,7 @@ impl Look {
     /// # Errors
     /// Explains what the map lacks for that.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
-        let map = scenario.map().ok_or("there is no map")?;
+        let map = scenario.map.as_ref().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }

@@ -24,7 +24,7 @@ impl FeetApart {
     pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
-        let step_s = scenario.simulation().output_step_s;
+        let step_s = scenario.simulation.output_step_s;
         let first = (ground.start_s() / step_s).ceil() as i32;
         let last = (history.end_s / step_s).floor() as i32;
         let mut times_s = vec![ground.start_s()];

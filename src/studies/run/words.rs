@@ -279,7 +279,7 @@ impl<'a> Words<'a> {
 
     /// Whether the motion of the right foot is recorded.
     fn is_recorded(&self) -> bool {
-        let right = self.evidence.scenario.right_foot();
+        let right = self.evidence.scenario.right_foot.as_ref();
         right.is_some_and(|right| right.record().is_some())
     }
 

@@ -110,7 +110,7 @@ impl<'a> RecordSuite<'a> {
     /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
-        let suite = scenario.suite().ok_or_else(|| {
+        let suite = scenario.suite.as_ref().ok_or_else(|| {
             "the scenario has no [suite]: give it a table with records and levels, such as\n\n\
              [suite]\n\
              records = \"records/*.at2\"\n\

@@ -364,8 +364,8 @@ struct Basis<'a> {
 /// # Errors
 /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends too early.
 pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
-    let demand = scenario.demand().cloned().ok_or(NoCheck::NoDemand)?;
-    let settings = scenario.verify().cloned().unwrap_or_default();
+    let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
+    let settings = scenario.verify.clone().unwrap_or_default();
     let (structure, own_friction) = (
         scenario.structure(),
         scenario.motion().friction_coefficient(),
