@@ -569,6 +569,15 @@ def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
     return True
 
 
+def _complete(of: Structure | Scenario, ground: Ground | None, settings: Mapping[str, Any]) -> Scenario:
+    """The scenario that is given, or that of a structure with its ground and settings."""
+    if _whole(of, {"ground": ground, **settings}):
+        assert isinstance(of, Scenario)
+        return of
+    assert isinstance(of, Structure)
+    return Scenario.of(of, ground, **settings)
+
+
 def map_scenario(
     structure: Structure,
     ground: Ground,
@@ -727,12 +736,7 @@ def threshold(
         ValueError: when an argument is not allowed, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
-    if _whole(of, {"ground": ground, **settings}):
-        assert isinstance(of, Scenario)
-        scenario = of
-    else:
-        assert isinstance(of, Structure)
-        scenario = Scenario.of(of, ground, **settings)
+    scenario = _complete(of, ground, settings)
     factors = (from_factor, to_factor, stride)
     return _warned(Threshold(_study("threshold", scenario, threads, progress, factors)))
 
@@ -774,12 +778,7 @@ def threshold_along(
         ValueError: when an argument is not allowed, with the library's explanation.
         KeyboardInterrupt: on Ctrl-C, within a second.
     """
-    if _whole(of, {"ground": ground, **settings}):
-        assert isinstance(of, Scenario)
-        scenario = of
-    else:
-        assert isinstance(of, Structure)
-        scenario = Scenario.of(of, ground, **settings)
+    scenario = _complete(of, ground, settings)
     along = f"{key}={start!r}..{end!r}:{count}"
     factors = (from_factor, to_factor, stride)
     found = _study("threshold_along", scenario, threads, progress, factors, (along, no_impact))
@@ -853,9 +852,9 @@ def verify(
     # The same record may be used at both limit states.
     given = {id(record): record for some in records.values() for record in some or ()}
     if given:
-        told, held = _record_files(list(given.values()))
+        keys, held = _record_files(list(given.values()))
         named = {key: [one.name for one in some] for key, some in records.items() if some}
-        how = {**how, **told, **named}
+        how = {**how, **keys, **named}
         files.update(held)
     scenario = Scenario.of(
         of, title=title, demand=table, verify=how or None, files=files, model=of._model
