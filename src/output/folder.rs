@@ -31,18 +31,10 @@ struct Inner {
     locks: Vec<File>,
     /// Folders that were created for the results, outermost first.
     made: Vec<PathBuf>,
-    prepared: Vec<Prepared>,
-    /// Results of the last run, in the order in which they are removed.
+    /// The complete files of each folder with their paths, still under hidden names, the seal last.
+    prepared: Vec<Vec<(PathBuf, TempPath)>>,
+    /// Results of earlier runs, in the order in which they are removed.
     last: Vec<PathBuf>,
-}
-
-/// The complete files of one folder, still under hidden names.
-#[derive(Debug)]
-struct Prepared {
-    /// Their paths, the seal last.
-    files: Vec<(PathBuf, TempPath)>,
-    /// Results that earlier runs may have left and that this run does not write.
-    obsolete: Vec<PathBuf>,
 }
 
 /// A folder in which results are being prepared.
@@ -135,7 +127,8 @@ impl Batch {
         let failed = |path: &Path| OutputError::io(format!("cannot write {}", path.display()));
         let prepared = std::mem::take(&mut inner.prepared);
         let last = std::mem::take(&mut inner.last);
-        for path in &last {
+        let seals = prepared.iter().filter_map(|files| files.last());
+        for path in seals.map(|(path, _)| path).chain(&last) {
             remove_if_there(path).map_err(failed(path))?;
         }
         let mut emptied: Vec<&Path> = folders(&last);
@@ -144,24 +137,15 @@ impl Batch {
             // A folder that holds anything else stays.
             let _ = fs::remove_dir(folder);
         }
-        let seals = prepared.iter().filter_map(|folder| folder.files.last());
-        let obsolete = prepared.iter().flat_map(|folder| &folder.obsolete);
-        for path in seals.map(|(path, _)| path).chain(obsolete) {
-            remove_if_there(path).map_err(failed(path))?;
-        }
-        let mut seals = Vec::new();
+        let (mut files, mut seals) = (Vec::new(), Vec::new());
         for mut folder in prepared {
-            seals.extend(folder.files.pop());
-            for (path, file) in folder.files {
-                file.persist(&path)
-                    .map_err(|error| failed(&path)(error.error))?;
-            }
+            seals.extend(folder.pop());
+            files.extend(folder);
         }
-        // Subfolders are sealed before the folder around them.
-        seals.sort_by_key(|(path, _)| std::cmp::Reverse(path.components().count()));
-        for (path, file) in seals {
-            file.persist(&path)
-                .map_err(|error| failed(&path)(error.error))?;
+        // Subfolders are sealed before the folder around them, which was prepared before them.
+        for (path, file) in files.into_iter().chain(seals.into_iter().rev()) {
+            let persisted = file.persist(&path);
+            persisted.map_err(|error| failed(&path)(error.error))?;
         }
         Ok(())
     }
@@ -314,14 +298,15 @@ impl Folder {
                 .map_err(self.cannot_write(&name))?;
             self.done.push((name, file.into_temp_path()));
         }
-        let path = |name: &String| self.path.join(name);
         let files = self.done.drain(..);
-        let files = files
-            .map(|(name, file)| (self.path.join(name), file))
-            .collect();
-        let obsolete = self.obsolete.iter().map(path).collect();
-        let prepared = Prepared { files, obsolete };
-        self.batch.inner().prepared.push(prepared);
+        let files = files.map(|(name, file)| (self.path.join(name), file));
+        let files = files.collect();
+        let mut inner = self.batch.inner();
+        inner.prepared.push(files);
+        inner
+            .last
+            .extend(self.obsolete.iter().map(|name| self.path.join(name)));
+        drop(inner);
         if self.publishes {
             self.batch.publish()?;
         }
@@ -332,13 +317,16 @@ impl Folder {
     fn hidden(&self, name: &str) -> Result<NamedTempFile, OutputError> {
         let path = self.path.join(name);
         let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
-        tempfile::Builder::new()
-            .prefix(&format!("{PREFIX}{name_alone}-"))
-            .permissions_like_others()
+        let prefix = format!("{PREFIX}{name_alone}-");
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(&prefix);
+        // Temporary files are private by default; results get the usual permissions, to which the system applies the user's umask.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        builder
             .tempfile_in(path.parent().unwrap_or(&self.path))
             // The system's message would name the hidden file.
-            .map_err(|error| error.kind().into())
-            .map_err(self.cannot_write(name))
+            .map_err(|error| self.cannot_write(name)(error.kind().into()))
     }
 
     fn cannot_write(&self, name: &str) -> impl FnOnce(io::Error) -> OutputError + use<> {
@@ -397,27 +385,6 @@ fn remove_if_there(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
-    }
-}
-
-/// Temporary files are private by default; results get the usual permissions.
-trait PermissionsLikeOthers {
-    fn permissions_like_others(&mut self) -> &mut Self;
-}
-
-#[cfg(unix)]
-impl PermissionsLikeOthers for tempfile::Builder<'_, '_> {
-    fn permissions_like_others(&mut self) -> &mut Self {
-        use std::os::unix::fs::PermissionsExt as _;
-        // The system applies the user's umask.
-        self.permissions(fs::Permissions::from_mode(0o666))
-    }
-}
-
-#[cfg(not(unix))]
-impl PermissionsLikeOthers for tempfile::Builder<'_, '_> {
-    fn permissions_like_others(&mut self) -> &mut Self {
-        self
     }
 }
 

@@ -70,15 +70,6 @@ impl Quantity {
             Self::Other => &ANY_NUMBER,
         }
     }
-
-    /// True if it belongs to records, false if it belongs to pulses; `None`: to neither.
-    const fn is_of_records(self) -> Option<bool> {
-        match self {
-            Self::Scale | Self::PeakG => Some(true),
-            Self::Duration | Self::Frequency | Self::Amplitude => Some(false),
-            _ => None,
-        }
-    }
 }
 
 /// One direction of a map.
@@ -175,11 +166,14 @@ impl Map {
             );
         };
         for axis in [&self.x, &self.y] {
-            let wrong = match (axis.quantity.is_of_records(), ground) {
-                (Some(true), Ground::Pulse(_)) => {
+            let wrong = match (axis.quantity, ground) {
+                (Quantity::Scale | Quantity::PeakG, Ground::Pulse(_)) => {
                     "goes with a record, and [ground] has a pulse: the axis of its strength is `amplitude_g`"
                 }
-                (Some(false), Ground::Record(_)) => {
+                (
+                    Quantity::Duration | Quantity::Frequency | Quantity::Amplitude,
+                    Ground::Record(_),
+                ) => {
                     "goes with a pulse, and [ground] has a record: the axes of its strength are `scale` and `peak_g`"
                 }
                 _ => continue,

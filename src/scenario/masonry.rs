@@ -89,13 +89,6 @@ fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
         );
         return Err(table.wrong("joints", wrong));
     }
-    if let Some((line, values)) = rows
-        .iter()
-        .find(|(_, values)| values.iter().any(|value| value.abs() > 1e6))
-    {
-        let message = format!("{values:?}: coordinates must be within 1e6 m of the origin");
-        return Err(table.wrong("joints", wrong_line(*line, message)));
-    }
     let joints: Vec<Joint> = rows
         .iter()
         .map(|(_, [xi, yi, xe, ye])| Joint {
@@ -179,10 +172,6 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
                 format!("there is no block {block}: blocks are counted from 1 to {blocks}");
             return Err(fault(line, message));
         };
-        if x.abs() > 1e6 || y.abs() > 1e6 {
-            let message = format!("{x:?}, {y:?}: coordinates must be within 1e6 m of the origin");
-            return Err(fault(line, message));
-        }
         let corner = Vector2::new(x, y);
         let known = outlines.iter().position(|(known, _)| *known == index - 1);
         match known {

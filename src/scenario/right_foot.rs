@@ -19,7 +19,6 @@ use super::structure::Structure;
 use super::table::{Reading, Reported, Table};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
-use crate::mechanics::blocks::Supports;
 
 /// Slower waves than this, in m/s, are a mistake of units.
 const SLOWEST_M_S: f64 = 1.0;
@@ -75,8 +74,7 @@ impl RightFoot {
             );
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
-        let row = structure.and_then(|structure| structure.row().ok());
-        if row.is_some_and(|row| row.supports == Supports::Left) {
+        if structure.is_some_and(Structure::stands_on_one_support) {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }

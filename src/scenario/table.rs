@@ -261,13 +261,11 @@ impl<'a> Table<'a> {
         read: impl Fn(&mut Table<'_>) -> Reading<T>,
     ) -> Vec<T> {
         let Some(entry) = self.entry(key, true) else {
-            if let Some(outer) = self.description.take() {
-                self.description = Some(Description::default());
+            if self.describes() {
                 let _ = self.descend(key, None, read);
-                let inner = self.description.replace(outer);
-                let items = inner.and_then(|mut inner| inner.properties.shift_remove(key));
-                if let Some(outer) = &mut self.description {
-                    outer.add(key, json!({ "type": "array", "items": items }));
+                let known = self.description.as_mut();
+                if let Some(items) = known.and_then(|it| it.properties.get_mut(key)) {
+                    *items = json!({ "type": "array", "items": items.take() });
                 }
             }
             return Vec::new();

@@ -70,30 +70,22 @@ pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     if let Some(found) = value(resolved, key) {
         return Some(found.clone());
     }
-    let parts = parts(key);
-    let other = |keys: &[&str]| {
-        let found = keys.iter().try_fold(resolved, |table, key| table.get(key));
-        found.and_then(Value::as_f64)
-    };
-    match parts[..] {
+    let of_arch = |key: &str| resolved.get("arch")?.get(key)?.as_f64();
+    match parts(key)[..] {
         ["arch", "thickness_m"] => {
-            let ratio = other(&["arch", "thickness_ratio"])?;
-            Some(Value::from(ratio * other(&["arch", "mean_radius_m"])?))
+            let thickness_m = of_arch("thickness_ratio")? * of_arch("mean_radius_m")?;
+            Some(Value::from(thickness_m))
         }
         _ => None,
     }
 }
 
-/// Keys that give one quantity in two ways: where the first is given, the second goes.
-const ALTERNATIVES: [[&str; 3]; 8] = [
+/// Keys that give one quantity in two ways: where one is given, the other goes.
+const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/arch", "thickness_m", "thickness_ratio"],
-    ["/arch", "thickness_ratio", "thickness_m"],
     ["/arch", "rise_m", "embrace_deg"],
-    ["/arch", "embrace_deg", "rise_m"],
     ["/ground/record", "scale", "peak_g"],
-    ["/ground/record", "peak_g", "scale"],
     ["/ground/right/record", "scale", "peak_g"],
-    ["/ground/right/record", "peak_g", "scale"],
 ];
 
 /// Changes what has to go with other numbers in a resolved scenario: of an arch either the thickness is there or its ratio, its last
@@ -104,7 +96,8 @@ fn make_room(table: &mut Value, values: &[(&str, f64)]) {
         let index = keys.iter().position(|key| key[..] == wanted)?;
         Some(values[index].1)
     };
-    for [name, is_given, goes] in ALTERNATIVES {
+    let both_ways = ALTERNATIVES.map(|[name, one, other]| [[name, one, other], [name, other, one]]);
+    for [name, is_given, goes] in both_ways.into_iter().flatten() {
         let is_given =
             |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{is_given}");
         if keys.iter().any(is_given)

@@ -242,6 +242,9 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
     cell.is_empty() || is_word && !is_number && !is_damaged
 }
 
+/// Largest magnitude of a number of a table that is no record.
+const MAX_NUMBER: f64 = 1e6;
+
 /// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
     let mut rows = Rows::new(text, Decimal::Point);
@@ -250,15 +253,18 @@ pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N]
         if found.is_empty() && row.cells().all(|cell| names_column(cell, Decimal::Point)) {
             continue;
         }
-        let cells: Vec<&str> = row.cells().collect();
-        if cells.len() != N {
-            let message = format!("`{}` has {} cells, not {N}", excerpt(row.text), cells.len());
-            return Err(row.fault(message));
-        }
-        let mut values = [0.0; N];
-        for (value, cell) in values.iter_mut().zip(cells) {
-            *value = number(cell).map_err(|message| row.fault(message))?;
-        }
+        let values = row.cells().map(|cell| match number(cell)? {
+            value if value.abs() <= MAX_NUMBER => Ok(value),
+            value => Err(format!(
+                "`{value:?}` is out of range; must be within 1e6 of zero"
+            )),
+        });
+        let values = values.collect::<Result<Vec<_>, String>>();
+        let values = <[f64; N]>::try_from(values.map_err(LineFault::on(row.line))?);
+        let values = values.map_err(|values| {
+            let (text, count) = (excerpt(row.text), values.len());
+            row.fault(format!("`{text}` has {count} cells, not {N}"))
+        })?;
         if found.len() == MAX_SAMPLES {
             return Err(row.fault(format!("more than {MAX_SAMPLES} rows")));
         }

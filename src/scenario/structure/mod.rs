@@ -167,11 +167,7 @@ impl Structure {
     /// Whether it stands on one support, as a column does.
     #[must_use]
     pub fn stands_on_one_support(&self) -> bool {
-        match self {
-            Self::Arch(_) => false,
-            Self::Column(_) => true,
-            Self::Masonry(masonry) => masonry.row.supports == Supports::Left,
-        }
+        self.row().is_ok_and(|row| row.supports == Supports::Left)
     }
 
     /// Whether it is symmetric whatever its dimensions.
