@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ControlFlow::Continue(())
     })?;
     // Cells go along y first; the strongest pulses come on top.
-    let [_, amplitudes_g] = map.values();
+    let [_, amplitudes_g] = &map.values;
     for (row, amplitude_g) in amplitudes_g.iter().enumerate().rev() {
         let symbols = cells[row..].iter().step_by(amplitudes_g.len());
         let symbols: String = symbols.map(|cell| symbol(&cell.result)).collect();

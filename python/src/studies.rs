@@ -9,7 +9,7 @@ use archrock::output::{Batch, Figure};
 use archrock::studies::catalogue::{self as studies, Done, Options, Rows, StudyKind};
 use archrock::studies::kept::Writer;
 use archrock::studies::part::Shard;
-use archrock::studies::results::{Look, Results, StudyError};
+use archrock::studies::results::{Style, Results, StudyError};
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::Factors;
 use archrock::studies::threshold::along::AlongOptions;
@@ -50,7 +50,7 @@ fn failed(error: StudyError) -> PyErr {
 }
 
 /// The look of all results.
-const LOOK: Look = Look::of(Figure::SCREEN);
+const STYLE: Style = Style::of(Figure::SCREEN);
 
 /// A runner with this many threads, or with as many as there are processors.
 fn runner(threads: Option<u16>) -> Runner {
@@ -95,7 +95,7 @@ pub fn study<'py>(
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
         let rows = Rows::Compute(runner, None, watch);
-        kind.compute(&scenario, &options, LOOK, rows)
+        kind.compute(&scenario, &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {
@@ -126,7 +126,7 @@ pub fn compute_part(
         };
         let rows = Rows::Compute(runner, Some(task), watch);
         let options = Options::default();
-        kind.compute(&scenario, &options, LOOK, rows)
+        kind.compute(&scenario, &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {
@@ -149,7 +149,7 @@ pub fn merge<'py>(
         return Err(PyValueError::new_err("no parts given"));
     }
     let (kind, results) = watched(py, None, move |_| {
-        studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(LOOK)).map_err(failed)
+        studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE)).map_err(failed)
     })?;
     Ok((kind.name.to_owned(), to_python(py, results)))
 }

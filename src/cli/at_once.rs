@@ -4,12 +4,13 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use archrock::output::Figure;
-use archrock::studies::catalogue::{Done, Options, Rows, StudyKind};
-use archrock::studies::kept::Writer;
-use archrock::studies::results::{Look, StudyError};
+use archrock::studies::catalogue::{Done, Options, Rows, StudyKind, VERIFY};
+use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::results::{StudyError, Style};
 use archrock::studies::runner::Runner;
 
 use super::figure::FigureOption;
+use super::progress::say;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
 
@@ -26,35 +27,26 @@ pub struct CommonArguments {
     format: Format,
 }
 
-/// Whether a command needs a structure that can be moved.
-pub enum Statics {
-    Suffice,
-    DoNotSuffice,
-}
-
 /// Computes a study, writes its results and prints their summary.
 pub fn at_once(
     kind: StudyKind,
-    writer: Writer,
-    (arguments, figure): (&CommonArguments, Option<FigureOption>),
-    statics: Statics,
+    arguments: &CommonArguments,
+    figure: Option<FigureOption>,
     options: &Options,
-    quiet: bool,
 ) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = match statics {
-        Statics::Suffice => input.read_statics()?,
-        Statics::DoNotSuffice => input.read(None)?,
+    // Only the check needs a structure that can be moved.
+    let scenario = match kind == VERIFY {
+        true => input.read(None)?,
+        false => input.read_statics()?,
     };
-    if !quiet {
-        warn(&scenario.unlikely());
-    }
-    let look = Look::of(figure.map_or(Ok(Figure::SCREEN), FigureOption::get)?);
+    warn(&scenario.unlikely());
+    let style = Style::of(figure.map_or(Ok(Figure::SCREEN), FigureOption::get)?);
     let mut watch = |_| ControlFlow::Continue(());
     let rows = Rows::Compute(Runner::default(), None, &mut watch);
-    let done = kind.compute(&scenario, options, look, rows);
+    let done = kind.compute(&scenario, options, style, rows);
     let done = done.map_err(|error| match error {
-        StudyError::Scenario(message) => input.about(Failure::Input(message)),
+        StudyError::Scenario(message) => input.wrong(message),
         error => error.into(),
     })?;
     let Done::Whole(results, _) = done else {
@@ -64,8 +56,9 @@ pub fn at_once(
     if let Some(figure) = figure {
         place = figure.printed(place);
     }
-    place
-        .locked(writer, &scenario, quiet)?
-        .write(&results, quiet)?;
+    let place = place.locked_for(Writer::of(kind), &Origin::of(&scenario))?;
+    place.prepare(&results)?;
+    place.publish()?;
+    say(&format!("results in {}", place.holds(&results)));
     show(&results, arguments.format)
 }

@@ -1,11 +1,10 @@
 //! The command `capacity`.
 
-use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept::CAPACITY;
+use archrock::studies::catalogue::{CAPACITY, Options};
 use nalgebra::Vector2;
 
 use super::Failure;
-use super::at_once::{CommonArguments, Statics, at_once};
+use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
 
 #[derive(clap::Args)]
@@ -31,18 +30,11 @@ fn point(text: &str) -> Result<Vector2<f64>, String> {
     }
 }
 
-pub fn capacity(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn capacity(arguments: &Arguments) -> Result<(), Failure> {
     let options = Options {
         point_m: arguments.point,
         ..Options::default()
     };
-    let (kind, figure) = (catalogue::CAPACITY, Some(arguments.figure));
-    at_once(
-        kind,
-        CAPACITY,
-        (&arguments.common, figure),
-        Statics::Suffice,
-        &options,
-        quiet,
-    )
+    let figure = Some(arguments.figure);
+    at_once(CAPACITY, &arguments.common, figure, &options)
 }

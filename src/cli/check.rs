@@ -36,18 +36,18 @@ pub struct Arguments {
 /// Gravity, when there is no scenario to give it.
 const GRAVITY_M_S2: f64 = 9.81;
 
-pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plot.is_some() && arguments.files.len() > 1 {
         let message = "--plot is of one file: check them one by one";
         return Err(Failure::Input(message.to_owned()));
     }
-    let (mut texts, mut told) = (Vec::new(), Vec::new());
+    let (mut texts, mut contents) = (Vec::new(), Vec::new());
     let mut wrong = Vec::new();
     for file in &arguments.files {
-        match check_file(file, arguments, quiet) {
+        match check_file(file, arguments) {
             Ok((text, json)) => {
                 texts.push(text);
-                told.push(json);
+                contents.push(json);
             }
             Err(Failure::Input(message)) => wrong.push(message),
             Err(failure) => return Err(failure),
@@ -55,8 +55,8 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
     match arguments.format {
         Printed::Text => print(&texts.join("\n"))?,
-        Printed::Json if told.is_empty() => {}
-        Printed::Json => print_all(told)?,
+        Printed::Json if contents.is_empty() => {}
+        Printed::Json => print_all(contents)?,
     }
     if wrong.is_empty() {
         Ok(())
@@ -66,14 +66,12 @@ pub fn check(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 }
 
 /// The contents of a file, as text and as JSON.
-fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String, Value), Failure> {
+fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
     if Format::of_file(file).is_some() || is_format_given(arguments) {
-        return check_record(file, arguments, quiet);
+        return check_record(file, arguments);
     }
-    let scenario = read(&arguments.set.open(file)?, quiet)?;
-    if !quiet {
-        super::warn(&scenario.unlikely());
-    }
+    let scenario = read(&arguments.set.open(file)?)?;
+    super::warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
         let scene = drawn(&scenario)?;
         let title = scenario.title().unwrap_or("Structure");
@@ -93,7 +91,7 @@ fn check_file(file: &Path, arguments: &Arguments, quiet: bool) -> Result<(String
 }
 
 /// The scenario; with a warning also one that holds enough for statics alone.
-fn read(input: &Input<'_>, quiet: bool) -> Result<Scenario, Failure> {
+fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     let wrong = match input.read(None) {
         Err(Failure::Input(wrong)) => wrong,
         read => return read,
@@ -101,11 +99,9 @@ fn read(input: &Input<'_>, quiet: bool) -> Result<Scenario, Failure> {
     let Ok(scenario) = input.read_statics() else {
         return Err(Failure::Input(wrong));
     };
-    if !quiet {
-        super::warn(&[format!(
-            "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
-        )]);
-    }
+    super::warn(&[format!(
+        "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
+    )]);
     Ok(scenario)
 }
 
@@ -145,11 +141,7 @@ fn is_format_given(arguments: &Arguments) -> bool {
 }
 
 /// The contents of a record file, as text and as JSON.
-fn check_record(
-    file: &Path,
-    arguments: &Arguments,
-    quiet: bool,
-) -> Result<(String, Value), Failure> {
+fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
     // Beside tables there may be files of other formats, which do not have their keys.
     let is_table = |file: &Path| match Format::of_file(file) {
         Some(format) => format == Format::Csv,
@@ -163,7 +155,7 @@ fn check_record(
         .iter()
         .cloned()
         .partition(|assignment| has_all || !Layout::is_of_tables(assignment.key()));
-    if !quiet && left_out.iter().any(|assignment| assignment.key() == "unit") {
+    if left_out.iter().any(|assignment| assignment.key() == "unit") {
         super::warn(&[format!(
             "{}: `unit` is for the tables among the files; this one has its own",
             file.display()
@@ -173,9 +165,7 @@ fn check_record(
         let hint = "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
         Failure::Input(format!("{errors}\n{hint}"))
     })?;
-    if !quiet {
-        super::warn(&series.unlikely(GRAVITY_M_S2));
-    }
+    super::warn(&series.unlikely(GRAVITY_M_S2));
     let samples = series.accelerations_m_s2(GRAVITY_M_S2);
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
     if let Some(plot) = &arguments.plot {

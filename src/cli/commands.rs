@@ -31,7 +31,6 @@ pub fn limit(
     file: &ScenarioFile,
     format: Format,
     plot: Option<(&Path, FigureOption, Sway)>,
-    quiet: bool,
 ) -> Result<(), Failure> {
     let input = file.open()?;
     let scenario = if plot.is_some() {
@@ -39,9 +38,7 @@ pub fn limit(
     } else {
         input.read_statics()?
     };
-    if !quiet {
-        warn(&scenario.unlikely());
-    }
+    warn(&scenario.unlikely());
     if let Some((plot, figure, first)) = plot {
         let model = four_links(&scenario, "--plot is")?;
         write_picture(

@@ -41,7 +41,7 @@ Examples:
 pub const MAP: &str = "\
 Examples:
   archrock map arch.toml --threads 4
-  archrock map arch.toml --resume      goes on after Ctrl-C
+  archrock map arch.toml --resume      continues after Ctrl-C
   archrock map arch.toml --shard 1/3 --out part-1    and 2/3, 3/3 elsewhere; then archrock merge";
 
 pub const SUITE: &str = "\

@@ -1,4 +1,4 @@
-//! How pictures look.
+//! The style of pictures.
 
 use archrock::output::figure::{Figure, Height, Panel};
 use archrock::output::print::PictureFormat;
@@ -44,7 +44,7 @@ impl FigureOption {
         Ok(figure)
     }
 
-    /// A folder whose pictures are written in the format that is asked for.
+    /// A folder whose pictures are written in the chosen format.
     pub fn printed(self, place: Destination) -> Destination {
         place.with_pictures(self.figure_format)
     }

@@ -66,12 +66,12 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let options = "--models, --certificate, --line and --plot are";
     let model = commands::four_links(&scenario, options)?;
     let model = &model;
-    let asked = LinkImpact {
+    let impact = LinkImpact {
         model,
         first,
         index: arguments.link.into(),
     };
-    let chosen = || choose(&asked);
+    let chosen = || choose(&impact);
     if let Some(path) = &arguments.line {
         let others = arguments.models || arguments.certificate || arguments.plot.is_some();
         if path == Path::new("-") && others {
@@ -82,7 +82,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
             ));
         }
         chosen()?;
-        write_line(path, &asked)?;
+        write_line(path, &impact)?;
         if path == Path::new("-") {
             return Ok(());
         }
@@ -90,7 +90,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(plot) = &arguments.plot {
         chosen()?;
         let scene = Scene::new(scenario.structure());
-        let picture = pictures::impact(arguments.figure.get()?, &asked, Some(&scene));
+        let picture = pictures::impact(arguments.figure.get()?, &impact, Some(&scene));
         let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",
@@ -102,7 +102,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.models || arguments.certificate {
         chosen()?;
     }
-    let sites = asked.chain().sites;
+    let sites = impact.chain().sites;
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, arguments.joints) {
         return Err(Failure::Input(format!(
             "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
@@ -114,7 +114,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         certificate: arguments.certificate,
         joints: arguments.joints.map(usize::from),
     };
-    let answer = four_links_answer(&scenario, &asked, &question);
+    let answer = four_links_answer(&scenario, &impact, &question);
     let answer = answer.map_err(|error| Failure::Work(error.to_string()))?;
     commands::answer(&answer, arguments.format)
 }

@@ -13,7 +13,7 @@ use super::{Failure, print};
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// What the scenario is about.
+    /// The subject of the scenario.
     #[arg(value_enum, default_value_t)]
     kind: Kind,
     /// The file to write; `-` for standard output [default: <KIND>.toml].
@@ -21,7 +21,7 @@ pub struct Arguments {
     file: Option<PathBuf>,
 }
 
-/// What a scenario is about.
+/// The subject of a scenario.
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum Kind {
     /// An arch under a pulse.
@@ -69,7 +69,7 @@ impl Kind {
     }
 }
 
-pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn init(arguments: &Arguments) -> Result<(), Failure> {
     let (name, command, has_record) = arguments.kind.about();
     let text = format!("#:schema ./{SCHEMA}\n{}", arguments.kind.text());
     let default = || PathBuf::from(name).with_extension("toml");
@@ -92,12 +92,10 @@ pub fn init(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             written += &format!(" and {}", path.display());
         }
     }
-    if !quiet {
-        say(&format!(
-            "{written} written; now: archrock {command} {}",
-            file.display()
-        ));
-    }
+    say(&format!(
+        "{written} written; now: archrock {command} {}",
+        file.display()
+    ));
     Ok(())
 }
 

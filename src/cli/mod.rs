@@ -28,15 +28,14 @@ use std::process::ExitCode;
 use archrock::dynamics::model::SimulationError;
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
-use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept;
+use archrock::studies::catalogue::{Options, VERIFY};
 use archrock::studies::results::Results;
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use serde_json::Value;
 
-use at_once::Statics;
+use at_once::at_once;
 use figure::FigureOption;
 use first::FirstOption;
 use scenario_file::ScenarioFile;
@@ -45,7 +44,7 @@ use scenario_file::ScenarioFile;
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
-    /// Print nothing but errors and what was asked for.
+    /// Print only errors and results.
     #[arg(long, global = true)]
     quiet: bool,
     #[command(subcommand)]
@@ -93,7 +92,7 @@ enum Command {
     Map(studies::MapArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
     #[command(after_help = examples::SUITE)]
-    Suite(studies::SuiteArguments),
+    Suite(study::StudyArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them; or the least factor for
     /// each value of a key.
     #[command(after_help = examples::THRESHOLD)]
@@ -133,6 +132,18 @@ enum Failure {
     ClosedPipe,
 }
 
+impl From<&str> for Failure {
+    fn from(message: &str) -> Self {
+        Self::Input(message.to_owned())
+    }
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self::Input(message)
+    }
+}
+
 impl From<ScenarioErrors> for Failure {
     fn from(errors: ScenarioErrors) -> Self {
         Self::Input(errors.to_string())
@@ -166,8 +177,9 @@ impl From<OutputError> for Failure {
 /// Runs the program.
 pub fn main() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| likely(error).exit());
+    progress::set_quiet(arguments.quiet);
     let result = match arguments.command {
-        Command::Init(init) => init::init(&init, arguments.quiet),
+        Command::Init(init) => init::init(&init),
         Command::Run(run) => run::run(&run, arguments.quiet),
         Command::Limit {
             scenario,
@@ -178,28 +190,17 @@ pub fn main() -> ExitCode {
         } => {
             let plot = plot.as_deref();
             let plot = plot.map(|path| (path, figure, first.get()));
-            commands::limit(&scenario, format, plot, arguments.quiet)
+            commands::limit(&scenario, format, plot)
         }
         Command::Impact(arguments) => impact::impact(&arguments),
-        Command::Capacity(capacity) => capacity::capacity(&capacity, arguments.quiet),
-        Command::Spread(spread) => spread::spread(&spread, arguments.quiet),
-        Command::Verify(verify) => {
-            let options = Options::default();
-            let (kind, statics) = (catalogue::VERIFY, Statics::DoNotSuffice);
-            at_once::at_once(
-                kind,
-                kept::VERIFY,
-                (&verify, None),
-                statics,
-                &options,
-                arguments.quiet,
-            )
-        }
-        Command::Map(map) => studies::map(&map, arguments.quiet),
-        Command::Suite(suite) => studies::suite(&suite, arguments.quiet),
-        Command::Threshold(threshold) => threshold::threshold(&threshold, arguments.quiet),
-        Command::Merge(merge) => studies::merge(&merge, arguments.quiet),
-        Command::Check(check) => check::check(&check, arguments.quiet),
+        Command::Capacity(capacity) => capacity::capacity(&capacity),
+        Command::Spread(spread) => spread::spread(&spread),
+        Command::Verify(verify) => at_once(VERIFY, &verify, None, &Options::default()),
+        Command::Map(map) => studies::map(&map),
+        Command::Suite(suite) => studies::suite(&suite),
+        Command::Threshold(threshold) => threshold::threshold(&threshold),
+        Command::Merge(merge) => studies::merge(&merge),
+        Command::Check(check) => check::check(&check),
         Command::Completions { shell } => completions(shell),
     };
     let (code, message) = match result {

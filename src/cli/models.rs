@@ -51,17 +51,14 @@ impl ModelsOption {
         let mut scenarios = self.read(input)?;
         if scenarios.len() > 1 {
             let message = format!("{command} is for one model: choose it by --hinges");
-            return Err(input.about(Failure::Input(message)));
+            return Err(input.wrong(message));
         }
         Ok(scenarios.remove(0))
     }
 }
 
 /// Warns of unlikely numbers of a scenario, and of a table that its model ignores.
-pub fn warn_of(scenarios: &[Scenario], quiet: bool) {
-    if quiet {
-        return;
-    }
+pub fn warn_of(scenarios: &[Scenario]) {
     super::warn(&scenarios[0].unlikely());
     if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
         say(ignored);

@@ -9,6 +9,14 @@ use archrock::scenario::shown_lines;
 use archrock::studies::runner::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+/// Whether only errors and results are printed.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Chooses whether only errors and results are printed.
+pub fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
 /// Whether Ctrl-C was pressed.
 pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
@@ -25,8 +33,15 @@ pub fn listen_to_interrupts() {
 /// The exit code of shells for a program ended by Ctrl-C.
 pub const INTERRUPTED_CODE: i32 = 130;
 
-/// Prints a line on standard error.
+/// Prints a line on standard error, unless the program is quiet.
 pub fn say(text: &str) {
+    if !QUIET.load(Ordering::Relaxed) {
+        say_always(text);
+    }
+}
+
+/// Prints a line on standard error.
+pub fn say_always(text: &str) {
     // When standard error fails there is nowhere to report it.
     let _ = writeln!(io::stderr(), "{}", shown_lines(text));
 }
@@ -45,7 +60,8 @@ pub struct Display {
 const MINUTE: Duration = Duration::from_secs(60);
 
 impl Display {
-    pub fn new(begin: Progress, quiet: bool) -> Self {
+    pub fn new(begin: Progress) -> Self {
+        let quiet = QUIET.load(Ordering::Relaxed);
         let on_terminal = io::stderr().is_terminal();
         let target = if quiet || !on_terminal {
             ProgressDrawTarget::hidden()

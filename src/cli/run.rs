@@ -10,7 +10,7 @@ use std::rc::Rc;
 use archrock::output::Folder;
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{self, Options};
-use archrock::studies::results::{Look, Results};
+use archrock::studies::results::{Results, Style};
 use archrock::studies::run::{
     FILES, OVERLAY, Run, RunError, RunResults, Wanted, compared, heading, overlay,
 };
@@ -87,13 +87,11 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut jobs = Job::all(arguments)?;
-    Job::lock_all(&mut jobs, arguments, quiet)?;
+    Job::lock_all(&mut jobs, arguments)?;
     let mut summaries = Vec::new();
     let mut failures = Vec::new();
     for job in &jobs {
-        if !quiet {
-            super::warn(&job.scenarios[0].unlikely());
-        }
+        super::warn(&job.scenarios[0].unlikely());
         let told = match job.run(arguments, quiet) {
             Ok(told) => told,
             // The other scenarios are still run.
@@ -191,7 +189,7 @@ impl Job {
     }
 
     /// Locks the folders of all jobs, before anything is written. The records of a suite share the lock of the folder around theirs.
-    fn lock_all(jobs: &mut [Self], arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+    fn lock_all(jobs: &mut [Self], arguments: &Arguments) -> Result<(), Failure> {
         let mut locked: Vec<Destination> = Vec::new();
         for job in jobs {
             let (Some(results), Some(root)) = (&mut job.place.results, job.place.root.take())
@@ -202,7 +200,7 @@ impl Job {
             let root = match known {
                 Some(known) => known.clone(),
                 None if arguments.work.is_part() => root.locked_for_a_part(RUN)?,
-                None => root.locked_for(RUN, &job.origin, quiet)?,
+                None => root.locked_for(RUN, &job.origin)?,
             };
             *results = results.clone().locked_with(&root);
             locked.push(root);
@@ -215,8 +213,7 @@ impl Job {
         let session = Session {
             input: None,
             work: arguments.work,
-            look: Look::of(arguments.figure.get()?),
-            quiet,
+            style: Style::of(arguments.figure.get()?),
         };
         let (scenarios, mut pending) = (&self.scenarios, Pending::default());
         if session.is_part(scenarios)? {
@@ -306,7 +303,7 @@ impl Job {
         let models =
             session.add_samples(kind, &self.scenarios, &options, place, pending, results)?;
         let title = self.scenarios[0].title();
-        if let Some(compared) = compare(title, &models, place, session.look.figure)? {
+        if let Some(compared) = compare(title, &models, place, session.style.figure)? {
             // After the words on samples, before the heading of those on the scenario itself.
             let at = results.words.len() - ITSELF.len();
             results

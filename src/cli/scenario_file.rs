@@ -12,7 +12,6 @@ use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
 use super::Failure;
-use super::progress::say;
 use archrock::studies::kept::{ORIGIN, Origin, Writer};
 
 /// The scenario of a command.
@@ -93,7 +92,7 @@ impl SuiteOption {
         }
         if chosen.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
-            return Err(Failure::Input(message.to_owned()));
+            return Err(message.into());
         }
         Ok(chosen)
     }
@@ -113,7 +112,7 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// The scenario with the model of motion that was asked for; with `None`, the one that it chooses itself.
+    /// The scenario with this model of motion; with `None`, the one that it chooses itself.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
         self.read_for(hinges, false)
     }
@@ -145,8 +144,13 @@ impl Input<'_> {
     /// The scenario, unless its springings have moved.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();
-        built.map_err(|message| self.about(Failure::Input(message)))?;
+        built.map_err(|message| self.wrong(message))?;
         Ok(scenario)
+    }
+
+    /// A failure for this reason, with the name of the scenario file in front.
+    pub fn wrong(&self, reason: impl Into<String>) -> Failure {
+        self.about(Failure::Input(reason.into()))
     }
 
     /// The failure, with the name of the scenario file in front.
@@ -210,17 +214,10 @@ impl Destination {
 
     /// Locks the folder and everything below it for a command, before anything is written. The results of its last run are removed when
     /// those of this run are published. Warns of results of other commands that come from another scenario.
-    pub fn locked(self, writer: Writer, scenario: &Scenario, quiet: bool) -> Result<Self, Failure> {
-        self.locked_for(writer, &Origin::of(scenario), quiet)
-    }
-
-    /// [`Destination::locked`] for results of this origin.
-    pub fn locked_for(self, writer: Writer, origin: &Origin, quiet: bool) -> Result<Self, Failure> {
+    pub fn locked_for(self, writer: Writer, origin: &Origin) -> Result<Self, Failure> {
         let batch = Batch::lock(&self.path, true).map_err(elsewhere)?;
         batch.replace(writer.last_run(&self.path));
-        if !quiet {
-            super::warn(&writer.warnings(&self.path, origin));
-        }
+        super::warn(&writer.warnings(&self.path, origin));
         Ok(Self {
             locked: Some((batch, writer)),
             ..self
@@ -270,6 +267,14 @@ impl Destination {
         &self.path
     }
 
+    /// The folder for a model of motion: one of its own inside this folder if there are several models.
+    pub fn of_model(&self, scenario: &Scenario, several: bool) -> Self {
+        match several {
+            true => self.within(scenario.motion().hinges().name()),
+            false => self.clone(),
+        }
+    }
+
     /// A folder inside this one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
         Self {
@@ -279,7 +284,7 @@ impl Destination {
         }
     }
 
-    /// The same with every picture in this format too.
+    /// This folder, with every picture in this format too.
     pub fn with_pictures(self, pictures: Option<PictureFormat>) -> Self {
         Self { pictures, ..self }
     }
@@ -301,7 +306,7 @@ impl Destination {
         if wrong.is_empty() {
             Ok(())
         } else {
-            Err(Failure::Input(wrong.join("\n")))
+            Err(wrong.join("\n").into())
         }
     }
 
@@ -314,10 +319,10 @@ impl Destination {
 
     /// The folder, unless it holds the results of another scenario file.
     fn checked(path: PathBuf, origin: Option<String>) -> Result<Self, Failure> {
-        let told = path.join(ORIGIN);
+        let known = path.join(ORIGIN);
         // Reading a pipe of that name would never end.
-        if told.is_file()
-            && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(told))
+        if known.is_file()
+            && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(known))
             && ours != theirs.trim_end()
         {
             return Err(Failure::Input(format!(
@@ -337,16 +342,6 @@ impl Destination {
     /// Prepares results in the folder, which are not published yet.
     pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
         Ok(results.write(self.open(&results.names())?)?)
-    }
-
-    /// Writes results into the folder, and reports it.
-    pub fn write(&self, results: &Results, quiet: bool) -> Result<(), Failure> {
-        self.prepare(results)?;
-        self.publish()?;
-        if !quiet {
-            say(&format!("results in {}", self.holds(results)));
-        }
-        Ok(())
     }
 
     /// The folder and the names of the result files in it.

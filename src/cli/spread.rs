@@ -1,12 +1,11 @@
 //! The command `spread`.
 
-use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept::SPREAD;
+use archrock::studies::catalogue::{Options, SPREAD};
 use archrock::studies::spread::{Springing, Way};
 use clap::ValueEnum;
 
 use super::Failure;
-use super::at_once::{CommonArguments, Statics, at_once};
+use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
 
 #[derive(clap::Args)]
@@ -37,7 +36,7 @@ fn angle(text: &str) -> Result<f64, String> {
         .ok_or_else(|| "give a direction in degrees, from -180 to 180".to_owned())
 }
 
-pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn spread(arguments: &Arguments) -> Result<(), Failure> {
     let springing = match arguments.springing {
         Side::Left => Springing::Left,
         Side::Right => Springing::Right,
@@ -54,13 +53,6 @@ pub fn spread(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         ways: angles_deg.iter().map(way).collect(),
         ..Options::default()
     };
-    let (kind, figure) = (catalogue::SPREAD, Some(arguments.figure));
-    at_once(
-        kind,
-        SPREAD,
-        (&arguments.common, figure),
-        Statics::Suffice,
-        &options,
-        quiet,
-    )
+    let figure = Some(arguments.figure);
+    at_once(SPREAD, &arguments.common, figure, &options)
 }

@@ -8,24 +8,31 @@ use std::sync::atomic::Ordering;
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Done, Options, Rows, StudyKind};
-use archrock::studies::kept::Writer;
+use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::part::{PartError, PartFile, Shard};
-use archrock::studies::results::{Look, Results, StudyError};
+use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 
 use super::figure::FigureOption;
-use super::progress::{Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, say};
+use super::models::ModelsOption;
+use super::progress::{
+    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, say, say_always,
+};
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format};
 
 /// Options of every study.
 #[derive(clap::Args)]
-pub struct Arguments {
+pub struct StudyArguments {
     #[command(flatten)]
     pub scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub models: ModelsOption,
+    #[command(flatten)]
+    pub figure: FigureOption,
     #[command(flatten)]
     pub work: Work,
     /// Format of the printed summary; JSON goes to standard output.
@@ -110,27 +117,19 @@ impl Work {
         place: Destination,
         writer: Writer,
         scenario: &Scenario,
-        quiet: bool,
     ) -> Result<Destination, Failure> {
-        if self.is_part() {
-            place.locked_for_a_part(writer)
-        } else {
-            place.locked(writer, scenario, quiet)
+        match self.is_part() {
+            true => place.locked_for_a_part(writer),
+            false => place.locked_for(writer, &Origin::of(scenario)),
         }
     }
 }
 
-impl Arguments {
-    /// The folder for results, locked for a command.
-    pub fn place(
-        &self,
-        writer: Writer,
-        (input, scenario): (&Input<'_>, &Scenario),
-        figure: FigureOption,
-        quiet: bool,
-    ) -> Result<Destination, Failure> {
-        let place = figure.printed(input.results(self.out.as_deref())?);
-        self.work.lock(place, writer, scenario, quiet)
+impl StudyArguments {
+    /// The folder for results.
+    pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
+        let place = input.results(self.out.as_deref())?;
+        Ok(self.figure.printed(place))
     }
 }
 
@@ -155,8 +154,7 @@ pub struct Session<'s> {
     /// The scenario file, which errors about the scenario name.
     pub input: Option<&'s Input<'s>>,
     pub work: Work,
-    pub look: Look,
-    pub quiet: bool,
+    pub style: Style,
 }
 
 /// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
@@ -173,11 +171,11 @@ impl Session<'_> {
         listen_to_interrupts();
         let mut display = None;
         let done = compute(&mut |progress| {
-            let display = display.get_or_insert_with(|| Display::new(progress, self.quiet));
+            let display = display.get_or_insert_with(|| Display::new(progress));
             // All rows so far are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.abandon();
-                say(&interrupted(progress));
+                say_always(&interrupted(progress));
                 process::exit(INTERRUPTED_CODE);
             }
             display.show(progress);
@@ -187,7 +185,7 @@ impl Session<'_> {
             display.finish();
         }
         done.map_err(|error| match (error, self.input) {
-            (StudyError::Scenario(message), Some(input)) => input.about(Failure::Input(message)),
+            (StudyError::Scenario(message), Some(input)) => input.wrong(message),
             (error, _) => error.into(),
         })
     }
@@ -218,7 +216,7 @@ impl Session<'_> {
         let runner = self.work.runner();
         match self.watch(interrupted, |watch| {
             let rows = Rows::Compute(runner, Some(task), watch);
-            kind.compute(scenario, options, self.look, rows)
+            kind.compute(scenario, options, self.style, rows)
         })? {
             Done::Whole(results, part) => {
                 place.prepare(&results)?;
@@ -226,12 +224,10 @@ impl Session<'_> {
                 Ok(Some(results))
             }
             Done::Part { part, cases, all } => {
-                if !self.quiet {
-                    let (shard, path) = (task.shard, part.path().display());
-                    say(&format!(
-                        "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
-                    ));
-                }
+                let (shard, path) = (task.shard, part.path().display());
+                say(&format!(
+                    "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
+                ));
                 Ok(None)
             }
         }
@@ -242,7 +238,7 @@ impl Session<'_> {
         if self.work.is_part() && scenarios.iter().any(|one| one.uncertain().is_none()) {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
-            return Err(Failure::Input(message.to_owned()));
+            return Err(message.into());
         }
         Ok(self.work.is_part())
     }
@@ -262,21 +258,15 @@ impl Session<'_> {
         let (mut words, mut of_models) = (String::new(), Vec::new());
         for scenario in scenarios.iter().filter(|one| one.uncertain().is_some()) {
             let (name, model) = (scenario.motion().hinges().name(), scenario.motion().words());
-            let place = if several { &place.within(name) } else { place };
-            let place = place.within(kind.name);
+            let place = place.of_model(scenario, several).within(kind.name);
             let Some(found) = self.compute(kind, scenario, options, &place, pending)? else {
                 continue;
             };
-            let heading = if several {
-                format!("{model}\n")
-            } else {
-                String::new()
-            };
-            words += &format!(
-                "{heading}  {}\n  results in {}\n",
-                found.words,
-                place.holds(&found)
-            );
+            if several {
+                words += &format!("{model}\n");
+            }
+            let (found_words, place) = (&found.words, place.holds(&found));
+            words += &format!("  {found_words}\n  results in {place}\n");
             let summary = &mut results.summary;
             let summary = if several { &mut summary[name] } else { summary };
             summary["uncertain"] = found.summary.clone();

@@ -1,34 +1,24 @@
 //! The command `threshold`.
 
-use std::path::PathBuf;
-
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
-use archrock::studies::results::{Look, Results};
+use archrock::studies::kept::{ALONG, THRESHOLD};
+use archrock::studies::results::{Results, Style};
 use archrock::studies::threshold::along::{Along, AlongOptions, KeyRange};
 use archrock::studies::threshold::{FILES, Factors, check, results};
 
-use super::figure::FigureOption;
-use super::models::{ModelsOption, warn_of};
+use super::models::warn_of;
 use super::progress::say;
-use super::scenario_file::{Destination, Input, ScenarioFile, SuiteOption};
-use super::study::{Pending, Session, Work};
+use super::scenario_file::{Destination, Input, SuiteOption};
+use super::study::{Pending, Session, StudyArguments};
 use super::{Failure, Format, print, print_all, show};
 
 #[derive(clap::Args)]
 pub struct Arguments {
     #[command(flatten)]
-    scenario: ScenarioFile,
+    study: StudyArguments,
     #[command(flatten)]
     suite: SuiteOption,
-    /// Folder for the results [default: results/<name of the scenario file>].
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    #[command(flatten)]
-    figure: FigureOption,
-    #[command(flatten)]
-    models: ModelsOption,
     /// Smallest factor on the ground motion.
     #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
     from: f64,
@@ -48,93 +38,48 @@ pub struct Arguments {
     /// Also find the least factor that overturns before any impact.
     #[arg(long, requires = "along")]
     no_impact: bool,
-    /// How the samples of [uncertain], and everything else, are computed.
-    #[command(flatten)]
-    work: Work,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
 }
 
-pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
+    let study = &arguments.study;
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
-        .map_err(|error| Failure::Input(format!("--from, --to, --stride: {error}")))?;
-    let input = arguments.scenario.open()?;
+        .map_err(|error| format!("--from, --to, --stride: {error}"))?;
+    let input = study.scenario.open()?;
     let session = Session {
         input: Some(&input),
-        work: arguments.work,
-        look: Look::of(arguments.figure.get()?),
-        quiet,
+        work: study.work,
+        style: Style::of(study.figure.get()?),
     };
     if let Some(along) = &arguments.along {
-        return thresholds_along(arguments, along, factors, session, &input);
-    }
-    let models = arguments.models.read(&input)?;
-    let origin = Origin::of(&models[0]);
-    let about = |failure| input.about(failure);
-    let root = arguments
-        .figure
-        .printed(input.results(arguments.out.as_deref())?);
-    let (mut names, mut tasks) = (Vec::new(), Vec::new());
-    for (record, scenarios) in arguments.suite.choose(models).map_err(about)? {
-        check(&scenarios[0]).map_err(|message| about(Failure::Input(message)))?;
-        let place = match &record {
-            Some(record) => root.of_record(record)?,
-            None => root.clone(),
+        let options = AlongOptions {
+            along: along.clone(),
+            factors,
+            no_impact: arguments.no_impact,
         };
-        names.push(record.unwrap_or_default());
-        tasks.push((scenarios, place));
+        return thresholds_along(study, options, session, &input);
     }
-    let places = tasks.iter().map(|(_, place)| place);
-    Destination::check_distinct(names.iter().map(String::as_str).zip(places)).map_err(about)?;
-    if !quiet
-        && let Some(ignored) = tasks
-            .iter()
-            .flat_map(|(scenarios, _)| scenarios)
-            .find_map(Scenario::ignored)
-    {
+    let models = study.models.read(&input)?;
+    let own = models[0].clone();
+    let root = study.place(&input)?;
+    let tasks = tasks(arguments.suite, models, &root).map_err(|failure| input.about(failure))?;
+    let mut scenarios = tasks.iter().flat_map(|(scenarios, _)| scenarios);
+    if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         say(ignored);
     }
-    let is_part = arguments.work.is_part();
-    let root = if is_part {
-        root.locked_for_a_part(THRESHOLD)?
-    } else {
-        root.locked_for(THRESHOLD, &origin, quiet)?
-    };
+    let root = study.work.lock(root, THRESHOLD, &own)?;
     let title = tasks[0].0[0].title();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    let options = Options {
-        factors,
-        ..Options::default()
-    };
     let mut all = Vec::new();
     for (scenarios, place) in tasks {
-        let mut pending = Pending::default();
-        let (scenarios, place) = (&scenarios[..], &place.locked_with(&root));
-        if !quiet {
-            super::warn(&scenarios[0].unlikely());
-        }
-        let mut found = if session.is_part(scenarios)? {
-            Results::default()
-        } else {
-            find(scenarios, place, &factors, session)?
-        };
-        let samples = catalogue::UNCERTAIN_THRESHOLD;
-        session.add_samples(
-            samples,
-            scenarios,
-            &options,
-            place,
-            &mut pending,
-            &mut found,
-        )?;
-        pending.publish(place)?;
-        if !is_part && !quiet {
-            say(&format!("results in {}", place.holds(&found)));
-        }
-        all.push(found);
+        super::warn(&scenarios[0].unlikely());
+        all.push(find(
+            &scenarios,
+            &place.locked_with(&root),
+            factors,
+            session,
+        )?);
     }
-    match arguments.format {
+    match study.format {
         Format::Json => print_all(all.into_iter().map(|results| results.summary)),
         Format::Text => {
             let words: String = all.into_iter().map(|results| results.words).collect();
@@ -143,52 +88,82 @@ pub fn threshold(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
 }
 
-/// Finds the thresholds of a scenario, for one model of motion or for several, and writes them.
+/// The scenarios, which differ in their models, and the folder for their results: one task, or one for each record of the suite.
+fn tasks(
+    suite: SuiteOption,
+    models: Vec<Scenario>,
+    root: &Destination,
+) -> Result<Vec<(Vec<Scenario>, Destination)>, Failure> {
+    let (mut names, mut tasks) = (Vec::new(), Vec::new());
+    for (record, scenarios) in suite.choose(models)? {
+        check(&scenarios[0])?;
+        let place = match &record {
+            Some(record) => root.of_record(record)?,
+            None => root.clone(),
+        };
+        names.push(record.unwrap_or_default());
+        tasks.push((scenarios, place));
+    }
+    let places = tasks.iter().map(|(_, place)| place);
+    Destination::check_distinct(names.iter().map(String::as_str).zip(places))?;
+    Ok(tasks)
+}
+
+/// Finds the thresholds of a scenario, for one model of motion or for several, and those of its samples, and writes them.
 fn find(
     scenarios: &[Scenario],
     place: &Destination,
-    factors: &Factors,
+    factors: Factors,
     session: Session<'_>,
 ) -> Result<Results, Failure> {
-    // Opened before the work starts, so that a folder that cannot be written costs no time.
-    let folder = place.open(&FILES)?;
-    let scenarios: Vec<&Scenario> = scenarios.iter().collect();
-    let (figure, runner) = (session.look.figure, session.work.runner());
-    let found = session.watch(
-        |_| "interrupted".to_owned(),
-        |watch| results(&scenarios, factors, figure, &runner, watch),
+    let (mut found, mut pending) = (Results::default(), Pending::default());
+    let is_part = session.is_part(scenarios)?;
+    if !is_part {
+        // Opened before the work starts, so that a folder that cannot be written costs no time.
+        let folder = place.open(&FILES)?;
+        let scenarios: Vec<&Scenario> = scenarios.iter().collect();
+        let (figure, runner) = (session.style.figure, session.work.runner());
+        found = session.watch(
+            |_| "interrupted".to_owned(),
+            |watch| results(&scenarios, &factors, figure, &runner, watch),
+        )?;
+        found.write(folder)?;
+    }
+    let options = Options {
+        factors,
+        ..Options::default()
+    };
+    let samples = catalogue::UNCERTAIN_THRESHOLD;
+    session.add_samples(
+        samples,
+        scenarios,
+        &options,
+        place,
+        &mut pending,
+        &mut found,
     )?;
-    found.write(folder)?;
+    pending.publish(place)?;
+    if !is_part {
+        say(&format!("results in {}", place.holds(&found)));
+    }
     Ok(found)
 }
 
 /// Finds the threshold for each value of a key.
 fn thresholds_along(
-    arguments: &Arguments,
-    along: &KeyRange,
-    factors: Factors,
+    study: &StudyArguments,
+    along: AlongOptions,
     session: Session<'_>,
     input: &Input<'_>,
 ) -> Result<(), Failure> {
-    let about = |message| input.about(Failure::Input(message));
-    let scenario = arguments.models.read_one(input, "--along")?;
+    let scenario = study.models.read_one(input, "--along")?;
     if scenario.uncertain().is_some() {
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
-        return Err(about(message.to_owned()));
+        return Err(input.wrong(message));
     }
-    warn_of(std::slice::from_ref(&scenario), session.quiet);
-    let along = AlongOptions {
-        along: along.clone(),
-        factors,
-        no_impact: arguments.no_impact,
-    };
-    Along::of(&scenario, along.clone()).map_err(about)?;
-    let place = arguments
-        .figure
-        .printed(input.results(arguments.out.as_deref())?);
-    let place = arguments
-        .work
-        .lock(place, ALONG, &scenario, session.quiet)?;
+    warn_of(std::slice::from_ref(&scenario));
+    Along::of(&scenario, along.clone()).map_err(|message| input.wrong(message))?;
+    let place = study.work.lock(study.place(input)?, ALONG, &scenario)?;
     let options = Options {
         along: Some(along),
         ..Options::default()
@@ -197,11 +172,8 @@ fn thresholds_along(
     let kind = catalogue::THRESHOLD_ALONG;
     let found = session.compute(kind, &scenario, &options, &place, &mut pending)?;
     pending.publish(&place)?;
-    let Some(found) = found else {
-        return Ok(());
-    };
-    if !session.quiet {
+    found.map_or(Ok(()), |found| {
         say(&format!("results in {}", place.holds(&found)));
-    }
-    show(&found, arguments.format)
+        show(&found, study.format)
+    })
 }

@@ -38,6 +38,14 @@ pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     }
 }
 
+/// Columns that have the names of fields, such as `fields!(|point: &Point| point => time_s, force_n)`.
+macro_rules! fields {
+    (|$row:ident: $type:ty| $of:expr => $($field:ident),+ $(,)?) => {
+        [$($crate::output::table::column(stringify!($field), |$row: $type| $of.$field)),+]
+    };
+}
+pub(crate) use fields;
+
 /// A column with the row numbers, from 1.
 pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
     Column {
@@ -71,6 +79,12 @@ pub(crate) fn numbers<'a, R>(
 impl From<f64> for Cell<'_> {
     fn from(number: f64) -> Self {
         Self::Number(number)
+    }
+}
+
+impl From<bool> for Cell<'_> {
+    fn from(is_true: bool) -> Self {
+        Self::Text(if is_true { "true" } else { "false" }.into())
     }
 }
 

@@ -7,14 +7,14 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::capacity::{self, capacity};
-use super::ensemble::Ensemble;
-use super::ensemble::cells::CellsOfSamples;
+use super::ensemble::cells::{self, CellsOfSamples};
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
-use super::map::OverturningMap;
+use super::ensemble::{Ensemble, Question};
+use super::map::{self, OverturningMap};
 use super::part::{self, PartFile};
-use super::results::{Look, Reported, Results, StudyError};
+use super::results::{Reported, Results, StudyError, Style};
 use super::runner::{Computed, Progress, Runner, Task};
 use super::spread::{self, Way};
 use super::suite::{self, Heading, RecordSuite};
@@ -23,7 +23,7 @@ use super::threshold::{self, Factors};
 use super::verify;
 use crate::scenario::Scenario;
 
-/// What is computed of a scenario, where that is not part of the scenario.
+/// Options of studies that are not part of the scenario.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Options {
@@ -49,8 +49,8 @@ pub enum Rows<'w> {
     Merge(&'w [PathBuf]),
 }
 
-/// Decides how merged results look, from the scenario of the parts if that is read. It may refuse options that do not fit the study.
-pub type ChooseLook<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Result<Look, String>;
+/// Chooses the style of merged results from the scenario of the parts if that is read. It may refuse options that do not fit the study.
+pub type ChooseStyle<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Result<Style, String>;
 
 /// The result of a computation.
 #[derive(Debug)]
@@ -75,7 +75,7 @@ pub struct StudyKind {
     pub name: &'static str,
     /// The names of all files that its results may have, the seal last.
     pub files: &'static [&'static str],
-    run: fn(&Scenario, &Options, Look, Rows<'_>) -> Result<Done, StudyError>,
+    run: fn(&Scenario, &Options, Style, Rows<'_>) -> Result<Done, StudyError>,
 }
 
 impl PartialEq for StudyKind {
@@ -89,24 +89,24 @@ impl Eq for StudyKind {}
 /// Which pulses overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind {
     name: "map",
-    files: &["map.svg", "map.html", "map.json", "map.csv"],
-    run: |scenario, _, look, rows| run(OverturningMap::of(scenario), look, rows),
+    files: &map::FILES,
+    run: |scenario, _, style, rows| run(OverturningMap::of(scenario), style, rows),
 };
 /// Which records overturn the structure.
 pub const SUITE: StudyKind = StudyKind {
     name: "suite",
     files: &suite::FILES,
-    run: |scenario, _, look, rows| run(RecordSuite::of(scenario), look, rows),
+    run: |scenario, _, style, rows| run(RecordSuite::of(scenario), style, rows),
 };
 /// The factors by which the ground motion overturns the structure.
 pub const THRESHOLD: StudyKind = StudyKind {
     name: "threshold",
     files: &threshold::FILES,
-    run: |scenario, options, look, rows| {
+    run: |scenario, options, style, rows| {
         let Rows::Compute(runner, _, watch) = rows else {
             return Err(StudyError::scenario("a threshold has no parts"));
         };
-        let (factors, figure) = (&options.factors, look.figure);
+        let (factors, figure) = (&options.factors, style.figure);
         threshold::results(&[scenario], factors, figure, &runner, watch).map(whole)
     },
 };
@@ -114,13 +114,13 @@ pub const THRESHOLD: StudyKind = StudyKind {
 pub const THRESHOLD_ALONG: StudyKind = StudyKind {
     name: "threshold_along",
     files: &along::FILES,
-    run: |scenario, options, look, rows| {
+    run: |scenario, options, style, rows| {
         let along = options.along.clone();
         let along = along.ok_or("a threshold along a range needs its key and its values");
         let study = along.map_err(str::to_owned);
         run(
             study.and_then(|along| Along::of(scenario, along)),
-            look,
+            style,
             rows,
         )
     },
@@ -129,19 +129,19 @@ pub const THRESHOLD_ALONG: StudyKind = StudyKind {
 pub const CAPACITY: StudyKind = StudyKind {
     name: "capacity",
     files: &capacity::FILES,
-    run: |scenario, options, look, _| {
+    run: |scenario, options, style, _| {
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
-        Ok(whole(capacity::report(scenario, &sides, look.figure)?))
+        Ok(whole(capacity::report(scenario, &sides, style.figure)?))
     },
 };
 /// How far a springing may move until the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     name: "spread",
     files: &spread::FILES,
-    run: |scenario, options, look, _| {
+    run: |scenario, options, style, _| {
         let found = spread::spread(scenario, &options.ways).map_err(StudyError::scenario)?;
-        Ok(whole(spread::report(scenario, &found, look.figure)?))
+        Ok(whole(spread::report(scenario, &found, style.figure)?))
     },
 };
 /// The check of the first mechanism by the Circolare 7/2019.
@@ -162,74 +162,37 @@ pub const VERIFY: StudyKind = StudyKind {
 /// How histories end and proceed, for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind {
     name: "uncertain",
-    files: &[
-        "bands.svg",
-        "matters.svg",
-        "bands.csv",
-        "samples.csv",
-        "uncertain.json",
-    ],
-    run: |scenario, _, look, rows| {
-        let question = Histories::of(scenario);
-        run(
-            question.and_then(|question| Ensemble::new(scenario, question)),
-            look,
-            rows,
-        )
-    },
+    files: Histories::FILES,
+    run: |scenario, _, style, rows| run(ensemble(scenario, Histories::of(scenario)), style, rows),
 };
 /// The factor from which samples of the uncertain numbers overturn.
 pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind {
     name: "uncertain_threshold",
-    files: &[
-        "probability.svg",
-        "matters.svg",
-        "probability.csv",
-        "samples.csv",
-        "uncertain.json",
-    ],
-    run: |scenario, options, look, rows| {
+    files: FirstEdges::FILES,
+    run: |scenario, options, style, rows| {
         let question = FirstEdges::of(scenario, options.factors);
-        run(
-            question.and_then(|question| Ensemble::new(scenario, question)),
-            look,
-            rows,
-        )
+        run(ensemble(scenario, question), style, rows)
     },
 };
 /// Which records overturn samples of the uncertain numbers.
 pub const UNCERTAIN_SUITE: StudyKind = StudyKind {
     name: "uncertain_suite",
-    files: &[
-        "fragility.svg",
-        "matters.svg",
-        "fragility.csv",
-        "capacities.csv",
-        "samples.csv",
-        "uncertain.json",
-    ],
-    run: |scenario, _, look, rows| {
-        let question = Capacities::of(scenario);
-        run(
-            question.and_then(|question| Ensemble::new(scenario, question)),
-            look,
-            rows,
-        )
-    },
+    files: Capacities::FILES,
+    run: |scenario, _, style, rows| run(ensemble(scenario, Capacities::of(scenario)), style, rows),
 };
 /// How likely pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind = StudyKind {
     name: "uncertain_map",
-    files: &[
-        "map.svg",
-        "map.html",
-        "matters.svg",
-        "probability.csv",
-        "map.csv",
-        "uncertain.json",
-    ],
-    run: |scenario, _, look, rows| run(CellsOfSamples::of(scenario), look, rows),
+    files: &cells::FILES,
+    run: |scenario, _, style, rows| run(CellsOfSamples::of(scenario), style, rows),
 };
+
+fn ensemble<Q: Question>(
+    scenario: &Scenario,
+    question: Result<Q, String>,
+) -> Result<Ensemble<'_, Q>, String> {
+    Ensemble::new(scenario, question?)
+}
 
 const fn whole(results: Results) -> Done {
     Done::Whole(results, None)
@@ -265,17 +228,17 @@ impl StudyKind {
         self,
         scenario: &Scenario,
         options: &Options,
-        look: Look,
+        style: Style,
         rows: Rows<'_>,
     ) -> Result<Done, StudyError> {
-        (self.run)(scenario, options, look, rows)
+        (self.run)(scenario, options, style, rows)
     }
 }
 
 /// Finds the rows of a study, and turns them into results if they are those of all cases.
 fn run<S: Reported>(
     study: Result<S, String>,
-    look: Look,
+    style: Style,
     rows: Rows<'_>,
 ) -> Result<Done, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
@@ -291,18 +254,18 @@ fn run<S: Reported>(
             }
         },
     };
-    Ok(Done::Whole(study.results(rows, look)?, part))
+    Ok(Done::Whole(study.results(rows, style)?, part))
 }
 
 /// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
 /// may have moved.
 ///
 /// # Errors
-/// When parts are missing, do not belong to one study or belong to a scenario other than the given one, or `look` refuses.
+/// When parts are missing, do not belong to one study or belong to a scenario other than the given one, or `style` refuses.
 pub fn merge(
     parts: &[PathBuf],
     given: Option<&Scenario>,
-    look: ChooseLook<'_>,
+    style: ChooseStyle<'_>,
 ) -> Result<(StudyKind, Results), StudyError> {
     let header = parts
         .first()
@@ -315,12 +278,12 @@ pub fn merge(
         )));
     };
     if kind == SUITE {
-        let look = look(kind, None).map_err(StudyError::Scenario)?;
+        let style = style(kind, None).map_err(StudyError::Scenario)?;
         let (header, rows) = part::merge(parts)?;
         let heading = Heading::of_resolved(&header.scenario, header.warnings);
         let damaged = "the scenario of the parts is damaged: compute them again";
         let heading = heading.ok_or_else(|| StudyError::scenario(damaged))?;
-        return Ok((kind, heading.tell(rows, look.figure)?));
+        return Ok((kind, heading.report(rows, style.figure)?));
     }
     let scenario = match given {
         None => Scenario::parse(&header.scenario, "the scenario of the parts")?,
@@ -332,11 +295,11 @@ pub fn merge(
     };
     let options: Option<Options> =
         serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
-    let look = look(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
+    let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
     match kind.compute(
         &scenario,
         &options.unwrap_or_default(),
-        look,
+        style,
         Rows::Merge(parts),
     )? {
         Done::Whole(results, _) => Ok((kind, results)),

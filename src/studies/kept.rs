@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::catalogue::{self, StudyKind};
 use super::part::{Shard, rows_in};
-use super::{capacity, peaks, run, spread, threshold, verify};
+use super::{peaks, run};
 use crate::output::print::PictureFormat;
 use crate::scenario::{Hinges, Scenario};
 
@@ -19,10 +19,8 @@ pub const ORIGIN: &str = ".scenario";
 pub struct Writer {
     /// The name of the command.
     pub name: &'static str,
-    /// All files that it may write beside one another, the seal last.
+    /// All files that it may write beside one another, the seal last. The scenario is in the first that is JSON.
     files: &'static [&'static str],
-    /// The file that holds the scenario; `None`: no file does.
-    summary: Option<&'static str>,
     /// The study of the samples of `[uncertain]`, whose results are in a subfolder.
     samples: Option<StudyKind>,
     /// The file that shows that the results of several models are in subfolders; `None`: results of models are never apart.
@@ -31,92 +29,69 @@ pub struct Writer {
     of_records: bool,
 }
 
-const PLAIN: Writer = Writer {
-    name: "",
-    files: &[],
-    summary: None,
-    samples: None,
-    of_models: None,
-    of_records: false,
-};
 /// `archrock run`.
 pub const RUN: Writer = Writer {
-    name: "run",
-    files: &run::FILES,
-    summary: Some("summary.json"),
     samples: Some(catalogue::UNCERTAIN),
     of_models: Some(run::OVERLAY),
     of_records: true,
+    ..Writer::new("run", &run::FILES)
 };
 /// `archrock threshold`.
 pub const THRESHOLD: Writer = Writer {
-    name: "threshold",
-    files: &threshold::FILES,
-    summary: Some("threshold.json"),
     samples: Some(catalogue::UNCERTAIN_THRESHOLD),
     of_models: Some("threshold.json"),
     of_records: true,
-};
-/// `archrock map`.
-pub const MAP: Writer = Writer {
-    name: "map",
-    files: catalogue::MAP.files,
-    summary: Some("map.json"),
-    samples: Some(catalogue::UNCERTAIN_MAP),
-    ..PLAIN
+    ..Writer::new("threshold", catalogue::THRESHOLD.files)
 };
 /// `archrock threshold --along`.
-pub const ALONG: Writer = Writer {
-    name: "threshold --along",
-    files: catalogue::THRESHOLD_ALONG.files,
-    summary: Some("threshold_along.json"),
-    ..PLAIN
+pub const ALONG: Writer = Writer::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
+const MAP: Writer = Writer {
+    samples: Some(catalogue::UNCERTAIN_MAP),
+    ..Writer::new("map", catalogue::MAP.files)
 };
-/// `archrock suite`.
-pub const SUITE: Writer = Writer {
-    name: "suite",
-    files: catalogue::SUITE.files,
-    summary: Some("fragility.json"),
+const SUITE: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_SUITE),
     of_models: Some("models/peaks.json"),
-    ..PLAIN
-};
-/// `archrock capacity`.
-pub const CAPACITY: Writer = Writer {
-    name: "capacity",
-    files: &capacity::FILES,
-    summary: Some("capacity.json"),
-    ..PLAIN
-};
-/// `archrock spread`.
-pub const SPREAD: Writer = Writer {
-    name: "spread",
-    files: &spread::FILES,
-    summary: Some("spread.json"),
-    ..PLAIN
-};
-/// `archrock verify`.
-pub const VERIFY: Writer = Writer {
-    name: "verify",
-    files: &verify::FILES,
-    summary: Some("verify.json"),
-    ..PLAIN
+    ..Writer::new("suite", catalogue::SUITE.files)
 };
 
-const ALL: [Writer; 8] = [RUN, THRESHOLD, ALONG, MAP, SUITE, CAPACITY, SPREAD, VERIFY];
+const ALL: [Writer; 8] = [
+    RUN,
+    THRESHOLD,
+    ALONG,
+    MAP,
+    SUITE,
+    Writer::new("capacity", catalogue::CAPACITY.files),
+    Writer::new("spread", catalogue::SPREAD.files),
+    Writer::new("verify", catalogue::VERIFY.files),
+];
 
 /// The folder that compares the results of several models of motion.
 const MODELS: &str = "models";
 
 impl Writer {
+    const fn new(name: &'static str, files: &'static [&'static str]) -> Self {
+        Self {
+            name,
+            files,
+            samples: None,
+            of_models: None,
+            of_records: false,
+        }
+    }
+
     /// `merge` of a study, which replaces the results of that study only: those of its samples are merged apart.
     #[must_use]
     pub const fn merge(kind: StudyKind) -> Self {
-        Self {
-            name: "merge",
-            files: kind.files,
-            ..PLAIN
-        }
+        Self::new("merge", kind.files)
+    }
+
+    /// The command that writes the results of a study.
+    #[must_use]
+    pub fn of(kind: StudyKind) -> Self {
+        let mut all = ALL.into_iter();
+        let writer = all.find(|writer| writer.files == kind.files);
+        writer.unwrap_or(Self::merge(kind))
     }
 
     /// The command whose results have this seal; `None` if no command writes them.
@@ -127,12 +102,17 @@ impl Writer {
         all.find(|writer| writer.files.last() == Some(&seal))
     }
 
+    /// The file that holds the scenario.
+    fn summary(&self) -> Option<&'static str> {
+        let mut files = self.files.iter().copied();
+        files.find(|file| file.ends_with(".json"))
+    }
+
     /// The scenario in the summary among files of results; `None` if there is none.
     #[must_use]
     pub fn origin_in(&self, files: &[(String, Vec<u8>)]) -> Option<Origin> {
-        let (_, summary) = files
-            .iter()
-            .find(|(name, _)| Some(&**name) == self.summary)?;
+        let mut files = files.iter();
+        let (_, summary) = files.find(|(name, _)| Some(&**name) == self.summary())?;
         of_summary(&serde_json::from_slice(summary).ok()?)
     }
 
@@ -233,7 +213,7 @@ impl Writer {
 
     /// The scenario of complete results in a folder.
     fn origin(&self, folder: &Path) -> Option<Origin> {
-        let summary = folder.join(self.summary?);
+        let summary = folder.join(self.summary()?);
         // Reading a pipe of that name would never end.
         if !self.is_sealed(folder) || !summary.is_file() {
             return None;

@@ -19,7 +19,7 @@ pub(crate) struct Kind {
     pub(crate) fill: &'static str,
 }
 
-const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Kind {
+pub(crate) const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Kind {
     Kind { name, label, fill }
 }
 

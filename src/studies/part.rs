@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -118,7 +118,7 @@ pub struct Header {
     pub shard: Shard,
     /// The scenario, with every default filled in.
     pub scenario: String,
-    /// What is computed of the scenario: [`options`](super::runner::Study::options).
+    /// Options of the study: [`options`](super::runner::Study::options).
     #[serde(default, skip_serializing_if = "Value::is_null")]
     pub options: Value,
     /// The other input of the cases: checksums of the files that the scenario names.
@@ -274,14 +274,11 @@ fn check_file(path: &Path) -> Result<(), PartError> {
     }
 }
 
-/// The complete lines of a file, or of the part of it that `read` returns, and their length in bytes.
-fn complete_lines(
-    path: &Path,
-    read: impl FnOnce(&Path) -> io::Result<Vec<u8>>,
-) -> Result<(String, u64), PartError> {
+/// The complete lines of a file, and their length in bytes.
+fn complete_lines(path: &Path) -> Result<(String, u64), PartError> {
     check_file(path)?;
     let mut bytes =
-        read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+        fs::read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
     // An incomplete last line was being written when the program was killed.
     let complete = bytes
         .iter()
@@ -339,11 +336,7 @@ fn rows_of<R: DeserializeOwned>(
 /// # Errors
 /// When the file cannot be read or is not a part.
 pub fn read_header(path: &Path) -> Result<Header, PartError> {
-    let (text, _) = complete_lines(path, |path| {
-        let mut line = Vec::new();
-        BufReader::new(File::open(path)?).read_until(b'\n', &mut line)?;
-        Ok(line)
-    })?;
+    let (text, _) = complete_lines(path)?;
     let (header, _) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
     Ok(header)
 }
@@ -354,7 +347,7 @@ pub fn rows_in(path: &Path) -> Option<usize> {
     if !path.is_file() {
         return None;
     }
-    let (text, _) = complete_lines(path, |path| fs::read(path)).ok()?;
+    let (text, _) = complete_lines(path).ok()?;
     match header_of(path, &text).ok()? {
         Some((_, lines)) => Some(lines.count()),
         None => Some(0),
@@ -403,7 +396,7 @@ impl PartFile {
             path: path.to_owned(),
             file,
         };
-        let (text, length) = complete_lines(path, |path| fs::read(path))?;
+        let (text, length) = complete_lines(path)?;
         let rows = match header_of(path, &text)? {
             None => Rows::new(),
             Some((found, lines)) => {
@@ -499,7 +492,7 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
     let mut whole: Option<(Header, Rows<R>)> = None;
     let mut places: BTreeMap<usize, &Path> = BTreeMap::new();
     for path in paths {
-        let (text, _) = complete_lines(path, |path| fs::read(path))?;
+        let (text, _) = complete_lines(path)?;
         let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
         let shard = header.shard;
         if let Some((first, _)) = &whole {

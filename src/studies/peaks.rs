@@ -10,11 +10,11 @@ use serde_json::json;
 use super::results::Results;
 use super::statistics::fractile;
 use crate::output::Figure;
+use crate::output::OutputError;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark};
 use crate::output::svg::CURVES;
 use crate::output::table::{Column, column, csv};
-use crate::output::{OutputError, pretty};
 
 /// The largest rotation of a body in each case of a model, in radians, infinite if the case overturned; and the name of the model in
 /// words.
@@ -107,7 +107,7 @@ pub fn results(
         others.filter_map(|other| distance(*one, *other))
     });
     let pairs: Vec<Distance> = pairs.collect();
-    let of_models = models.iter().map(|(name, peaks)| {
+    let of_model = |(name, peaks): &ModelPeaks<'_>| {
         let all = ascending(peaks);
         let at = |part| fractile(&all, part).filter(|peak| peak.is_finite());
         json!({
@@ -118,27 +118,19 @@ pub fn results(
             "peak_rotation_50_rad": at(0.5),
             "peak_rotation_84_rad": at(0.84),
         })
-    });
-    let summary = json!({ "models": of_models.collect::<Vec<_>>(), "pairs": pairs });
-    let columns: [Column<'_, &ShareUpTo<'_>>; 3] = [
-        column("model", |at: &&ShareUpTo<'_>| at.model.to_owned()),
-        column("peak_rotation_rad", |at: &&ShareUpTo<'_>| at.rotation_rad),
-        column("share", |at: &&ShareUpTo<'_>| at.share),
+    };
+    let of_models: Vec<_> = models.iter().map(of_model).collect();
+    let summary = json!({ "models": of_models, "pairs": pairs });
+    let columns: [Column<'_, ShareUpTo<'_>>; 3] = [
+        column("model", |at: &ShareUpTo<'_>| at.model.to_owned()),
+        column("peak_rotation_rad", |at: &ShareUpTo<'_>| at.rotation_rad),
+        column("share", |at: &ShareUpTo<'_>| at.share),
     ];
-    let rows: Vec<&ShareUpTo<'_>> = distributions.iter().flatten().collect();
     let picture = draw(figure, title, models, &distributions);
-    let contents = [
-        picture.into_bytes(),
-        csv(columns, &rows)?,
-        pretty(&summary).into_bytes(),
-    ];
+    let table = csv(columns, distributions.iter().flatten())?;
     let words: Vec<String> = pairs.iter().map(in_words).collect();
-    Ok(Results {
-        files: FILES.into_iter().zip(contents).collect(),
-        words: words.join("\n  "),
-        summary,
-        ..Results::default()
-    })
+    let others = [picture.into_bytes(), table];
+    Results::new(&FILES, &summary, words.join("\n  "), others)
 }
 
 fn in_words(found: &Distance) -> String {

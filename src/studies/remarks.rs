@@ -1,16 +1,17 @@
-//! What a study reports about its cases in addition to their rows: their outcomes, failures and uncertainties.
+//! Remarks of a study on its cases: their outcomes, failures and uncertainties.
 
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
-use super::ending::{Ending, Steps, Verdict};
+use super::ending::{Ending, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::scenario::{Hinges, Scenario};
 
 /// A case of a study that failed or is uncertain, as results list it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Remark {
     /// The case, in words.
     pub case: String,
@@ -27,19 +28,50 @@ impl Remark {
     }
 }
 
-/// What a study reports about its cases in addition to their rows.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Remarks of a study on its cases in addition to their rows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Remarks {
     /// The cases that failed, with the reasons.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<Remark>,
     /// The cases for which it is uncertain whether they overturn, with the reasons.
+    #[serde(rename = "uncertain_cases", skip_serializing_if = "Vec::is_empty")]
     pub uncertain: Vec<Remark>,
     /// Number of histories that were computed.
+    #[serde(skip)]
     histories: usize,
     /// Number of histories among them that ended too early for a verdict.
+    #[serde(skip)]
     incomplete: usize,
-    /// Smallest and largest, over the cases, of the longest step of a case, and of its shortest step, in seconds.
-    steps_s: Option<[[f64; 2]; 2]>,
+    /// The longest steps of the cases, in seconds; absent if a tolerance sets the steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    longest_step_s: Option<Extent>,
+    /// The shortest steps of the cases, in seconds; absent if a tolerance sets the steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    shortest_step_s: Option<Extent>,
+}
+
+/// The smallest and the largest of some values.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct Extent {
+    /// The smallest.
+    min: f64,
+    /// The largest.
+    max: f64,
+}
+
+impl Extent {
+    /// With one more value.
+    fn with(extent: Option<Self>, value: f64) -> Option<Self> {
+        let Self { min, max } = extent.unwrap_or(Self {
+            min: value,
+            max: value,
+        });
+        Some(Self {
+            min: min.min(value),
+            max: max.max(value),
+        })
+    }
 }
 
 impl Remarks {
@@ -59,41 +91,9 @@ impl Remarks {
     pub(crate) fn note_history(&mut self, ending: &Ending) {
         self.histories += 1;
         self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
-        if let Some(Steps {
-            longest_s,
-            shortest_s,
-        }) = ending.steps
-        {
-            let own_s = [longest_s, shortest_s].map(|step_s| [step_s; 2]);
-            let all_s = self.steps_s.get_or_insert(own_s);
-            for ([least_s, most_s], [step_s, _]) in all_s.iter_mut().zip(own_s) {
-                *least_s = least_s.min(step_s);
-                *most_s = most_s.max(step_s);
-            }
-        }
-    }
-
-    /// Adds the remarks to a summary, if there are any.
-    pub(crate) fn add_to(&self, summary: &mut Value) {
-        let list = |remarks: &[Remark]| -> Value {
-            let list = remarks.iter();
-            list.map(|remark| json!({ "case": remark.case, "reason": remark.reason }))
-                .collect()
-        };
-        let lists = [
-            ("failures", &self.failures),
-            ("uncertain_cases", &self.uncertain),
-        ];
-        for (name, remarks) in lists {
-            if !remarks.is_empty() {
-                summary[name] = list(remarks);
-            }
-        }
-        if let Some(steps_s) = self.steps_s {
-            let names = ["longest_step_s", "shortest_step_s"];
-            for (name, [least_s, most_s]) in names.into_iter().zip(steps_s) {
-                summary[name] = json!({ "min": least_s, "max": most_s });
-            }
+        if let Some(steps) = ending.steps {
+            self.longest_step_s = Extent::with(self.longest_step_s, steps.longest_s);
+            self.shortest_step_s = Extent::with(self.shortest_step_s, steps.shortest_s);
         }
     }
 }
@@ -129,18 +129,41 @@ pub fn warnings(scenario: &Scenario) -> Vec<String> {
     warnings
 }
 
-/// The summary of a study as JSON: its scenario, warnings, the number of its cases, and the remarks on them.
-pub(crate) fn summary(scenario: &Scenario, cases: usize, remarks: &Remarks) -> Value {
-    let mut summary = json!({
-        "program": env!("CARGO_PKG_NAME"),
-        "version": env!("CARGO_PKG_VERSION"),
-        "scenario": scenario.to_json(),
-        "warnings": remarks.with_incomplete(warnings(scenario)),
-        "record_checksums": scenario.record_checksums(),
-        "cases": cases,
-    });
-    remarks.add_to(&mut summary);
-    summary
+/// Summary of a study of many cases.
+#[derive(Serialize)]
+pub(crate) struct CaseSummary<'a, D> {
+    program: &'static str,
+    version: &'static str,
+    scenario: Value,
+    warnings: Vec<String>,
+    record_checksums: Vec<String>,
+    cases: usize,
+    #[serde(flatten)]
+    remarks: &'a Remarks,
+    #[serde(flatten)]
+    details: D,
+}
+
+impl<'a, D> CaseSummary<'a, D> {
+    /// The summary, with a warning of cases without a verdict, and with details of the study.
+    pub(crate) fn new(
+        scenario: &Scenario,
+        cases: usize,
+        remarks: &'a Remarks,
+        no_verdict: Option<String>,
+        details: D,
+    ) -> Self {
+        Self {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            scenario: scenario.to_json(),
+            warnings: warnings(scenario).into_iter().chain(no_verdict).collect(),
+            record_checksums: scenario.record_checksums(),
+            cases,
+            remarks,
+            details,
+        }
+    }
 }
 
 /// How many of these cases ended too early for a verdict, and what to do; `None` if none did.
@@ -155,34 +178,29 @@ impl Remarks {
         no_verdict(self.incomplete, self.histories, "histories")
     }
 
-    /// The warnings of a study, and one about histories without a verdict if there are any.
-    pub(crate) fn with_incomplete(&self, mut warnings: Vec<String>) -> Vec<String> {
-        warnings.extend(self.incomplete_in_words());
-        warnings
-    }
-
     /// How many cases failed, why the first one did, and which file lists the others; `None` if none failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
-        let (count, first) = (self.failures.len(), self.failures.first()?);
-        let others = if count > 1 {
-            format!("; all are in {file}")
-        } else {
-            String::new()
-        };
-        Some(format!("failed: {count}; the first: {first}{others}"))
+        let failures = first_of(&self.failures, file)?;
+        Some(format!("failed: {}; {failures}", self.failures.len()))
     }
 
     /// How many cases are uncertain, and which file lists them; `None` if none is.
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
-        let first = self.uncertain.first()?;
-        let listed = match self.uncertain.len() {
-            1 => String::new(),
-            _ => format!("; all are in {file}"),
-        };
+        let cases = first_of(&self.uncertain, file)?;
         Some(format!(
-            "uncertain: with other steps, or with landings merged, they end otherwise or differ before the largest rotation; the first: {first}{listed}"
+            "uncertain: with other steps, or with landings merged, they end otherwise or differ before the largest rotation; {cases}"
         ))
     }
+}
+
+/// The first remark, and which file lists the others; `None` without remarks.
+fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
+    let (first, others) = remarks.split_first()?;
+    let listed = match others {
+        [] => String::new(),
+        _ => format!("; all are in {file}"),
+    };
+    Some(format!("the first: {first}{listed}"))
 }
 
 /// Words for an outcome, and their position in the list of counts.

@@ -3,12 +3,14 @@
 use std::fmt;
 use std::io::Write as _;
 
+use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
 
 use super::part::PartError;
 use super::runner::{RunnerError, Study};
-use crate::output::{Figure, Folder, OutputError};
+use crate::output::summary::summary_of;
+use crate::output::{Figure, Folder, OutputError, pretty};
 use crate::scenario::ScenarioErrors;
 
 /// Why a study has no results.
@@ -52,7 +54,7 @@ pub trait Reported: Study {
     ///
     /// # Errors
     /// When a value is not finite.
-    fn results(&self, rows: Vec<Self::Row>, look: Look) -> Result<Results, OutputError>;
+    fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError>;
 }
 
 /// The results of a study.
@@ -70,6 +72,33 @@ pub struct Results {
 }
 
 impl Results {
+    /// The results with these files: the summary, which is JSON, and the contents of the others, in the order of their names.
+    ///
+    /// # Errors
+    /// When a number of the summary is not finite.
+    pub(super) fn new(
+        names: &[&'static str],
+        summary: &impl Serialize,
+        words: String,
+        others: impl IntoIterator<Item = Vec<u8>>,
+    ) -> Result<Self, OutputError> {
+        let summary = summary_of(summary)?;
+        let mut others = others.into_iter();
+        let file = |name: &&'static str| {
+            let contents = match name.ends_with(".json") {
+                true => pretty(&summary).into_bytes(),
+                false => others.next().expect("every file has its contents"),
+            };
+            (*name, contents)
+        };
+        Ok(Self {
+            files: names.iter().map(file).collect(),
+            words,
+            summary,
+            peaks: Vec::new(),
+        })
+    }
+
     /// Names of the files, in their order.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
@@ -97,13 +126,13 @@ impl Results {
 pub struct Answer {
     /// All numbers.
     pub json: Value,
-    /// The same in words.
+    /// The answer in words.
     pub text: String,
 }
 
-/// The look of results.
+/// The style of results.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct Style {
     /// Width of the pictures, and the size of their text.
     pub figure: Figure,
     /// Whether surviving cells of a map are coloured by their largest rotation over the critical one, if that is known.
@@ -112,7 +141,7 @@ pub struct Look {
     pub factors: Option<[f64; 2]>,
 }
 
-impl Look {
+impl Style {
     /// A map coloured by outcome, with the units of its axes.
     #[must_use]
     pub const fn of(figure: Figure) -> Self {
@@ -123,7 +152,7 @@ impl Look {
         }
     }
 
-    /// The same of a map of probability, which has no outcomes to colour by.
+    /// The style of a map of probability, which has no outcomes to colour by.
     #[must_use]
     pub const fn of_samples(self) -> Self {
         Self {

@@ -11,10 +11,6 @@
 //!     type Row = usize;
 //!     const NAME: &'static str = "squares";
 //!
-//!     fn scenario(&self) -> String {
-//!         String::new()
-//!     }
-//!
 //!     fn count(&self) -> usize {
 //!         1000
 //!     }
@@ -55,6 +51,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::part::{Header, PartError, PartFile, Rows, Shard};
+use crate::scenario::Scenario;
 
 /// Many cases, each a function of its index alone. So they can be computed in any order, by any number of threads,
 /// on several machines, at any time.
@@ -65,17 +62,24 @@ pub trait Study: Sync {
     /// Name of the study, in part files and in their names.
     const NAME: &'static str;
 
-    /// The scenario, with every default filled in. The rows depend on it and on the inputs, and on nothing else.
-    fn scenario(&self) -> String;
+    /// The scenario whose cases these are, if there is one.
+    fn base(&self) -> Option<&Scenario> {
+        None
+    }
 
-    /// What is computed of the scenario, if there is a choice. The rows depend on it.
+    /// The scenario, with every default filled in. The rows depend on it and on the inputs, and on nothing else.
+    fn scenario(&self) -> String {
+        self.base().map_or(String::new(), Scenario::to_toml)
+    }
+
+    /// Options of the study, if there are any. The rows depend on them.
     fn options(&self) -> Value {
         Value::Null
     }
 
     /// Other things on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
     fn inputs(&self) -> Vec<String> {
-        Vec::new()
+        self.base().map_or(Vec::new(), Scenario::record_checksums)
     }
 
     /// Warnings about the scenario that a merged study could not find again, because its files may have moved.
@@ -215,7 +219,7 @@ impl Runner {
         self.each_of_families(count, |_| None, rows_of, watch)
     }
 
-    /// The same for cases in families, as in [`Study::family`] and [`Study::rows`].
+    /// Computes rows of cases in families, as in [`Study::family`] and [`Study::rows`].
     ///
     /// # Errors
     /// As [`Runner::rows`].

@@ -108,8 +108,8 @@ data.rows.forEach((row, index) => {
   verify(text.includes(`impacts ${Number(row[4])}`), `${text} ${row}`);
   verify(text.includes(`outcome_time_s ${Number(Number(row[6]).toPrecision(5))}`), `${text} ${row}`);
   const command = document.getElementById('command').textContent;
-  verify(command.includes(`duration_s = ${Number(row[0])}\\n`), `${command} ${row}`);
-  verify(command.includes(`amplitude_g = ${Number(row[1])}\\n`), `${command} ${row}`);
+  verify(command.includes(`duration_s=${Number(row[0])} `), `${command} ${row}`);
+  verify(command.includes(`amplitude_g=${Number(row[1])} `), `${command} ${row}`);
 });
 // The middle of the cell under the pointer lies in the rectangle that marks it.
 const box = map.querySelector('svg').getBoundingClientRect();

@@ -13,9 +13,9 @@ use archrock::output::Figure;
 use archrock::output::scene::Scene;
 use archrock::scenario::Structure;
 use archrock::studies::impact::LinkImpact;
-use archrock::studies::map::{OverturningMap, outcome, picture};
+use archrock::studies::map::{OverturningMap, picture};
 use archrock::studies::pictures;
-use archrock::studies::results::Look;
+use archrock::studies::results::Style;
 use archrock::studies::runner::Study as _;
 use archrock::{Arch, FourLinks, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
@@ -602,7 +602,7 @@ fn the_map_shows_every_cell() {
     let scenario = Scenario::parse(text, "s.toml").unwrap();
     let cells = OverturningMap::new(&scenario).unwrap();
     let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
-    let picture = picture::draw("a < b", &cells, &rows, Look::of(Figure::SCREEN));
+    let picture = picture::draw("a < b", &cells, &rows, Style::of(Figure::SCREEN));
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 
@@ -641,7 +641,7 @@ fn the_map_shows_every_cell() {
             };
             for row in at(b)..at(t) {
                 let row = &rows[column * 5 + row as usize];
-                assert_eq!(outcome(&row.result), wanted);
+                assert_eq!(row.result.outcome_name(), wanted);
                 shown += 1;
             }
         }

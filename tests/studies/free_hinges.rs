@@ -14,10 +14,9 @@ use archrock::output::Figure;
 use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
 use archrock::studies::ending::Ending;
 use archrock::studies::ending::Verdict;
-use archrock::studies::map::outcome;
 use archrock::studies::map::picture::draw;
 use archrock::studies::map::{CellResult, OverturningMap};
-use archrock::studies::results::Look;
+use archrock::studies::results::Style;
 use archrock::studies::runner::{Runner, Study as _};
 use archrock::studies::threshold::{Factors, Threshold, thresholds};
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Model, Pulse, Request, RockingColumn};
@@ -47,7 +46,7 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
         .lasting_s(duration_s)
         .horizontal_m_s2(amplitude_g * 9.81)
         .unwrap();
-    let case = [(ground, map.scenario().request_from_rest())];
+    let case = [(ground, map.scenario.request_from_rest())];
     let mut endings = Ending::until_safe(&row.clone().for_many_cases(), &case);
     endings.remove(0).unwrap()
 }
@@ -181,7 +180,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
         let cell = map.row(index);
         assert_eq!(cell.outcomes, Some(Ok(outcomes.len())), "cell {index}");
         let expected = if certain { own } else { "uncertain" };
-        assert_eq!(outcome(&cell.result), expected, "cell {index}");
+        assert_eq!(cell.result.outcome_name(), expected, "cell {index}");
         rows.push(cell);
     }
     let doubtful = rows
@@ -189,8 +188,8 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
         .filter(|row| matches!(row.outcomes, Some(Ok(outcomes)) if outcomes > 1))
         .count();
     assert!(0 < doubtful && doubtful < rows.len() / 2, "{doubtful}");
-    let look = Look::of(Figure::SCREEN);
-    let picture = draw("Title", &map, &rows, look);
+    let style = Style::of(Figure::SCREEN);
+    let picture = draw("Title", &map, &rows, style);
     assert!(picture.contains("another outcome in a repetition"));
     let hatch = picture.lines().find(|line| line.contains("\"doubtful\""));
     assert_eq!(hatch.unwrap().matches('M').count(), doubtful);
@@ -207,7 +206,7 @@ fn the_spread_counts_the_outcomes_of_all_repetitions() {
         assert_eq!((less.outcome, without.outcomes), (more.outcome, None));
         assert!(less.uncertain.is_none() || less.uncertain == more.uncertain);
     }
-    assert!(!draw("Title", &map, &rows, look).contains("in a repetition"));
+    assert!(!draw("Title", &map, &rows, style).contains("in a repetition"));
 }
 
 /// With steps that the scenario gives, a map takes those of `run`: outcome and peak are bit-identical, and so are the impacts and

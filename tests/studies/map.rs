@@ -88,7 +88,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
     let scaled = parsed(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
     let cells = OverturningMap::new(&scaled).unwrap();
     assert_eq!(
-        cells.axes().map(|axis| axis.quantity.name()),
+        cells.axes.map(|axis| axis.quantity.name()),
         ["duration_s", "mean_radius_m"]
     );
     // Cells 0 and 3: 0.4 s at 2 m, 0.8 s at 8 m.
@@ -672,7 +672,7 @@ fn a_map_reads_back_as_it_is_written() {
              [impact]\nmodel = 'prescribed'\nrestitution = 0.5\n[map]\n{map}"
         ));
         assert_eq!(parsed(&scenario.to_toml()), scenario);
-        for axis in OverturningMap::new(&scenario).unwrap().values() {
+        for axis in OverturningMap::new(&scenario).unwrap().values {
             assert!(axis.is_sorted_by(|earlier, later| earlier < later));
         }
     }

@@ -46,8 +46,9 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
     assert_eq!(cells.len(), 6);
     // The page gives the command of a cell.
     let page = fs::read_to_string(path.join("results/s/map.html")).unwrap();
-    assert!(page.contains("archrock run - --set column.width_m={cell.x} --out cell"));
-    assert!(page.contains("scale = {cell.y}"));
+    assert!(page.contains(
+        "archrock run - --set column.width_m={cell.x} --set ground.record.scale={cell.y} --out cell"
+    ));
     let mut outcomes = Vec::new();
     for cell in &cells {
         let set = [

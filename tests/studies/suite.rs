@@ -638,7 +638,7 @@ fn uncertain_cases_are_taken_both_ways() {
         &doubtful.levels,
         &pairs(&survived.levels, &overturned.levels).collect::<Vec<_>>(),
     ) {
-        assert_eq!(level.cases, 4);
+        assert_eq!(level.counts.cases, 4);
         assert_eq!(level.fraction(), low.fraction());
         assert_eq!(level.fraction_with_uncertain(), high.fraction());
         assert_eq!(level.curve, low.curve);
@@ -731,7 +731,7 @@ fn mirrored_records_count_where_they_are_not_mirror_images() {
     ];
     let other = SuiteFragility::new(Measure::Scale, levels_of(&other));
     assert!(other.mirrored_count);
-    assert_eq!((other.record_count(), other.levels[0].cases), (3, 6));
+    assert_eq!((other.record_count(), other.levels[0].counts.cases), (3, 6));
     // Each sign is a case; both belong to one record, which the errors by record treat as dependent. So these errors
     // are larger than for the same cases of six records.
     let six = [
@@ -753,7 +753,9 @@ fn mirrored_records_count_where_they_are_not_mirror_images() {
 
 /// The files of the results, by their names.
 fn told(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
-    let told = heading.tell(results.cases.clone(), Figure::SCREEN).unwrap();
+    let told = heading
+        .report(results.cases.clone(), Figure::SCREEN)
+        .unwrap();
     let files = told.files.into_iter();
     files
         .map(|(name, contents)| (name, String::from_utf8(contents).unwrap()))
@@ -787,10 +789,10 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         .map(|level| {
             (
                 level.intensity,
-                level.cases,
-                level.overturned,
-                level.still_rocking,
-                level.failed,
+                level.counts.cases,
+                level.counts.overturned,
+                level.counts.still_rocking,
+                level.counts.failed,
             )
         })
         .collect();

@@ -20,7 +20,6 @@ use archrock::output::Figure;
 use archrock::studies::ending::Verdict;
 use archrock::studies::results::StudyError;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
-use archrock::studies::threshold::outcome;
 use archrock::studies::threshold::picture::draw;
 use archrock::studies::threshold::{
     EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, thresholds,
@@ -174,7 +173,7 @@ fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
     let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
     for sample in &threshold.samples {
         assert_eq!(
-            outcome(sample) == "ground_falls",
+            sample.outcome_name() == "ground_falls",
             sample.factor >= 5.0,
             "{}",
             sample.factor
@@ -408,7 +407,11 @@ fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
         .iter()
         .filter(|sample| sample.result.is_err())
         .collect();
-    assert!(failed.iter().all(|sample| outcome(sample) == "failed"));
+    assert!(
+        failed
+            .iter()
+            .all(|sample| sample.outcome_name() == "failed")
+    );
     assert!(
         failed[0]
             .result

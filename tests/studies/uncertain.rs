@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::Scenario;
-use archrock::studies::ensemble::histories::{Histories, Went};
+use archrock::studies::ensemble::histories::{Histories, HistoryAnswer};
 use archrock::studies::ensemble::matters::{total_indices, what_matters};
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
@@ -24,7 +24,7 @@ use crate::scenario::keys::{document, rows};
 
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 
-fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<Went>> {
+fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
     let question = Histories::of(scenario).unwrap();
     let study = Ensemble::new(scenario, question).unwrap();
     let runner = Runner {
@@ -104,7 +104,8 @@ fn the_probability_that_a_block_overturns_is_inside_the_interval() {
              [uncertain]\nsamples = 24\nseed = {seed}\n'column.width_m' = {{ deviation = 0.03 }}\n"
         ));
         let rows = histories(&scenario, 2);
-        let overturned = |row: &&SampleRow<Went>| row.answer.as_ref().unwrap().overturned() == 1.0;
+        let overturned =
+            |row: &&SampleRow<HistoryAnswer>| row.answer.as_ref().unwrap().overturned() == 1.0;
         let share = Share::of(rows[1..].iter().filter(overturned).count(), 24).unwrap();
         inside += u32::from(share.low <= probability && probability <= share.high);
         // With one uncertain number, samples are spread evenly, so the share is right to a sample or two.

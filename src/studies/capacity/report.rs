@@ -11,10 +11,9 @@ use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
-use crate::output::summary::summary_of;
-use crate::output::table::{column, csv};
+use crate::output::table::{column, csv, fields};
 use crate::output::template::{filters, render};
-use crate::output::{Figure, OutputError, pretty};
+use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 
@@ -124,19 +123,10 @@ pub fn report(
         masses,
         scenario: scenario.to_json(),
     };
-    let json = summary_of(&summary)?;
     let title = scenario.title().unwrap_or("Capacity");
-    let contents = [
-        draw(figure, title, sides).into_bytes(),
-        table(sides)?,
-        pretty(&json).into_bytes(),
-    ];
-    Ok(Results {
-        files: FILES.into_iter().zip(contents).collect(),
-        words: render(&summary),
-        summary: json,
-        ..Results::default()
-    })
+    let picture = draw(figure, title, sides);
+    let others = [picture.into_bytes(), table(sides)?];
+    Results::new(&FILES, &summary, render(&summary), others)
 }
 
 /// A row for each point of the curves, those to the right first. The secant period is empty at the unstable equilibrium.
@@ -146,18 +136,10 @@ fn table(sides: &Sides<Capacity>) -> Result<Vec<u8>, OutputError> {
         .iter()
         .flat_map(|(sway, side)| side.curve.iter().map(move |point| (sway, point)))
         .collect();
-    let columns = [
-        column("sway", |row: &Row<'_>| row.0.name()),
-        column("q_rad", |row: &Row<'_>| row.1.q_rad),
-        column("displacement_m", |row: &Row<'_>| row.1.displacement_m),
-        column("acceleration_g", |row: &Row<'_>| row.1.acceleration_g),
-        column("oscillator_displacement_m", |row: &Row<'_>| {
-            row.1.oscillator_displacement_m
-        }),
-        column("oscillator_acceleration_g", |row: &Row<'_>| {
-            row.1.oscillator_acceleration_g
-        }),
-        column("secant_period_s", |row: &Row<'_>| row.1.secant_period_s),
-    ];
+    let mut columns = vec![column("sway", |row: &Row<'_>| row.0.name())];
+    columns.extend(fields!(
+        |row: &Row<'_>| row.1 => q_rad, displacement_m, acceleration_g, oscillator_displacement_m,
+        oscillator_acceleration_g, secant_period_s
+    ));
     csv(columns, &rows)
 }

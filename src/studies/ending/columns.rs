@@ -8,6 +8,16 @@ pub(crate) const FAILED: &str = "failed";
 /// Outcome if it is uncertain whether the structure overturns.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 
+/// The outcomes that count, by their names in results; the first is overturning.
+pub(crate) const OUTCOMES: [&str; 6] = [
+    "overturned",
+    UNCERTAIN,
+    "rest",
+    "never_moved",
+    "vibrates",
+    "still_rocking",
+];
+
 impl Ending {
     /// The outcome of a case of a study, by its name in results.
     #[must_use]

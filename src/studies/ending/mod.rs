@@ -2,6 +2,8 @@
 
 pub(crate) mod columns;
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
 use crate::dynamics::ground::GroundMotion;
@@ -39,7 +41,7 @@ pub struct Ending {
     pub energy_defect_ratio: f64,
     /// The largest rotation.
     pub peak: PeakRotation,
-    /// The same of any body, in radians, with every model.
+    /// Largest rotation of any body, in radians, with every model.
     #[serde(default)]
     pub peak_rotation_rad: f64,
     /// The time steps of the computation; `None` for models whose steps follow from a tolerance.
@@ -149,13 +151,13 @@ impl Ending {
         Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
     }
 
-    /// The same for several cases, in their order. A case without a history, or with one that cannot be kept, has the reason instead.
+    /// Simulates several cases, and returns how they ended, in their order. A case without a history, or with one that cannot be kept, has the reason instead.
     #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         Self::checked(model, cases, Until::End)
     }
 
-    /// The same, but a history ends once it cannot overturn any more and has ample time to come to rest.
+    /// Simulates several cases; a history ends once it cannot overturn any more and has ample time to come to rest.
     #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         Self::checked(model, cases, Until::Settled)
@@ -243,6 +245,11 @@ pub enum NoAnswer {
 }
 
 impl NoAnswer {
+    /// The structure of a sample has no model of motion, for this reason.
+    pub(super) fn invalid(error: impl fmt::Display) -> Self {
+        Self::Invalid(error.to_string())
+    }
+
     /// Its name in tables.
     #[must_use]
     pub const fn name(&self) -> &'static str {

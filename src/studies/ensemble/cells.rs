@@ -1,86 +1,47 @@
-//! What becomes of every cell of a map in every sample: the probability of overturning in place of an outcome.
+//! The ending of every cell of a map in every sample: the probability of overturning in place of an outcome.
 
-mod told;
+mod report;
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use serde::{Deserialize, Serialize};
-
-use super::{NoAnswer, SampleRow, Told, uncertain};
-use crate::dynamics::history::Outcome;
+pub use self::report::FILES;
+use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
-use crate::scenario::{Axis, Quantity, Scenario, Spacing, Uncertain, UncertainKey};
-use crate::studies::ending::Ending;
-use crate::studies::map::{CellResult, OverturningMap};
-use crate::studies::results::{Look, Reported, Results};
+use crate::scenario::{Axis, Scenario, Spacing, Uncertain, UncertainKey};
+use crate::studies::ending::columns::OUTCOMES;
+use crate::studies::map::{CellResult, OverturningMap, described};
+use crate::studies::results::{Reported, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
-/// What became of a cell of a sample.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Came {
-    /// It certainly overturned.
-    Overturned,
-    /// Whether it overturned is uncertain.
-    Uncertain,
-    /// It came to rest.
-    Rest,
-    /// It never moved.
-    NeverMoved,
-    /// Its elastic joints vibrated without opening.
-    Vibrates,
-    /// It had not come to rest at the end.
-    StillRocking,
-    /// It makes no structure that stands, or none of four links.
-    Invalid(Box<str>),
-    /// It could not be computed.
-    Failed(Box<str>),
-    /// It ended too early for a verdict.
-    Incomplete,
-}
+/// The outcome of a cell of a sample, by its place among the [`OUTCOMES`], or why it has none.
+type CellRow = Result<usize, NoAnswer>;
 
-impl From<CellResult> for Came {
-    fn from(result: CellResult) -> Self {
-        match result {
-            CellResult::Ended(ending) if ending.uncertain.is_some() => Self::Uncertain,
-            CellResult::Ended(ending) => match ending.outcome {
-                Outcome::Overturned(_) => Self::Overturned,
-                Outcome::Rest => Self::Rest,
-                Outcome::NeverMoved => Self::NeverMoved,
-                Outcome::Vibrates => Self::Vibrates,
-                Outcome::StillRocking => Self::StillRocking,
-                Outcome::Incomplete => Self::Incomplete,
-            },
-            CellResult::CannotStand => Self::Invalid("it cannot stand".into()),
-            CellResult::NotFourLinks => Self::Invalid("it is too thick for four links".into()),
-            CellResult::Failed(reason) => Self::Failed(reason.into()),
+fn cell_row(result: CellResult) -> CellRow {
+    match result {
+        CellResult::Ended(ending) => {
+            let outcome = ending.outcome_name();
+            let place = OUTCOMES.iter().position(|name| *name == outcome);
+            place.ok_or(NoAnswer::Incomplete)
         }
-    }
-}
-
-impl Came {
-    /// Why there is no outcome, and whether its values are the reason.
-    fn why_not(&self) -> Option<(&'static str, &str)> {
-        match self {
-            Self::Invalid(reason) => Some(("invalid", reason)),
-            Self::Failed(reason) => Some(("failed", reason)),
-            Self::Incomplete => Some((Outcome::Incomplete.name(), Ending::INCOMPLETE)),
-            _ => None,
-        }
+        CellResult::CannotStand => Err(NoAnswer::Invalid("it cannot stand".to_owned())),
+        CellResult::NotFourLinks => Err(NoAnswer::Invalid(
+            "it is too thick for four links".to_owned(),
+        )),
+        CellResult::Failed(reason) => Err(NoAnswer::Failed(reason)),
     }
 }
 
 /// Most histories: their rows must fit into memory.
 const MAX_HISTORIES: usize = 20_000_000;
 /// Samples whose structures are kept at a time: threads work on neighbours.
-const KEPT: usize = 8;
+const CACHED: usize = 8;
 
 /// The map of a sample, or why there is none.
-type OfSample<'a> = Result<OverturningMap<'a>, Box<str>>;
-/// The same, made when first asked for, with its number.
-type Kept<'a> = (usize, Arc<OnceLock<OfSample<'a>>>);
+type OfSample<'a> = Result<OverturningMap<'a>, String>;
+/// Cached map of a sample, with the number of the sample.
+type Cached<'a> = (usize, Arc<OnceLock<OfSample<'a>>>);
 
 /// The cells of a map, for every sample: those of a sample follow one another, and first come those of the scenario itself.
 #[derive(Debug)]
@@ -88,8 +49,8 @@ pub struct CellsOfSamples<'a> {
     scenario: &'a Scenario,
     uncertain: &'a Uncertain,
     map: OverturningMap<'a>,
-    /// The maps of the samples that were last asked for.
-    kept: Mutex<VecDeque<Kept<'a>>>,
+    /// The maps of the samples that were last used.
+    cache: Mutex<VecDeque<Cached<'a>>>,
 }
 
 impl<'a> CellsOfSamples<'a> {
@@ -100,9 +61,9 @@ impl<'a> CellsOfSamples<'a> {
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         let map = OverturningMap::of(scenario)?;
         let uncertain = uncertain(scenario)?;
-        for axis in map.axes() {
+        for axis in map.axes {
             let mut keys = uncertain.keys.iter();
-            if let Some(key) = keys.find(|key| says_the_same(axis, key)) {
+            if let Some(key) = keys.find(|key| sets_the_quantity_of(axis, key)) {
                 return Err(format!(
                     "`{}` of [map] and \"{}\" of [uncertain] contradict: leave one of them out",
                     axis.key, key.key
@@ -121,20 +82,20 @@ impl<'a> CellsOfSamples<'a> {
             scenario,
             uncertain,
             map,
-            kept: Mutex::default(),
+            cache: Mutex::default(),
         })
     }
 
     /// The map of a sample, counted from 1; 0 is the scenario itself.
     fn of_sample(&self, sample: usize) -> Arc<OnceLock<OfSample<'a>>> {
         let found = {
-            // What is kept is complete whatever a thread that panicked did.
-            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-            let found = kept.iter().find(|(other, _)| *other == sample).cloned();
+            // The cache is complete even after a panic of another thread.
+            let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
+            let found = cache.iter().find(|(other, _)| *other == sample).cloned();
             let (_, found) = found.unwrap_or_else(|| {
-                kept.truncate(KEPT - 1);
-                kept.push_front((sample, Arc::default()));
-                kept[0].clone()
+                cache.truncate(CACHED - 1);
+                cache.push_front((sample, Arc::default()));
+                cache[0].clone()
             });
             found
         };
@@ -159,48 +120,32 @@ impl<'a> CellsOfSamples<'a> {
     }
 }
 
-/// Whether an axis varies what an uncertain key says.
-fn says_the_same(axis: &Axis, key: &UncertainKey) -> bool {
+/// Whether an uncertain key sets the quantity of an axis.
+fn sets_the_quantity_of(axis: &Axis, key: &UncertainKey) -> bool {
     let parts =
         |key: &str| -> Vec<String> { key.split('.').map(|part| part.trim().to_owned()).collect() };
-    let own = parts(&key.key);
-    let ends_with = |names: &[&str]| {
-        let last = own.last().map_or("", String::as_str);
-        names.contains(&last)
-    };
-    let is_of = |table: &str| own.first().is_some_and(|first| first == table);
-    match axis.quantity {
-        Quantity::Other => own == parts(&axis.key),
-        Quantity::Duration | Quantity::Frequency => {
-            is_of("ground") && ends_with(&["duration_s", "frequency_hz"])
-        }
-        Quantity::Amplitude => is_of("ground") && ends_with(&["amplitude_g"]),
-        Quantity::Scale | Quantity::PeakG => is_of("ground") && ends_with(&["scale", "peak_g"]),
-        Quantity::MeanRadius => is_of("arch") && ends_with(&["mean_radius_m"]),
-        Quantity::ThicknessRatio => is_of("arch") && ends_with(&["thickness_ratio", "thickness_m"]),
-        Quantity::Embrace => is_of("arch") && ends_with(&["embrace_deg"]),
-        Quantity::Restitution => is_of("impact") && ends_with(&["restitution"]),
+    let (own, axis_of) = (parts(&key.key), described(axis));
+    if axis_of.keys.is_empty() {
+        return own == parts(&axis.key);
     }
+    let ends = own.first().zip(own.last());
+    ends.is_some_and(|(table, key)| table == axis_of.table && axis_of.keys.contains(&&**key))
 }
 
 impl Study for CellsOfSamples<'_> {
-    type Row = Came;
+    type Row = CellRow;
 
     const NAME: &'static str = "uncertain_map";
 
-    fn scenario(&self) -> String {
-        self.scenario.to_toml()
-    }
-
-    fn inputs(&self) -> Vec<String> {
-        self.scenario.record_checksums()
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.scenario)
     }
 
     fn count(&self) -> usize {
         self.map.count() * (1 + self.uncertain.cases())
     }
 
-    fn row(&self, index: usize) -> Came {
+    fn row(&self, index: usize) -> CellRow {
         self.rows(&[index]).remove(0)
     }
 
@@ -211,7 +156,7 @@ impl Study for CellsOfSamples<'_> {
         Some(sample * self.map.count() + family)
     }
 
-    fn rows(&self, indices: &[usize]) -> Vec<Came> {
+    fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
         let Some([sample, _]) = indices.first().map(|index| self.place(*index)) else {
             return Vec::new();
         };
@@ -220,185 +165,150 @@ impl Study for CellsOfSamples<'_> {
         match map.get().expect("it was made") {
             Ok(map) => {
                 let rows = map.rows(&cells).into_iter();
-                rows.map(|row| row.result.into()).collect()
+                rows.map(|row| cell_row(row.result)).collect()
             }
-            Err(reason) => vec![Came::Invalid(reason.clone()); cells.len()],
+            Err(reason) => vec![Err(NoAnswer::Invalid(reason.clone())); cells.len()],
         }
     }
 }
 
-/// What became of a cell over all samples.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Likely {
+/// The endings of a cell over all samples.
+struct CellCounts {
     /// Values of x and y.
-    pub at: [f64; 2],
-    /// How many samples have an outcome here.
-    pub samples: usize,
-    /// How many certainly overturn; `None` where no sample has an outcome.
-    pub overturned: Option<Share>,
-    /// How many are uncertain, come to rest, never move, vibrate, are still rocking.
-    pub others: [usize; 5],
-    /// How many have none because of their values, because they could not be computed, and because they ended too early.
-    pub without: [usize; 3],
+    at: [f64; 2],
+    /// Number of samples with an ending here.
+    samples: usize,
+    /// Share of those that certainly overturn; `None` without any.
+    overturned: Option<Share>,
+    /// Number of samples with each of the [`OUTCOMES`].
+    outcomes: [usize; OUTCOMES.len()],
+    /// Number of samples without an ending because of their values, because of a failure, and because they ended too early.
+    without: [usize; 3],
 }
 
-/// Outcomes beside overturning, by their names in results.
-const OTHERS: [&str; 5] = [
-    "uncertain",
-    "rest",
-    "never_moved",
-    "vibrates",
-    "still_rocking",
-];
-
-impl Likely {
-    fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r Came>) -> Self {
-        let (mut overturned, mut others, mut without) = (0, [0; 5], [0; 3]);
+impl CellCounts {
+    fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow>) -> Self {
+        let (mut outcomes, mut without) = ([0; OUTCOMES.len()], [0; 3]);
         for row in rows {
             *match row {
-                Came::Overturned => &mut overturned,
-                Came::Uncertain => &mut others[0],
-                Came::Rest => &mut others[1],
-                Came::NeverMoved => &mut others[2],
-                Came::Vibrates => &mut others[3],
-                Came::StillRocking => &mut others[4],
-                Came::Invalid(_) => &mut without[0],
-                Came::Failed(_) => &mut without[1],
-                Came::Incomplete => &mut without[2],
+                Ok(outcome) => &mut outcomes[*outcome],
+                Err(NoAnswer::Invalid(_)) => &mut without[0],
+                Err(NoAnswer::Failed(_)) => &mut without[1],
+                Err(NoAnswer::Incomplete) => &mut without[2],
             } += 1;
         }
-        let samples = overturned + others.iter().sum::<usize>();
+        let samples = outcomes.iter().sum();
         Self {
             at,
             samples,
-            overturned: Share::of(overturned, samples),
-            others,
+            overturned: Share::of(outcomes[0], samples),
+            outcomes,
             without,
         }
     }
 
     /// The part of the samples that certainly overturn.
-    #[must_use]
-    pub fn probability(&self) -> Option<f64> {
+    fn probability(&self) -> Option<f64> {
         self.overturned.map(|share| share.share)
+    }
+
+    /// The part of the samples with one of the [`OUTCOMES`].
+    fn part(&self, outcome: usize) -> Option<f64> {
+        (self.samples > 0).then(|| self.outcomes[outcome] as f64 / self.samples as f64)
     }
 }
 
-/// The probabilities whose place on the map is told.
-pub const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
+/// The probabilities whose lines are drawn on the map.
+const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Where on a column of the map the probability first reaches the [`LEVELS`], going up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reached {
+/// Where on a column of the map, going up, the probability first reaches the [`LEVELS`].
+struct Crossing {
     /// The value of x.
-    pub x: f64,
+    x: f64,
     /// The values of y, between cells by the line through them; that of the lowest cell if it is reached there already, and
     /// `None` if it is not reached.
-    pub y: [Option<f64>; 3],
+    y: [Option<f64>; 3],
     /// Whether the lowest cell reaches it already, so that it may be reached below the map.
-    pub at_most: [bool; 3],
+    at_most: [bool; 3],
 }
 
-impl Reached {
+impl Crossing {
     /// The value of y at which a level is reached, if that is inside the map.
     fn inside(&self, level: usize) -> Option<f64> {
         self.y[level].filter(|_| !self.at_most[level])
     }
-}
 
-/// Where the probability first reaches the levels on a column, whose cells go up.
-fn reached(column: &[Likely], logarithmic: bool) -> Reached {
-    let known: Vec<[f64; 2]> = column
-        .iter()
-        .filter_map(|cell| Some([cell.at[1], cell.probability()?]))
-        .collect();
-    let first = |level: f64| {
-        let index = known
+    /// The crossings on a column, whose cells go up.
+    fn of(column: &[CellCounts], logarithmic: bool) -> Self {
+        let known: Vec<[f64; 2]> = column
             .iter()
-            .position(|[_, probability]| *probability >= level)?;
-        let [y, probability] = known[index];
-        let Some([below, least]) = index.checked_sub(1).map(|before| known[before]) else {
-            return Some(y);
+            .filter_map(|cell| Some([cell.at[1], cell.probability()?]))
+            .collect();
+        let first = |level: f64| {
+            let index = known.iter().position(|[_, share]| *share >= level)?;
+            let [y, share] = known[index];
+            let Some([below, least]) = index.checked_sub(1).map(|before| known[before]) else {
+                return Some(y);
+            };
+            let part = (level - least) / (share - least);
+            Some(if logarithmic {
+                below * (y / below).powf(part)
+            } else {
+                below + part * (y - below)
+            })
         };
-        let part = (level - least) / (probability - least);
-        Some(if logarithmic {
-            below * (y / below).powf(part)
-        } else {
-            below + part * (y - below)
-        })
-    };
-    let lowest = known.first().map_or(0.0, |[_, probability]| *probability);
-    Reached {
-        x: column.first().map_or(0.0, |cell| cell.at[0]),
-        y: LEVELS.map(first),
-        at_most: LEVELS.map(|level| lowest >= level),
+        let lowest = known.first().map_or(0.0, |[_, share]| *share);
+        Self {
+            x: column.first().map_or(0.0, |cell| cell.at[0]),
+            y: LEVELS.map(first),
+            at_most: LEVELS.map(|level| lowest >= level),
+        }
     }
 }
 
 impl CellsOfSamples<'_> {
-    /// What became of each cell over all samples.
-    #[must_use]
-    pub fn likely(&self, rows: &[Came]) -> Vec<Likely> {
+    /// The endings of each cell over these samples.
+    fn counts(&self, samples: &[CellRow]) -> Vec<CellCounts> {
         let cells = self.map.count();
-        let samples = self.samples(rows);
         let of = |cell: usize| {
             let rows = samples.iter().skip(cell).step_by(cells);
-            Likely::of(self.map.coordinates(cell), rows)
+            CellCounts::of(self.map.coordinates(cell), rows)
         };
         (0..cells).map(of).collect()
     }
 
-    /// The rows of samples, without those of the scenario itself and of total indices.
-    fn samples<'r>(&self, rows: &'r [Came]) -> &'r [Came] {
-        let cells = self.map.count();
-        let to = cells * (1 + self.uncertain.samples);
-        rows.get(cells..to).unwrap_or_default()
-    }
-
     /// Where the probability first reaches the [`LEVELS`], column by column.
-    #[must_use]
-    pub fn reached(&self, likely: &[Likely]) -> Vec<Reached> {
-        let [_, y] = self.map.axes();
-        let values = &self.map.values()[1];
+    fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
+        let [_, y] = self.map.axes;
+        let values = &self.map.values[1];
         let logarithmic =
             y.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
-        likely
-            .chunks(values.len())
-            .map(|column| reached(column, logarithmic))
+        let columns = counts.chunks(values.len());
+        columns
+            .map(|column| Crossing::of(column, logarithmic))
             .collect()
     }
 
     /// Of each sample the part of its cells that certainly overturn, as answers of samples; the scenario itself comes first.
-    fn parts(&self, rows: &[Came]) -> Vec<SampleRow<Share>> {
+    fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
-        samples
-            .map(|(sample, cells)| {
-                let likely = Likely::of([0.0; 2], cells.iter());
-                let why_not = || {
-                    let why_not = cells.iter().find(|cell| cell.why_not().is_some());
-                    match why_not {
-                        Some(Came::Failed(reason)) => NoAnswer::Failed(reason.to_string()),
-                        Some(Came::Incomplete) => NoAnswer::Incomplete,
-                        Some(Came::Invalid(reason)) => NoAnswer::Invalid(reason.to_string()),
-                        _ => NoAnswer::Invalid("it has no cells".to_owned()),
-                    }
-                };
-                SampleRow {
-                    values: match sample.checked_sub(1) {
-                        None => Vec::new(),
-                        Some(sample) => self.uncertain.values(sample),
-                    },
-                    answer: likely.overturned.ok_or_else(why_not),
-                }
-            })
-            .collect()
+        let part = |(sample, cells): (usize, &[CellRow])| {
+            let sample = sample.checked_sub(1);
+            let why_not = cells.iter().find_map(|cell| cell.clone().err());
+            let overturned = CellCounts::of([0.0; 2], cells.iter()).overturned;
+            SampleRow {
+                values: sample.map_or(Vec::new(), |sample| self.uncertain.values(sample)),
+                answer: overturned.ok_or_else(|| why_not.expect("a map has cells")),
+            }
+        };
+        samples.map(part).collect()
     }
 }
 
 impl Reported for CellsOfSamples<'_> {
-    fn results(&self, rows: Vec<Came>, look: Look) -> Result<Results, OutputError> {
+    fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let parts = self.parts(&rows);
-        let told = Told::new(self.scenario, self.uncertain, &parts);
-        told::tell(self, &told, &rows, look)
+        let samples = Samples::new(self.scenario, self.uncertain, &parts);
+        report::report(self, &samples, &rows, style)
     }
 }

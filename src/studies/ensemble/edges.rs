@@ -1,9 +1,16 @@
 //! The factor on its ground motion from which every sample overturns: searched upwards, up to the first edge only.
 
-use super::{NoAnswer, Question, Told, told};
+use serde::Serialize;
+
+use super::report::{Band, Findings, Line, share_in_words, why_not};
+use super::{NoAnswer, Question, Samples};
+use crate::output::axes::Scale;
+use crate::output::chart::{Chart, Mark};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{Stroke, color};
+use crate::output::table::{csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
-use crate::studies::results::Results;
 use crate::studies::statistics::{BAND, Share, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
@@ -70,12 +77,53 @@ impl Question for FirstEdges {
 
     const NAME: &'static str = "uncertain_threshold";
 
-    fn results(
-        &self,
-        told: &Told<'_, Self::Answer>,
+    const FILES: &'static [&'static str] = &[
+        "probability.svg",
+        "matters.svg",
+        "probability.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    fn findings<'a>(
+        &'a self,
+        samples: &Samples<'a, FirstEdge>,
         figure: Figure,
-    ) -> Result<Results, OutputError> {
-        told::edges(told, figure)
+    ) -> Result<Findings<'a, FirstEdge, impl Serialize>, OutputError> {
+        // A sample that never overturns counts with the largest factor tried.
+        let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
+        let names = ["first_factor", "the first factor that overturns"];
+        let [low, median, high] = BAND.map(|part| FirstStrength::of(samples.answers(), part));
+        let band = low.zip(median).zip(high);
+        let band = band.map(|((low, median), high)| [low, median, high]);
+        let at_one = share_up_to(samples, 1.0);
+        let count = |condition: fn(&FirstEdge) -> bool| {
+            samples.answers().filter(|edge| condition(edge)).count()
+        };
+        let probabilities = probabilities(samples);
+        let shares = fields!(
+            |at: &ProbabilityAt| at => factor, probability, probability_low, probability_high
+        );
+        let columns = FirstEdge::columns("first_factor", |line: &Line<'a, FirstEdge>| {
+            line.answer.as_ref().ok()
+        });
+        Ok(Findings {
+            first: band.map(|band| first_words(samples, band, at_one)),
+            lines: Vec::new(),
+            influences: vec![samples.influence(names, false, strength)],
+            no_verdict: samples.no_verdict(),
+            details: Details {
+                first_factor: band.map(|band| band.map(|one| one.strength)).into(),
+                at_smallest_factor: count(|edge| edge.at_most),
+                beyond_largest_factor: count(|edge| edge.factor.is_none()),
+                own_first_factor: samples.own.as_ref().ok().and_then(|edge| edge.factor),
+                overturned_up_to_factor_1: at_one,
+            },
+            pictures: vec![draw(figure, samples, &probabilities)],
+            tables: vec![csv(shares, &probabilities)?],
+            columns: columns.into_iter().chain([why_not()]).collect(),
+            peaks: Vec::new(),
+        })
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
@@ -92,49 +140,121 @@ impl Question for FirstEdges {
     }
 }
 
-/// The probability of overturning up to a factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProbabilityAt {
-    /// The factor at which a sample first overturns.
-    pub factor: f64,
-    /// The share of samples that overturn up to this factor.
-    pub share: Share,
+/// The part of the summary that only first edges have.
+#[derive(Serialize)]
+struct Details {
+    /// The least factor that overturns a sample.
+    first_factor: Band,
+    /// Number of samples whose first factor is only known to be at most the smallest one tried.
+    at_smallest_factor: usize,
+    /// Number of samples whose first factor is beyond the largest one tried.
+    beyond_largest_factor: usize,
+    /// The first factor of the scenario itself.
+    own_first_factor: Option<f64>,
+    /// Share of the samples that overturn up to the factor 1; null if that factor was not tried.
+    overturned_up_to_factor_1: Option<Share>,
 }
 
-impl Told<'_, FirstEdge> {
-    /// The distribution of the factors at which samples overturn, ascending.
-    pub(crate) fn probabilities(&self) -> Vec<ProbabilityAt> {
-        let mut factors: Vec<f64> = self
-            .answered()
-            .filter_map(|(_, edge)| edge.factor)
-            .collect();
-        factors.sort_by(f64::total_cmp);
-        let all = self.answered().count();
-        let at = |(index, factor): (usize, &f64)| {
-            let share = Share::of(index + 1, all)?;
-            Some(ProbabilityAt {
-                factor: *factor,
-                share,
-            })
-        };
-        factors.iter().enumerate().filter_map(at).collect()
-    }
+/// The probability of overturning up to a factor.
+struct ProbabilityAt {
+    /// The factor at which a sample first overturns.
+    factor: f64,
+    /// The share of samples that overturn up to this factor.
+    probability: f64,
+    /// Lower end of its interval.
+    probability_low: f64,
+    /// Upper end of its interval.
+    probability_high: f64,
+}
 
-    /// The share of samples that overturn at this factor or below it; `None` if the factors that were tried do not decide that.
-    pub(crate) fn share_up_to(&self, factor: f64) -> Option<Share> {
-        let all = self.answered().count();
-        let known: Option<Vec<bool>> = self
-            .answered()
-            .map(|(_, edge)| edge.overturns_up_to(factor))
-            .collect();
-        let overturned = known?.into_iter().filter(|overturns| *overturns);
-        Share::of(overturned.count(), all)
-    }
+/// The distribution of the factors at which samples overturn, ascending.
+fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
+    let mut factors: Vec<f64> = samples.answers().filter_map(|edge| edge.factor).collect();
+    factors.sort_by(f64::total_cmp);
+    let all = samples.answers().count();
+    let at = |(count, factor)| {
+        let share = Share::of(count, all)?;
+        Some(ProbabilityAt {
+            factor,
+            probability: share.share,
+            probability_low: share.low,
+            probability_high: share.high,
+        })
+    };
+    (1..).zip(factors).filter_map(at).collect()
+}
 
-    /// The 5 % quantile, the median and the 95 % quantile of the factors.
-    pub(crate) fn band(&self) -> Option<[FirstStrength; 3]> {
-        let edges = self.answered().map(|(_, edge)| edge);
-        let [low, median, high] = BAND.map(|part| FirstStrength::of(edges.clone(), part));
-        Some([low?, median?, high?])
-    }
+/// The share of samples that overturn at this factor or below it; `None` if the factors that were tried do not decide that.
+fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
+    let mut answers = samples.answers();
+    let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
+    known.then(|| samples.share(|edge| edge.overturns_up_to(factor) == Some(true)))?
+}
+
+fn first_words(
+    samples: &Samples<'_, FirstEdge>,
+    band: [FirstStrength; 3],
+    at_one: Option<Share>,
+) -> String {
+    let tried_to = samples.answers().map(|edge| edge.tried_to);
+    let beyond = format!("beyond {}", rounded(tried_to.fold(0.0, f64::max)));
+    let [low, median, high] = band.map(|factor| factor.in_words("", &beyond));
+    let probability = at_one.map_or(
+        "with a probability that is not known up to the factor 1, which is outside the factors that were tried"
+            .to_owned(),
+        |at_one| format!("up to the factor 1 with a probability of {}", share_in_words(&at_one)),
+    );
+    let own = match samples.own.as_ref().map(|own| (own.factor, own.at_most)) {
+        Ok((Some(own), true)) => format!("at or below {}", rounded(own)),
+        Ok((Some(own), false)) => format!("at {}", rounded(own)),
+        Ok((None, _)) => "at none that was tried".to_owned(),
+        Err(_) => "has no answer".to_owned(),
+    };
+    format!(
+        "overturns {probability};\n    half of the samples first overturn {median} (5 %: {low}, 95 %: {high}), the scenario itself {own}"
+    )
+}
+
+const BAND_FILL: &str = "#cfe3f1";
+const SHARE: Stroke = Stroke::new(color::BLUE, 1.6, "");
+const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
+
+/// Draws the probability of overturning against the factor, with its interval, and the factor of the scenario itself.
+fn draw(
+    figure: Figure,
+    samples: &Samples<'_, FirstEdge>,
+    probabilities: &[ProbabilityAt],
+) -> String {
+    let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
+    let factors = probabilities.iter().map(|at| at.factor).chain(own);
+    let ends = factors
+        .chain([1.0])
+        .flat_map(|factor| [0.97 * factor, 1.03 * factor]);
+    let x = Scale::around(ends, figure.ticks(8));
+    let y = Scale::exactly(0.0, 1.0, 5);
+    // The share rises at each factor at which a sample overturns.
+    let steps = |name, of: fn(&ProbabilityAt) -> f64, first: f64| {
+        let rises = probabilities.iter().map(|at| (at.factor, of(at)));
+        Mark::staircase(name, SHARE, (x, first), rises)
+    };
+    let none = Share::of(0, samples.answers().count()).map_or(1.0, |none| none.high);
+    let ends = [
+        steps("", |at| at.probability_low, 0.0),
+        steps("", |at| at.probability_high, none),
+    ];
+    let [low, high] = ends.each_ref().map(|curve| curve.points().iter().copied());
+    let mut marks = vec![steps("probability", |at| at.probability, 0.0)];
+    marks.extend(own.map(|own| Mark::upright("own", OWN, own, y)));
+    let x_axis = ("factor on the ground motion", x);
+    let chart = Chart {
+        keys: vec![
+            Key::line("share of the samples", SHARE),
+            Key::new("95 % interval", Sign::Band(BAND_FILL, 1.0)),
+            Key::line("the scenario itself", OWN),
+        ],
+        below: vec![Mark::between("band", BAND_FILL, low, high)],
+        marks,
+        ..Chart::new(405.0, x_axis, ("probability of overturning", y))
+    };
+    chart.draw(figure, samples.title("Probability of overturning"))
 }

@@ -3,16 +3,24 @@
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
 
-use super::{NoAnswer, Question, Told, told};
+use super::report::{Band, Findings, Line, of_answer, share_in_words};
+use super::{NoAnswer, Question, Samples};
 use crate::dynamics::history::{Outcome, Sample};
 use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
+use crate::output::axes::Scale;
+use crate::output::chart::Mark;
+use crate::output::panels::{MAIN, Panels, Subject, around};
+use crate::output::sheet::{Key, Sign};
+use crate::output::svg::{Stroke, color};
+use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
+use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::ending::{Ending, Verdict};
-use crate::studies::results::Results;
-use crate::studies::statistics::{Share, band, quantile};
+use crate::studies::statistics::{band, fractile, quantile};
 
 /// Largest number of times in the bands over time.
 const MOST_TIMES: usize = 300;
@@ -33,7 +41,7 @@ pub struct Histories {
 
 /// How the history of a sample proceeded and ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Went {
+pub struct HistoryAnswer {
     /// How the history ended.
     pub ending: Ending,
     /// Largest rotation of any body, in radians; if it overturned, the largest until overturning was certain.
@@ -43,8 +51,6 @@ pub struct Went {
     /// Rotation of the body at the instants, in radians, until the end of the history; then it stays constant, or has overturned.
     pub course_rad: Vec<f32>,
 }
-
-impl Histories {}
 
 /// The model of a scenario for a study of many cases.
 fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
@@ -86,38 +92,99 @@ impl Histories {
 }
 
 impl Question for Histories {
-    type Answer = Went;
+    type Answer = HistoryAnswer;
 
     const NAME: &'static str = "uncertain";
 
-    fn results(
-        &self,
-        told: &Told<'_, Self::Answer>,
+    const FILES: &'static [&'static str] = &[
+        "bands.svg",
+        "matters.svg",
+        "bands.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    fn findings<'a>(
+        &'a self,
+        samples: &Samples<'a, HistoryAnswer>,
         figure: Figure,
-    ) -> Result<Results, OutputError> {
-        told::histories(told, self, figure)
+    ) -> Result<Findings<'a, HistoryAnswer, impl Serialize>, OutputError> {
+        // A sample that overturned has no largest rotation, but it ranks above all others.
+        let names = [
+            ["overturning", "whether it overturns"],
+            ["peak_rotation_rank", "how far it rocks"],
+        ];
+        let influences = vec![
+            samples.influence(names[0], false, HistoryAnswer::overturned),
+            samples.influence(names[1], true, HistoryAnswer::peak_rad),
+        ];
+        let peaks: Vec<f64> = samples.answers().map(HistoryAnswer::peak_rad).collect();
+        let peak_band = band(peaks.clone(), fractile);
+        let (mut outcomes, mut lines) = (Map::new(), Vec::new());
+        for name in OUTCOMES {
+            let Some(share) = samples.share(|answer| answer.ending.outcome_name() == name) else {
+                continue;
+            };
+            outcomes.insert(name.to_owned(), json!(share));
+            if share.count > 0 {
+                lines.push(format!(
+                    "{}: {}",
+                    name.replace('_', " "),
+                    share_in_words(&share)
+                ));
+            }
+        }
+        lines.push(peak_band.map_or("largest rotation: not known".to_owned(), peaks_in_words));
+        let has_joints = samples.scenario.motion().hinges().has_joints();
+        let mut all = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
+            let answer = line.answer.as_ref();
+            answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
+        });
+        all.push(if has_joints {
+            let of = |answer: &HistoryAnswer| answer.potential_over_barrier;
+            of_answer("peak_potential_over_barrier", of)
+        } else {
+            of_answer("peak_rotation_rad", |answer: &HistoryAnswer| {
+                answer.peak_rotation_rad
+            })
+        });
+        let bands = self.bands(samples);
+        Ok(Findings {
+            first: first_words(samples),
+            lines,
+            influences,
+            no_verdict: samples.no_verdict(),
+            details: Details {
+                outcomes,
+                peak_rotation_rad: peak_band.into(),
+                followed_body: self.body,
+            },
+            pictures: vec![self.draw(figure, samples, &bands)],
+            tables: vec![table(&bands)?],
+            columns: all,
+            peaks,
+        })
     }
 
-    fn answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
+    fn answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
         let (structure, motion, model) = &self.own;
         if scenario.structure() == structure && scenario.motion() == motion {
-            return self.went(scenario, &**model);
+            return self.history(scenario, &**model);
         }
         let model = many_cases(scenario).map_err(NoAnswer::Invalid)?;
-        self.went(scenario, &*model)
+        self.history(scenario, &*model)
     }
 
     /// With the steps of a run.
-    fn own_answer(&self, scenario: &Scenario) -> Result<Went, NoAnswer> {
-        let model = scenario.model();
-        let model = model.map_err(|error| NoAnswer::Invalid(error.to_string()))?;
-        self.went(scenario, &*model)
+    fn own_answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
+        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        self.history(scenario, &*model)
     }
 }
 
 impl Histories {
-    /// How the history of a scenario goes.
-    fn went(&self, scenario: &Scenario, model: &dyn Model) -> Result<Went, NoAnswer> {
+    /// Simulates the history of a scenario.
+    fn history(&self, scenario: &Scenario, model: &dyn Model) -> Result<HistoryAnswer, NoAnswer> {
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());
         // Output times do not influence the motion of mechanisms; for rows of blocks, steps may end at output times.
         if model.as_mechanisms().is_some() {
@@ -142,7 +209,7 @@ impl Histories {
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }
-        Ok(Went {
+        Ok(HistoryAnswer {
             ending,
             peak_rotation_rad: summary.largest_rotation_rad(),
             potential_over_barrier: summary.peak_potential_over_barrier(),
@@ -151,17 +218,17 @@ impl Histories {
     }
 }
 
-impl Went {
+impl HistoryAnswer {
     /// Whether the history itself overturned, whether certain or not.
     #[must_use]
-    pub const fn goes_over(&self) -> bool {
+    pub const fn overturned_itself(&self) -> bool {
         matches!(self.ending.outcome, Outcome::Overturned(_))
     }
 
     /// The largest rotation; infinite if it overturned.
     #[must_use]
     pub fn peak_rad(&self) -> f64 {
-        if self.goes_over() {
+        if self.overturned_itself() {
             f64::INFINITY
         } else {
             self.peak_rotation_rad
@@ -183,7 +250,7 @@ impl Went {
     fn rotation_rad(&self, time: usize) -> f64 {
         let last = || {
             let last = self.course_rad.last().copied().map_or(0.0, f64::from);
-            if self.goes_over() {
+            if self.overturned_itself() {
                 f64::INFINITY.copysign(last)
             } else {
                 last
@@ -196,70 +263,155 @@ impl Went {
     }
 }
 
+/// The part of the summary that only histories have.
+#[derive(Serialize)]
+struct Details {
+    /// Share of the samples with each outcome.
+    outcomes: Map<String, Value>,
+    /// Largest rotation, in radians; quantiles among overturned samples are null.
+    peak_rotation_rad: Band,
+    /// The body whose rotation is followed, from 0.
+    followed_body: usize,
+}
+
 /// The rotation at an instant, over all samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BandAt {
-    /// The time.
-    pub time_s: f64,
+struct BandAt {
+    time_s: f64,
     /// The rotation of the scenario itself; `None` once it has overturned.
-    pub own_rad: Option<f64>,
+    own_rad: Option<f64>,
     /// The 5 % quantile, the median and the 95 % quantile of the samples; infinite if enough of them have overturned.
-    pub band_rad: [f64; 3],
+    band_rad: [f64; 3],
     /// The number of samples that have overturned by then.
-    pub overturned: usize,
+    overturned: usize,
 }
 
-/// The number of samples with each outcome.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Outcomes(pub Vec<(&'static str, Share)>);
-
-impl Outcomes {
-    /// The share of an outcome by its name in results.
-    #[must_use]
-    pub fn share(&self, name: &str) -> Option<Share> {
-        let found = self.0.iter().find(|(outcome, _)| *outcome == name);
-        found.map(|(_, share)| *share)
-    }
+fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
+    let quantile = |name: &'static str, which: usize| {
+        column(name, move |at: &BandAt| {
+            Some(at.band_rad[which]).filter(|rad| rad.is_finite())
+        })
+    };
+    let columns = [
+        column("time_s", |at: &BandAt| at.time_s),
+        column("own_rad", |at: &BandAt| at.own_rad),
+        quantile("quantile_05_rad", 0),
+        quantile("median_rad", 1),
+        quantile("quantile_95_rad", 2),
+        column("overturned", |at: &BandAt| at.overturned),
+    ];
+    csv(columns, bands)
 }
 
-impl Told<'_, Went> {
-    /// The shares of all outcomes, including those that no sample has.
-    pub(crate) fn outcomes(&self) -> Outcomes {
-        let names = [
-            "overturned",
-            "uncertain",
-            "rest",
-            "never_moved",
-            "vibrates",
-            "still_rocking",
-        ];
-        let all = self.answered().count();
-        let shares = names.into_iter().filter_map(|name| {
-            let of = |went: &&Went| went.ending.outcome_name() == name;
-            let count = self.answered().map(|(_, went)| went).filter(of).count();
-            Some((name, Share::of(count, all)?))
-        });
-        Outcomes(shares.collect())
-    }
+/// The probability of overturning, and the ending of the scenario itself; `None` if no sample has an answer.
+fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
+    let share = samples.share(|answer| answer.ending.verdict() == Verdict::Overturns)?;
+    let own = match samples.own.as_ref().map(|own| (own, own.ending.verdict())) {
+        Err(_) => "has no answer".to_owned(),
+        Ok((_, Verdict::Overturns)) => "overturns".to_owned(),
+        Ok((_, Verdict::Uncertain)) => "is uncertain".to_owned(),
+        Ok((own, _)) => {
+            let rotation = own
+                .ending
+                .peak
+                .over_critical()
+                .map(|part| (part, "rotation"));
+            let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
+            // Rounded down, as in `run`, so that a value just below 100 % does not read as 100 %.
+            margin.map_or("stands".to_owned(), |(part, what)| {
+                let percent = (1000.0 * part).floor() / 10.0;
+                format!("stands, at {percent:.1} % of the {what} from which it would overturn")
+            })
+        }
+    };
+    let share = share_in_words(&share);
+    Some(format!(
+        "overturns with a probability of {share} of [uncertain];\n    the scenario itself {own}"
+    ))
+}
 
+fn peaks_in_words(band_rad: [f64; 3]) -> String {
+    let [low, median, high] = band_rad.map(|rad| match rad.is_finite() {
+        true => format!("{rad:.4} rad"),
+        false => "overturning".to_owned(),
+    });
+    format!("largest rotation: median {median}; 5 to 95 %: {low} to {high}")
+}
+
+const BAND: &str = "#cfe3f1";
+const MEDIAN: Stroke = Stroke::new(color::BLUE, 1.6, "");
+
+impl Histories {
     /// The bands of the rotation over time.
-    pub(crate) fn bands(&self, asked: &Histories) -> Vec<BandAt> {
+    fn bands(&self, samples: &Samples<'_, HistoryAnswer>) -> Vec<BandAt> {
         let at = |time: usize| {
-            let rotations: Vec<f64> = self
-                .answered()
-                .map(|(_, went)| went.rotation_rad(time))
-                .collect();
-            let own = self.own.as_ref().ok().map(|went| went.rotation_rad(time));
+            let answers = samples.answers();
+            let rotations: Vec<f64> = answers.map(|answer| answer.rotation_rad(time)).collect();
+            let own = samples.own.as_ref().ok().map(|own| own.rotation_rad(time));
             Some(BandAt {
-                time_s: time as f64 * asked.step_s,
+                time_s: time as f64 * self.step_s,
                 own_rad: own.filter(|rotation| rotation.is_finite()),
-                overturned: rotations
-                    .iter()
-                    .filter(|rotation| rotation.is_infinite())
-                    .count(),
+                overturned: rotations.iter().filter(|rad| rad.is_infinite()).count(),
                 band_rad: band(rotations, quantile)?,
             })
         };
-        (0..asked.times).filter_map(at).collect()
+        (0..self.times).filter_map(at).collect()
+    }
+
+    /// Draws the rotation over time: the band of the samples, their median, and the history of the scenario itself.
+    fn draw(
+        &self,
+        figure: Figure,
+        samples: &Samples<'_, HistoryAnswer>,
+        bands: &[BandAt],
+    ) -> String {
+        let (scenario, title) = (
+            samples.scenario,
+            samples.title("Histories with uncertain data"),
+        );
+        let end_s = bands.last().map_or(1.0, |at| at.time_s);
+        let mut panels = Panels::new(figure, title, [0.0, end_s]);
+        let subject = Subject {
+            title,
+            ground: scenario.ground_motion(),
+            gravity_m_s2: scenario.gravity_m_s2(),
+            incipient_g: [None; 2],
+        };
+        panels.ground(90.0, &subject, None);
+        let values = bands
+            .iter()
+            .flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
+        let y = around(&[], values, 6);
+        let model = scenario.model().ok();
+        let body = model.and_then(|model| model.bodies().get(self.body).cloned());
+        let label = match body.filter(|name| !name.is_empty()) {
+            Some(name) => format!("Rotation of {} (rad)", name.replace('_', " ")),
+            None => "Rotation (rad)".to_owned(),
+        };
+        // Values of samples that overturned are outside the picture.
+        let at = |which: usize| {
+            let points = bands.iter().map(move |at| (at.time_s, at.band_rad[which]));
+            points.map(move |(time_s, rad)| (time_s, rad.clamp(y.low, y.high)))
+        };
+        let own = bands.iter().filter_map(|at| Some((at.time_s, at.own_rad?)));
+        let marks = vec![
+            Mark::between("band", BAND, at(0), at(2)),
+            Mark::curve("median", MEDIAN, at(1)),
+            Mark::curve("own", MAIN, own),
+        ];
+        panels.panel(&label, 330.0, y, None, marks);
+        let all = samples.answers().count().max(1) as f64;
+        let shares = bands
+            .iter()
+            .map(|at| (at.time_s, at.overturned as f64 / all));
+        let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
+        let y = Scale::exactly(0.0, 1.0, 2);
+        panels.panel("Overturned", 70.0, y, None, shares);
+        let beyond = "5 to 95 %; overturned samples are beyond";
+        panels.keys = vec![
+            Key::line("the scenario itself", MAIN),
+            Key::line("median of the samples", MEDIAN),
+            Key::new(beyond, Sign::Band(BAND, 1.0)),
+        ];
+        panels.finish(false)
     }
 }

@@ -21,7 +21,7 @@ pub struct Matters {
     pub rank_correlation: f64,
     /// Its 95 % interval, by bootstrap with the original ranks.
     pub rank_correlation_interval: [f64; 2],
-    /// Its total index, if that was asked for.
+    /// Its total index, with `total_indices` in the scenario.
     #[serde(flatten)]
     pub total: Option<Total>,
 }

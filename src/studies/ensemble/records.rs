@@ -1,16 +1,22 @@
 //! The intensity from which each record of a suite overturns each sample: fragility due to the records, to uncertain numbers, and to both.
 
-use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-use super::{NoAnswer, Question, Told, told};
+use super::edges::FirstStrength;
+use super::report::{Findings, lines, of_answer, why_not};
+use super::{NoAnswer, Question, Samples};
+use crate::output::axes::Scale;
+use crate::output::chart::{Chart, Mark};
+use crate::output::sheet::Key;
+use crate::output::svg::{Stroke, color};
+use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
-use crate::scenario::{Measure, Scenario, Suite};
+use crate::scenario::{Scenario, Suite, shown};
 use crate::studies::ending::Ending;
-use crate::studies::results::Results;
 use crate::studies::statistics::{bootstrap, fractile, interval};
 use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
+use crate::studies::threshold::{rounded, rounded_range};
 
 /// Relative width to which an intensity is bisected: far less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -22,36 +28,8 @@ pub struct Capacities {
     levels: Vec<f64>,
 }
 
-impl Capacities {
-    /// The measure of the intensities.
-    #[must_use]
-    pub const fn measure(&self) -> Measure {
-        self.suite.measure
-    }
-
-    /// The levels to try, ascending.
-    #[must_use]
-    pub fn levels(&self) -> &[f64] {
-        &self.levels
-    }
-
-    const fn signs(&self) -> usize {
-        if self.suite.both_signs { 2 } else { 1 }
-    }
-
-    /// The file of each record, and whether it is mirrored, in the order of the answers.
-    pub(crate) fn shakes(&self) -> impl Iterator<Item = (&str, bool)> {
-        let records = self.suite.records.iter();
-        records.flat_map(|series| {
-            let signs = [false, true].into_iter().take(self.signs());
-            signs.map(|mirrored| (series.file.as_str(), mirrored))
-        })
-    }
-}
-
 /// The intensity from which each record overturns a sample; the mirrored record follows each record.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Capacity(pub Vec<FirstEdge>);
+type Edges = Vec<FirstEdge>;
 
 impl Capacities {
     /// The question about a scenario.
@@ -69,25 +47,82 @@ impl Capacities {
             suite: suite.clone(),
         })
     }
+
+    const fn signs(&self) -> usize {
+        if self.suite.both_signs { 2 } else { 1 }
+    }
+
+    /// The file of each record, and its sign, in the order of the answers.
+    fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
+        let signs = &["1", "-1"][..self.signs()];
+        let records = self.suite.records.iter();
+        records.flat_map(move |series| signs.iter().map(|sign| (series.file.as_str(), *sign)))
+    }
 }
 
 impl Question for Capacities {
-    type Answer = Capacity;
+    type Answer = Edges;
 
     const NAME: &'static str = "uncertain_suite";
 
-    fn results(
-        &self,
-        told: &Told<'_, Self::Answer>,
+    const FILES: &'static [&'static str] = &[
+        "fragility.svg",
+        "matters.svg",
+        "fragility.csv",
+        "capacities.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    fn findings<'a>(
+        &'a self,
+        samples: &Samples<'a, Edges>,
         figure: Figure,
-    ) -> Result<Results, OutputError> {
-        told::capacities(told, self, figure)
+    ) -> Result<Findings<'a, Edges, impl Serialize>, OutputError> {
+        let counted = Counted::new(self, samples);
+        let fragilities = counted.fragilities();
+        let at_lowest = counted.of_samples().filter(|edge| edge.at_most).count();
+        let mut lines = fragilities.in_words();
+        lines.push(
+            "median and dispersion are those of the fractiles (16, 50 and 84 %) of the intensities at which a record first overturns;\n    \
+             record to record: of the scenario itself; uncertain data: of the median over the records of each sample; both: of all samples;\n    \
+             in brackets: 95 % by bootstrap over records"
+                .to_owned(),
+        );
+        lines.extend((at_lowest > 0).then(|| {
+            format!(
+                "{at_lowest} of {} records and samples overturn at the lowest level already, which counts as their intensity: the \
+                 fractiles may be lower",
+                counted.of_samples().count()
+            )
+        }));
+        // The median over the records for each sample; the largest level if half of the records do not overturn the sample.
+        let most = self.levels.last().copied().unwrap_or(1.0);
+        let median = |edges: &Edges| {
+            let median = FirstStrength::of(edges.iter(), 0.5);
+            median.map_or(most, |median| median.strength.min(most))
+        };
+        let names = ["median_intensity", "the median intensity that overturns"];
+        let overturned = |edges: &Edges| edges.iter().filter(|edge| edge.factor.is_some()).count();
+        Ok(Findings {
+            first: Some(counted.first_words(samples.rows.len(), &fragilities)),
+            lines,
+            influences: vec![samples.influence(names, false, median)],
+            no_verdict: samples.no_verdict(),
+            details: Details {
+                intensity: self.suite.measure.column(),
+                fragility: fragilities,
+                at_lowest_level: at_lowest,
+            },
+            pictures: vec![self.draw(figure, samples)],
+            tables: vec![counted.at_levels()?, self.table(samples)?],
+            columns: vec![of_answer("overturned", overturned), why_not()],
+            peaks: Vec::new(),
+        })
     }
 
-    fn answer(&self, scenario: &Scenario) -> Result<Capacity, NoAnswer> {
-        let model = scenario
-            .model()
-            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+    fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
+        let model = scenario.model().map_err(NoAnswer::invalid)?;
         let edges = (0..self.suite.records.len() * self.signs()).map(|shake| {
             let (record, mirrored) = (shake / self.signs(), shake % self.signs() == 1);
             let verdict = |level: f64| {
@@ -97,215 +132,267 @@ impl Question for Capacities {
             };
             FirstEdge::search(&self.levels, WIDTH, verdict)
         });
-        edges.collect::<Result<_, _>>().map(Capacity)
+        edges.collect()
     }
 }
 
-/// A distribution of the intensities that overturn, from its 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the
-/// ratio of the outer two, which for a lognormal distribution is the standard deviation of the logarithm.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Distribution {
-    /// The median; `None` if fewer than half of them overturn.
-    pub median: Option<f64>,
-    /// The dispersion; `None` if the upper fractile is not reached.
-    pub dispersion: Option<f64>,
-}
-
-impl Distribution {
-    /// From intensities in any order; infinite ones mean that nothing overturned.
-    fn of(mut intensities: Vec<f64>) -> Self {
-        intensities.sort_by(f64::total_cmp);
-        let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
-        let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
-        Self {
-            median,
-            dispersion: low.zip(high).map(|(low, high)| 0.5 * (high / low).ln()),
-        }
-    }
-}
-
-/// A distribution, with the 95 % intervals of its median and its dispersion, by bootstrap over the records.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Estimated {
-    /// The distribution.
-    pub of: Distribution,
-    /// Ends of the interval of the median, if it is known.
-    pub median: Option<[f64; 2]>,
-    /// The same for the dispersion.
-    pub dispersion: Option<[f64; 2]>,
+/// The part of the summary that only suites have.
+#[derive(Serialize)]
+struct Details {
+    /// The measure of the intensities.
+    intensity: &'static str,
+    /// Median and dispersion of the intensities that overturn.
+    fragility: Fragilities,
+    /// Number of records and samples that overturn at the lowest level already.
+    at_lowest_level: usize,
 }
 
 /// The three distributions.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Fragilities {
+#[derive(Serialize)]
+struct Fragilities {
     /// Due to the records: for the scenario itself.
-    pub records: Estimated,
+    record_to_record: Estimated,
     /// Due to the uncertain numbers: for the median over the records of each sample.
-    pub uncertain: Estimated,
+    uncertain_data: Estimated,
     /// Due to both: for all samples under all records.
-    pub both: Estimated,
+    both: Estimated,
 }
 
-/// The intensities of a sample, a list for each record.
-type Intensities = Vec<Vec<f64>>;
+/// A distribution, with 95 % intervals by bootstrap over the records.
+#[derive(Serialize)]
+struct Estimated {
+    /// The median; `None` if fewer than half of the cases overturn.
+    median: Option<f64>,
+    /// Ends of its interval.
+    median_interval: Option<[f64; 2]>,
+    /// The dispersion; `None` if the upper fractile is not reached.
+    dispersion: Option<f64>,
+    /// Ends of its interval.
+    dispersion_interval: Option<[f64; 2]>,
+}
 
-/// The three distributions for these records, some of which may occur more than once.
-fn distributions(
-    own: &[Vec<f64>],
-    samples: &[Intensities],
-    records: &[usize],
-) -> [Distribution; 3] {
-    let chosen = |of: &[Vec<f64>]| -> Vec<f64> {
-        records
-            .iter()
-            .filter_map(|record| of.get(*record))
-            .flatten()
-            .copied()
-            .collect()
-    };
-    let median = |of: &Intensities| {
-        let mut intensities = chosen(of);
-        intensities.sort_by(f64::total_cmp);
-        fractile(&intensities, 0.5)
-    };
+impl Fragilities {
+    fn in_words(&self) -> Vec<String> {
+        let number = |number: Option<f64>, ends: Option<[f64; 2]>| {
+            let ends = ends.map(rounded_range);
+            let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
+            format!("{}{ends}", rounded_or_unknown(number))
+        };
+        let all = [
+            ("record to record", &self.record_to_record),
+            ("uncertain data", &self.uncertain_data),
+            ("both", &self.both),
+        ];
+        let words = all.map(|(name, of)| {
+            let median = number(of.median, of.median_interval);
+            let dispersion = number(of.dispersion, of.dispersion_interval);
+            format!("{name}: median {median}, dispersion {dispersion}")
+        });
+        words.to_vec()
+    }
+}
+
+fn rounded_or_unknown(number: Option<f64>) -> String {
+    number.map_or("not known".to_owned(), rounded)
+}
+
+/// Median and dispersion of the intensities that overturn, from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of
+/// the ratio of the outer two, which for a lognormal distribution is the standard deviation of the logarithm. Infinite intensities mean
+/// that nothing overturned.
+fn distribution(mut intensities: Vec<f64>) -> [Option<f64>; 2] {
+    intensities.sort_by(f64::total_cmp);
+    let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
+    let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
     [
-        Distribution::of(chosen(own)),
-        Distribution::of(samples.iter().filter_map(median).collect()),
-        Distribution::of(samples.iter().flat_map(|of| chosen(of)).collect()),
+        median,
+        low.zip(high).map(|(low, high)| 0.5 * (high / low).ln()),
     ]
 }
 
-impl<'a> Told<'a, Capacity> {
-    /// The number of signs of each record that count: one if every mirrored record gives exactly what the record itself gives, as with
-    /// four links of a symmetric structure.
-    fn counted_signs(&self, asked: &Capacities) -> usize {
-        let mut all = self
-            .own
-            .iter()
-            .chain(self.answered().map(|(_, answer)| answer));
-        let alike = all.all(|capacity| {
-            let mut records = capacity.0.chunks(asked.signs());
+/// The edges that count: without mirrored records if every one of them gives exactly what the record itself gives, as with four links
+/// of a symmetric structure.
+struct Counted<'a> {
+    question: &'a Capacities,
+    /// For the scenario itself and for each sample, the edges of each record.
+    own: Vec<&'a [FirstEdge]>,
+    samples: Vec<Vec<&'a [FirstEdge]>>,
+}
+
+impl<'a> Counted<'a> {
+    fn new(question: &'a Capacities, samples: &Samples<'a, Edges>) -> Self {
+        let own = samples.own.as_ref().ok();
+        let mut all = own.into_iter().chain(samples.answers());
+        let is_symmetric = all.all(|edges| {
+            let mut records = edges.chunks(question.signs());
             records.all(|signs| signs.iter().all(|edge| *edge == signs[0]))
         });
-        if alike { 1 } else { asked.signs() }
-    }
-
-    /// The edges that count: of the scenario itself, and of all samples.
-    pub(crate) fn counted(&self, asked: &Capacities) -> [Vec<&'a FirstEdge>; 2] {
-        let signs = self.counted_signs(asked);
-        let of = |capacity: &'a Capacity| -> Vec<&'a FirstEdge> {
-            let records = capacity.0.chunks(asked.signs());
-            records.flat_map(|edges| &edges[..signs]).collect()
+        let signs = if is_symmetric { 1 } else { question.signs() };
+        let counted = |edges: &'a Edges| -> Vec<&'a [FirstEdge]> {
+            let records = edges.chunks(question.signs());
+            records.map(|edges| &edges[..signs]).collect()
         };
-        [
-            self.own.iter().flat_map(of).collect(),
-            self.answered()
-                .flat_map(|(_, capacity)| of(capacity))
-                .collect(),
-        ]
-    }
-
-    fn by_record(asked: &Capacities, signs: usize, capacity: &Capacity) -> Intensities {
-        let records = capacity.0.chunks(asked.signs());
-        let strengths = |edges: &[FirstEdge]| edges.iter().map(FirstEdge::strength).collect();
-        records.map(|edges| strengths(&edges[..signs])).collect()
-    }
-
-    /// The fragility due to the records, to the uncertain numbers, and to both.
-    pub(crate) fn fragilities(&self, asked: &Capacities) -> Fragilities {
-        let signs = self.counted_signs(asked);
-        let own = self
-            .own
-            .as_ref()
-            .map_or_else(|_| Vec::new(), |own| Self::by_record(asked, signs, own));
-        let samples: Vec<Intensities> = self
-            .answered()
-            .map(|(_, capacity)| Self::by_record(asked, signs, capacity))
-            .collect();
-        let count = asked.suite.records.len();
-        let all: Vec<usize> = (0..count).collect();
-        let found = distributions(&own, &samples, &all);
-        let drawn: Vec<[Distribution; 3]> = bootstrap(count)
-            .map(|drawn| distributions(&own, &samples, &drawn))
-            .collect();
-        let with_intervals = |which: usize| {
-            let of = |number: fn(&Distribution) -> Option<f64>| {
-                let numbers = drawn.iter().filter_map(|drawn| number(&drawn[which]));
-                let numbers: Vec<f64> = numbers.collect();
-                // If any draw lacks the number, there is no interval.
-                (numbers.len() == drawn.len())
-                    .then(|| interval(numbers))
-                    .flatten()
-            };
-            Estimated {
-                of: found[which],
-                median: of(|one| one.median),
-                dispersion: of(|one| one.dispersion),
-            }
-        };
-        Fragilities {
-            records: with_intervals(0),
-            uncertain: with_intervals(1),
-            both: with_intervals(2),
+        Self {
+            question,
+            own: own.map(counted).unwrap_or_default(),
+            samples: samples.answers().map(counted).collect(),
         }
     }
 
-    /// The probability of overturning up to each level: due to the records, and due to both.
-    pub(crate) fn at_levels(&self, asked: &Capacities) -> Vec<AtLevel> {
+    fn of_itself(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
+        self.own.iter().copied().flatten()
+    }
+
+    fn of_samples(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
+        self.samples.iter().flatten().copied().flatten()
+    }
+
+    fn fragilities(&self) -> Fragilities {
+        let count = self.question.suite.records.len();
+        let all: Vec<usize> = (0..count).collect();
+        let found = self.distributions(&all);
+        let drawn: Vec<_> = bootstrap(count)
+            .map(|drawn| self.distributions(&drawn))
+            .collect();
+        let estimated = |which: usize| {
+            let of = |number: usize| {
+                // If any draw lacks the number, there is no interval.
+                let numbers = drawn.iter().map(|drawn| drawn[which][number]);
+                interval(numbers.collect::<Option<_>>()?)
+            };
+            let [median, dispersion] = found[which];
+            Estimated {
+                median,
+                median_interval: of(0),
+                dispersion,
+                dispersion_interval: of(1),
+            }
+        };
+        Fragilities {
+            record_to_record: estimated(0),
+            uncertain_data: estimated(1),
+            both: estimated(2),
+        }
+    }
+
+    /// The distributions due to the records, to the uncertain numbers and to both, for these records, some of which may occur more than
+    /// once.
+    fn distributions(&self, records: &[usize]) -> [[Option<f64>; 2]; 3] {
+        let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<f64> {
+            let edges = records.iter().filter_map(|record| of.get(*record).copied());
+            edges.flatten().map(FirstEdge::strength).collect()
+        };
+        let median = |of: &Vec<&[FirstEdge]>| {
+            let mut intensities = chosen(of);
+            intensities.sort_by(f64::total_cmp);
+            fractile(&intensities, 0.5)
+        };
+        [
+            distribution(chosen(&self.own)),
+            distribution(self.samples.iter().filter_map(median).collect()),
+            distribution(self.samples.iter().flat_map(chosen).collect()),
+        ]
+    }
+
+    /// The table of the shares that overturn up to each level: for the records that shake the scenario itself, and for all samples.
+    fn at_levels(&self) -> Result<Vec<u8>, OutputError> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
             let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
             (!edges.is_empty()).then(|| overturned as f64 / edges.len() as f64)
         };
-        let at = |level: &f64| AtLevel {
-            intensity: *level,
-            records: self
-                .own
-                .as_ref()
-                .ok()
-                .and_then(|own| share(own.0.iter().collect(), *level)),
-            both: share(
-                self.answered()
-                    .flat_map(|(_, capacity)| &capacity.0)
-                    .collect(),
-                *level,
-            ),
+        let columns = [
+            column(self.question.suite.measure.column(), |level: &f64| *level),
+            column("record_to_record", |level: &f64| {
+                share(self.of_itself().collect(), *level)
+            }),
+            column("both", |level: &f64| {
+                share(self.of_samples().collect(), *level)
+            }),
+        ];
+        csv(columns, &self.question.levels)
+    }
+
+    /// The intensities that overturn 5 % and half of the cases.
+    fn first_words(&self, samples: usize, fragilities: &Fragilities) -> String {
+        let column = format!("{} ", self.question.suite.measure.column());
+        let at = |of: Vec<&FirstEdge>, part: f64, column: &str| {
+            let found = FirstStrength::of(of.into_iter(), part);
+            let unknown = "nowhere up to the highest level";
+            found.map_or(unknown.to_owned(), |found| found.in_words(column, unknown))
         };
-        asked.levels.iter().map(at).collect()
+        let [own, all] = [
+            self.of_itself().collect::<Vec<_>>(),
+            self.of_samples().collect(),
+        ];
+        format!(
+            "overturns with a probability of 5 % {}, of 50 % {} (dispersion {}), over records and {samples} samples of [uncertain];\n    \
+             the scenario itself with 5 % {}, with 50 % {}",
+            at(all.clone(), 0.05, &column),
+            at(all, 0.5, ""),
+            rounded_or_unknown(fragilities.both.dispersion),
+            at(own.clone(), 0.05, ""),
+            at(own, 0.5, "")
+        )
     }
 }
 
-/// The share of cases that overturn up to an intensity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AtLevel {
-    /// The intensity.
-    pub intensity: f64,
-    /// For the records that shake the scenario itself.
-    pub records: Option<f64>,
-    /// For all samples under all records.
-    pub both: Option<f64>,
-}
-
-impl Fragilities {
-    /// Each with its name in results.
-    pub(crate) const fn all(&self) -> [(&'static str, &Estimated); 3] {
-        [
-            ("record_to_record", &self.records),
-            ("uncertain_data", &self.uncertain),
-            ("both", &self.both),
-        ]
+impl Capacities {
+    /// The table of all edges.
+    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
+        type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
+        let mut rows: Vec<Row<'_>> = Vec::new();
+        for line in lines(samples) {
+            let edges = line.answer.iter().flatten().zip(self.shakes());
+            rows.extend(edges.map(|(edge, (record, sign))| (line.number, record, sign, edge)));
+        }
+        let mut columns = vec![
+            column("sample", |row: &Row<'_>| row.0),
+            column("record", |row: &Row<'_>| shown(row.1)),
+            column("sign", |row: &Row<'_>| row.2),
+        ];
+        columns.extend(FirstEdge::columns("intensity", |row: &Row<'_>| Some(row.3)));
+        csv(columns, &rows)
     }
 
-    pub(crate) fn to_json(&self) -> Value {
-        let all = self.all().map(|(name, estimated)| {
-            let of = json!({
-                "median": estimated.of.median,
-                "median_interval": estimated.median,
-                "dispersion": estimated.of.dispersion,
-                "dispersion_interval": estimated.dispersion,
-            });
-            (name.to_owned(), of)
-        });
-        Value::Object(all.into_iter().collect())
+    /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all
+    /// together.
+    fn draw(&self, figure: Figure, samples: &Samples<'_, Edges>) -> String {
+        const MOST_FAINT: usize = 20;
+        const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
+        const ALL: Stroke = Stroke::new(color::BLUE, 1.6, "");
+        const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
+        let ends = [self.levels.first(), self.levels.last()];
+        let ends = ends.map(|level| level.copied().unwrap_or(1.0));
+        let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
+        let steps = |name, stroke, edges: Vec<&FirstEdge>| {
+            let mut strengths: Vec<f64> = edges.into_iter().map(FirstEdge::strength).collect();
+            strengths.sort_by(f64::total_cmp);
+            let all = strengths.len().max(1) as f64;
+            let rises = strengths
+                .into_iter()
+                .zip((1..).map(|count| f64::from(count) / all));
+            let rises = rises.filter(|(strength, _)| strength.is_finite());
+            Mark::staircase(name, stroke, (x, 0.0), rises)
+        };
+        let single = samples.answers().take(MOST_FAINT);
+        let mut marks: Vec<Mark> = single
+            .map(|edges| steps("sample", FAINT, edges.iter().collect()))
+            .collect();
+        marks.push(steps("both", ALL, samples.answers().flatten().collect()));
+        if let Ok(own) = samples.own {
+            marks.push(steps("own", OWN, own.iter().collect()));
+        }
+        let label = self.suite.measure.column().replace('_', " ");
+        let y_axis = ("share that overturns", Scale::exactly(0.0, 1.0, 5));
+        let chart = Chart {
+            keys: vec![
+                Key::line("all samples and records", ALL),
+                Key::line("single samples", FAINT),
+                Key::line("the scenario itself, from record to record", OWN),
+            ],
+            marks,
+            ..Chart::new(405.0, (&label, x), y_axis)
+        };
+        chart.draw(figure, samples.title("Fragility with uncertain data"))
     }
 }
 
@@ -329,17 +416,12 @@ mod tests {
                 0.7 * (0.4 * low).exp()
             })
             .collect();
-        let found = Distribution::of(intensities);
-        assert!(
-            (found.median.unwrap() / 0.7 - 1.0).abs() < 1e-3,
-            "{found:?}"
-        );
-        assert!(
-            (found.dispersion.unwrap() - 0.4 * 0.9945).abs() < 1e-3,
-            "{found:?}"
-        );
+        let [median, dispersion] = distribution(intensities);
+        let (median, dispersion) = (median.unwrap(), dispersion.unwrap());
+        assert!((median / 0.7 - 1.0).abs() < 1e-3, "{median}");
+        assert!((dispersion - 0.4 * 0.9945).abs() < 1e-3, "{dispersion}");
         // The median is unknown if fewer than half of the intensities are finite.
-        let none = Distribution::of(vec![1.0, f64::INFINITY, f64::INFINITY]);
-        assert_eq!([none.median, none.dispersion], [None, None]);
+        let none = distribution(vec![1.0, f64::INFINITY, f64::INFINITY]);
+        assert_eq!(none, [None, None]);
     }
 }

@@ -2,9 +2,9 @@
 
 pub(super) mod page;
 pub mod picture;
-mod told;
+mod report;
 
-pub use told::outcome;
+pub use report::FILES;
 
 use std::cell::OnceCell;
 use std::sync::{Arc, OnceLock};
@@ -12,7 +12,9 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+use super::ending::columns::FAILED;
 use super::ending::{Ending, answered};
+use super::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::{GroundMotion, PulseShape};
@@ -58,6 +60,19 @@ impl From<ModelError> for CellResult {
     }
 }
 
+impl CellResult {
+    /// The outcome, as in the table.
+    #[must_use]
+    pub const fn outcome_name(&self) -> &'static str {
+        match self {
+            Self::Ended(ending) => ending.outcome_name(),
+            Self::CannotStand => CANNOT_STAND,
+            Self::NotFourLinks => NOT_FOUR_LINKS,
+            Self::Failed(_) => FAILED,
+        }
+    }
+}
+
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellRow {
@@ -74,20 +89,69 @@ pub struct CellRow {
     pub outcomes: Option<Result<usize, String>>,
 }
 
+impl CellRow {
+    /// Whether its outcome depends on how it is computed.
+    pub(super) const fn is_doubtful(&self) -> bool {
+        matches!(self.outcomes, Some(Ok(2..)))
+    }
+}
+
 /// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th value of y, where y has `m` values.
 #[derive(Debug)]
 pub struct OverturningMap<'a> {
-    scenario: &'a Scenario,
-    axes: [&'a Axis; 2],
-    values: [Vec<f64>; 2],
+    /// The scenario that has the map.
+    pub scenario: &'a Scenario,
+    /// The axes, x and y.
+    pub axes: [&'a Axis; 2],
+    /// Values along x and y.
+    pub values: [Vec<f64>; 2],
     /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
-    repeat: bool,
+    pub(super) repeat: bool,
     /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<ScalablePulse>,
     /// The scenario, or a sample of it, and its variants with other values for keys of other tables.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
+}
+
+/// An axis in a scenario and in pictures.
+pub(super) struct Described<'a> {
+    /// Its label.
+    pub(super) label: &'a str,
+    /// The table whose keys set its quantity; `ground` stands for the pulse or the record there.
+    pub(super) table: &'static str,
+    /// The keys there; empty for a quantity that is named by its key.
+    pub(super) keys: &'static [&'static str],
+}
+
+/// The description of an axis.
+pub(super) fn described(axis: &Axis) -> Described<'_> {
+    let (label, table, keys): (_, _, &[_]) = match axis.quantity {
+        Quantity::Duration => (
+            "pulse duration (s)",
+            "ground",
+            &["duration_s", "frequency_hz"],
+        ),
+        Quantity::Frequency => (
+            "pulse frequency (Hz)",
+            "ground",
+            &["duration_s", "frequency_hz"],
+        ),
+        Quantity::Amplitude => ("pulse amplitude (g)", "ground", &["amplitude_g"]),
+        Quantity::Scale => ("factor on the record", "ground", &["scale", "peak_g"]),
+        Quantity::PeakG => (
+            "peak ground acceleration (g)",
+            "ground",
+            &["scale", "peak_g"],
+        ),
+        Quantity::MeanRadius => ("mean radius R (m)", "arch", &["mean_radius_m"]),
+        Quantity::ThicknessRatio => ("t / R", "arch", &["thickness_ratio", "thickness_m"]),
+        Quantity::Embrace => ("embrace angle (deg)", "arch", &["embrace_deg"]),
+        Quantity::Restitution => ("restitution coefficient r", "impact", &["restitution"]),
+        Quantity::Other => (&*axis.key, "", &[]),
+    };
+    Described { label, table, keys }
 }
 
 /// The model of a cell.
@@ -228,42 +292,6 @@ impl<'a> OverturningMap<'a> {
                 .then(|| Shared::new(counts, variants)),
             values,
         })
-    }
-
-    /// The scenario that has the map.
-    #[must_use]
-    pub const fn scenario(&self) -> &'a Scenario {
-        self.scenario
-    }
-
-    /// Values along x and y.
-    #[must_use]
-    pub const fn values(&self) -> &[Vec<f64>; 2] {
-        &self.values
-    }
-
-    /// The axes, x and y.
-    #[must_use]
-    pub const fn axes(&self) -> [&'a Axis; 2] {
-        self.axes
-    }
-
-    /// Whether cells are rows of blocks with free hinges.
-    #[must_use]
-    pub const fn has_free_hinges(&self) -> bool {
-        self.scenario.motion().hinges().has_joints()
-    }
-
-    /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
-    #[must_use]
-    pub const fn is_repeated(&self) -> bool {
-        self.repeat
-    }
-
-    /// Whether the ground moves vertically too.
-    #[must_use]
-    pub fn moves_vertically(&self) -> bool {
-        self.scenario.ground_motion().has_vertical()
     }
 
     /// The scenario of a cell, without the quantities that are keys of `[map]` itself.
@@ -496,15 +524,8 @@ impl Study for OverturningMap<'_> {
 
     const NAME: &'static str = "map";
 
-    fn scenario(&self) -> String {
-        self.scenario.to_toml()
-    }
-
-    fn inputs(&self) -> Vec<String> {
-        let series = self.scenario.series();
-        series
-            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-            .collect()
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.scenario)
     }
 
     fn count(&self) -> usize {

@@ -1,29 +1,27 @@
 //! `map.html`: a map with a cursor that shows the numbers of a cell, and the command that runs it.
 
-use std::fmt::Write as _;
-
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
 use super::picture::{self, Drawn};
-use super::{CellResult, CellRow, OverturningMap};
+use super::{CellResult, CellRow, Described, OverturningMap, described};
 use crate::output::Figure;
 use crate::output::page::{escaped, filled, script_safe};
 use crate::scenario::{Ground, Quantity, toml_text};
 use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
-use crate::studies::results::Look;
+use crate::studies::results::Style;
 
 /// The page.
 #[must_use]
-pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
-    let look = Look {
+pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
+    let style = Style {
         figure: Figure::SCREEN,
-        ..look
+        ..style
     };
-    let drawn = picture::drawn(title, map, rows, look);
-    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, look));
+    let drawn = picture::drawn(title, map, rows, style);
+    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, style));
     let doubt = |(index, row): (usize, &CellRow)| {
         let doubt = ended(row)?.uncertain.as_ref()?;
         Some((index, doubt.clone()))
@@ -37,26 +35,21 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look)
     cells.page(title, map, &drawn)
 }
 
-/// What the page knows of the cells.
-pub(in crate::studies) struct Cells<'c> {
+/// The cells of the page.
+pub(crate) struct Cells<'c> {
     /// All kinds.
-    pub(in crate::studies) palette: &'c [Kind],
+    pub(crate) palette: &'c [Kind],
     /// That of each cell.
-    pub(in crate::studies) kinds: Vec<Kind>,
+    pub(crate) kinds: Vec<Kind>,
     /// The uncertain cells by their numbers, and why.
-    pub(in crate::studies) doubts: Vec<(usize, Box<str>)>,
+    pub(crate) doubts: Vec<(usize, Box<str>)>,
     /// Numbers of each cell, by their names; what a cell does not have is left out.
-    pub(in crate::studies) columns: Vec<(&'static str, Vec<Option<f64>>)>,
+    pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
 
 impl Cells<'_> {
     /// The page with this picture, which is for the screen.
-    pub(in crate::studies) fn page(
-        &self,
-        title: &str,
-        map: &OverturningMap<'_>,
-        drawn: &Drawn,
-    ) -> String {
+    pub(crate) fn page(&self, title: &str, map: &OverturningMap<'_>, drawn: &Drawn) -> String {
         let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         filled(
             include_str!("page/page.html"),
@@ -64,7 +57,7 @@ impl Cells<'_> {
                 ("PROGRAM", &version),
                 ("TITLE", &escaped(title)),
                 ("PICTURE", &drawn.picture),
-                ("SCENARIO", &escaped(&map.scenario().to_toml())),
+                ("SCENARIO", &escaped(&map.scenario.to_toml())),
                 ("DATA", &script_safe(&self.data(map, drawn))),
                 ("SCRIPT", include_str!("page/page.js")),
             ],
@@ -83,11 +76,11 @@ impl Cells<'_> {
             let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
             json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
         });
-        let axes = map.axes();
-        let values = map.values();
+        let axes = map.axes;
+        let values = &map.values;
         let axis = |i: usize| {
             json!({
-                "label": picture::label(axes[i]),
+                "label": described(axes[i]).label,
                 "values": values[i],
                 "edges_px": drawn.edges_px[i],
             })
@@ -140,55 +133,37 @@ fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
 /// The command that runs a cell, with placeholders for its two values. The whole scenario goes to standard input, so the
 /// command works wherever the page is, and whichever keys define the dimensions in the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
-    let scenario = map.scenario();
+    let scenario = map.scenario;
     // A cell alone, without samples.
     let mut table = scenario.clone().without_uncertain().resolved();
+    let mut remove = |outer: &str, key: &str| {
+        let inner = table.pointer_mut(outer).and_then(Value::as_object_mut);
+        inner.and_then(|inner| inner.shift_remove(key));
+    };
     for study in ["map", "suite", "demand", "verify"] {
-        if let Some(table) = table.as_object_mut() {
-            table.shift_remove(study);
-        }
+        remove("", study);
     }
-    let mut places = Vec::new();
-    let mut set = String::new();
-    for (axis, place) in map.axes().into_iter().zip(["cell.x", "cell.y"]) {
-        let (outer, key, place) = match axis.quantity {
-            Quantity::Duration => ("ground", "duration_s", place.to_owned()),
-            Quantity::Frequency => ("ground", "duration_s", format!("1/{place}")),
-            Quantity::Amplitude => ("ground", "amplitude_g", place.to_owned()),
-            Quantity::Restitution => ("impact", "restitution", place.to_owned()),
-            Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
-                ("arch", axis.quantity.name(), place.to_owned())
-            }
-            Quantity::Scale => ("ground", "scale", place.to_owned()),
-            Quantity::PeakG => ("ground", "peak_g", place.to_owned()),
-            Quantity::Other => {
-                let _ = write!(set, " --set {}={{{place}}}", axis.key);
-                continue;
-            }
+    let ground = match scenario.ground() {
+        Some(Ground::Pulse(pulse)) => pulse.kind.name(),
+        _ => "record",
+    };
+    let set = map.axes.into_iter().zip(["cell.x", "cell.y"]);
+    let set = set.map(|(axis, place)| {
+        let Described { table, keys, .. } = described(axis);
+        let table = match table {
+            "ground" => format!("ground.{ground}"),
+            table => table.to_owned(),
         };
-        let mut inner = &mut table[outer];
-        if let Some(Ground::Pulse(pulse)) = scenario.ground()
-            && outer == "ground"
-        {
-            inner = &mut inner[pulse.kind.name()];
+        for key in keys {
+            remove(&format!("/{}", table.replace('.', "/")), key);
         }
-        if let Some(Ground::Record(_)) = scenario.ground()
-            && outer == "ground"
-        {
-            inner = &mut inner["record"];
-            if let Some(record) = inner.as_object_mut() {
-                record.shift_remove("scale");
-                record.shift_remove("peak_g");
-            }
+        match axis.quantity {
+            Quantity::Other => format!(" --set {}={{{place}}}", axis.key),
+            Quantity::Frequency => format!(" --set {table}.duration_s={{1/{place}}}"),
+            quantity => format!(" --set {table}.{}={{{place}}}", quantity.name()),
         }
-        let place = format!("{{{place}}}");
-        inner[key] = Value::String(place.clone());
-        places.push(place);
-    }
-    let mut text = toml_text(&table);
-    for place in places {
-        // Numbers need no quotation marks.
-        text = text.replace(&format!("= \"{place}\""), &format!("= {place}"));
-    }
+    });
+    let set: String = set.collect();
+    let text = toml_text(&table);
     format!("archrock run -{set} --out cell <<'END'\n{text}END\n")
 }

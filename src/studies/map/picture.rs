@@ -1,7 +1,6 @@
 //! The picture of an overturning map.
 
-use super::told::{is_doubtful, outcome};
-use super::{CellResult, CellRow, OverturningMap};
+use super::{CellResult, CellRow, OverturningMap, described};
 use crate::dynamics::history::Outcome;
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
@@ -11,11 +10,11 @@ use crate::output::sheet::{self as output, Key, Sign};
 use crate::output::svg::{Stroke, color};
 use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::kind::{self, Kind};
-use crate::studies::results::Look;
+use crate::studies::results::Style;
 
 /// The kind by which a cell is coloured.
-pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
-    if let (true, CellResult::Ended(ending)) = (look.by_peak, result)
+pub(super) fn kind_of(result: &CellResult, style: Style) -> Kind {
+    if let (true, CellResult::Ended(ending)) = (style.by_peak, result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
             (ending.outcome, ending.peak.over_critical())
     {
@@ -25,22 +24,7 @@ pub(super) fn kind_of(result: &CellResult, look: Look) -> Kind {
         CellResult::Ended(ending) => ending.impacts_of_all_hinges(),
         _ => None,
     };
-    Kind::of(outcome(result), impacts)
-}
-
-pub(in crate::studies) fn label(axis: &Axis) -> &str {
-    match axis.quantity {
-        Quantity::Duration => "pulse duration (s)",
-        Quantity::Frequency => "pulse frequency (Hz)",
-        Quantity::MeanRadius => "mean radius R (m)",
-        Quantity::ThicknessRatio => "t / R",
-        Quantity::Embrace => "embrace angle (deg)",
-        Quantity::Restitution => "restitution coefficient r",
-        Quantity::Amplitude => "pulse amplitude (g)",
-        Quantity::Scale => "factor on the record",
-        Quantity::PeakG => "peak ground acceleration (g)",
-        Quantity::Other => &axis.key,
-    }
+    Kind::of(result.outcome_name(), impacts)
 }
 
 /// The scale of an axis and the edges of its cells, halfway between the values; the values are multiplied by `factor`.
@@ -90,18 +74,18 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
 }
 
 /// The picture of a map, and the positions of its cells.
-pub(in crate::studies) struct Drawn {
-    pub(in crate::studies) picture: String,
-    pub(in crate::studies) height_px: f64,
+pub(crate) struct Drawn {
+    pub(crate) picture: String,
+    pub(crate) height_px: f64,
     /// Edges of the columns from the left, and of the rows from below.
-    pub(in crate::studies) edges_px: [Vec<f64>; 2],
+    pub(crate) edges_px: [Vec<f64>; 2],
 }
 
 /// The cells of a map and its axes, whatever fills the cells.
-pub(in crate::studies) struct Sheet<'s> {
+pub(crate) struct Sheet<'s> {
     title: &'s str,
     map: &'s OverturningMap<'s>,
-    look: Look,
+    style: Style,
     scales: [Scale; 2],
     /// The edges of the columns and of the rows.
     edges: [Vec<f64>; 2],
@@ -109,26 +93,26 @@ pub(in crate::studies) struct Sheet<'s> {
 
 impl<'s> Sheet<'s> {
     /// A map with this title.
-    pub(in crate::studies) fn new(title: &'s str, map: &'s OverturningMap<'s>, look: Look) -> Self {
-        let factors = look.factors.unwrap_or([1.0; 2]);
-        let [x, y] = [0, 1].map(|i: usize| scale(map.axes()[i], factors[i], look.figure));
+    pub(crate) fn new(title: &'s str, map: &'s OverturningMap<'s>, style: Style) -> Self {
+        let factors = style.factors.unwrap_or([1.0; 2]);
+        let [x, y] = [0, 1].map(|i: usize| scale(map.axes[i], factors[i], style.figure));
         Self {
             title,
             map,
-            look,
+            style,
             scales: [x.0, y.0],
             edges: [x.1, y.1],
         }
     }
 
     /// A point of the map, whose axes may be dimensionless.
-    pub(in crate::studies) fn point(&self, x: f64, y: f64) -> (f64, f64) {
-        let factors = self.look.factors.unwrap_or([1.0; 2]);
+    pub(crate) fn point(&self, x: f64, y: f64) -> (f64, f64) {
+        let factors = self.style.factors.unwrap_or([1.0; 2]);
         (factors[0] * x, factors[1] * y)
     }
 
     /// Fills the cells by their kinds, which are in the palette, and draws marks over them.
-    pub(in crate::studies) fn draw(
+    pub(crate) fn draw(
         self,
         palette: &[Kind],
         kinds: &[Kind],
@@ -138,14 +122,14 @@ impl<'s> Sheet<'s> {
         let Self {
             title,
             map,
-            look,
+            style,
             scales: [x, y],
             ref edges,
         } = self;
-        let figure = look.figure;
-        let [x_label, y_label] = match look.factors {
+        let figure = style.figure;
+        let [x_label, y_label] = match style.factors {
             Some(_) => ["p t_p", "a / A_L"],
-            None => map.axes().map(label),
+            None => map.axes.map(|axis| described(axis).label),
         };
         let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
         // The stroke closes the seams between cells.
@@ -163,7 +147,7 @@ impl<'s> Sheet<'s> {
         chart.marks = marks;
         let mut sheet = output::Sheet::new(figure, title);
         if figure.has_title {
-            sheet.caption(11.0, &caption(map.scenario(), &map.axes()));
+            sheet.caption(11.0, &caption(map.scenario, &map.axes));
         }
         let plot = chart.add_to(&mut sheet);
         let drawn = sheet.drawn();
@@ -205,14 +189,19 @@ fn runs<'c>(
 
 /// Draws a map.
 #[must_use]
-pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> String {
-    drawn(title, map, rows, look).picture
+pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
+    drawn(title, map, rows, style).picture
 }
 
 /// The picture of a map, with the positions of its cells.
-pub(super) fn drawn(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], look: Look) -> Drawn {
-    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, look)).collect();
-    let sheet = Sheet::new(title, map, look);
+pub(super) fn drawn(
+    title: &str,
+    map: &OverturningMap<'_>,
+    rows: &[CellRow],
+    style: Style,
+) -> Drawn {
+    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, style)).collect();
+    let sheet = Sheet::new(title, map, style);
     let hatch = hatch(&sheet.edges, rows);
     sheet.draw(&Kind::ALL, &kinds, legend(map, &kinds), vec![hatch])
 }
@@ -220,7 +209,7 @@ pub(super) fn drawn(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], loo
 /// Hatches the cells whose outcome depends on how they are computed.
 fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
     let count = y_edges.len() - 1;
-    let doubtful = (0..).zip(rows).filter(|(_, row)| is_doubtful(row));
+    let doubtful = (0..).zip(rows).filter(|(_, row)| row.is_doubtful());
     let diagonals = doubtful.flat_map(|(index, _): (usize, _)| {
         let [column, line] = [index / count, index % count];
         let low = (x_edges[column], y_edges[line]);
@@ -240,7 +229,7 @@ const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 /// The legend of the colours, and of the hatching if cells are repeated.
 fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key> {
     let mut keys = kind::keys(kinds);
-    if map.is_repeated() {
+    if map.repeat {
         let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
         keys.push(Key::new("another outcome in a repetition", sign));
     }

@@ -83,7 +83,7 @@ pub struct Fragility {
     line: Line,
     /// Covariance of the line's level and slope under the assumption that all cases are independent.
     covariance: Matrix2<f64>,
-    /// The same, allowing for dependence within records.
+    /// Covariance of level and slope, allowing for dependence within records.
     clustered_covariance: Option<Matrix2<f64>>,
 }
 

@@ -1,10 +1,7 @@
 //! Incremental dynamic analysis: the response to each record as it gets stronger.
 
 use super::fragility::by_intensity;
-use super::picture::{intensity_label, intensity_scale};
-use super::told::Heading;
-use super::{CaseRow, SuiteFragility};
-use crate::dynamics::history::Outcome;
+use super::{CaseRow, Heading, SuiteFragility};
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
@@ -13,7 +10,7 @@ use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::statistics;
 
-/// Number of records whose curves have looks and names of their own.
+/// Number of records whose curves have strokes and names of their own.
 const NAMED: usize = CURVES.len();
 /// Surviving cases are drawn left of this fraction of the width, and overturned cases at its end.
 const SURVIVED: f64 = 0.94;
@@ -23,29 +20,30 @@ const SURVIVED: f64 = 0.94;
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let over_critical = over_critical(results);
-    let survived = results.cases.iter().filter(|case| !goes_over(case));
+    let survived = results
+        .cases
+        .iter()
+        .filter(|case| !case.overturned_itself());
     let least = if over_critical { 1.0 } else { 1e-3 };
     let largest = survived.filter_map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
-    let y = intensity_scale(heading, &results.levels, figure);
+    let (y_label, y) = heading.axis(results, figure);
     let label = if over_critical {
         "peak / critical rotation; arrows: overturned"
     } else {
         "peak rotation (rad); arrows: overturned"
     };
-    let y_axis = (intensity_label(results.measure), y);
-    let mut chart = Chart::new(480.0, (label, x), y_axis);
+    let mut chart = Chart::new(480.0, (label, x), (y_label, y));
     if over_critical {
         chart
             .marks
             .push(Mark::upright("critical", CRITICAL, 1.0, y));
     }
-    let records = records(results);
+    let records = results.shakes();
     let are_named = records.len() <= NAMED;
     for (cases, named) in records.iter().zip(CURVES.into_iter().cycle()) {
         let stroke = if are_named { named } else { MANY };
-        let mirrored = if cases[0].mirrored { " mirrored" } else { "" };
-        let name = format!("{}{mirrored}", cases[0].record);
+        let name = cases[0].record_in_words();
         if are_named {
             chart.keys.push(Key::line(&name, stroke));
         }
@@ -68,10 +66,9 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
             .push(Key::new("uncertain whether it overturns", sign));
     }
     let levels = fractiles(results);
-    let fractiles = FRACTILES.into_iter().enumerate();
-    let fractiles = fractiles.map(|(fractile, (name, stroke))| {
+    let fractiles = FRACTILES.into_iter().map(|(name, stroke, fractile)| {
         let known = levels.iter();
-        let points = known.filter_map(|level| Some((level.peaks[fractile]?, level.intensity)));
+        let points = known.filter_map(|level| Some((fractile(level)?, level.intensity)));
         Mark::curve(name, stroke, points)
     });
     let mut chart = chart.with_named(fractiles.collect());
@@ -90,10 +87,12 @@ fn of_record(
 ) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases are no points of the curve: it is interrupted there.
-    let points = cases.iter().filter_map(|case| match goes_over(case) {
-        true => Some((f64::NAN, level(case))),
-        false => Some((peak(case)?, level(case))),
-    });
+    let points = cases
+        .iter()
+        .filter_map(|case| match case.overturned_itself() {
+            true => Some((f64::NAN, level(case))),
+            false => Some((peak(case)?, level(case))),
+        });
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {
@@ -105,24 +104,33 @@ fn of_record(
             true => (certain, plain, 2.2),
             false => ("uncertain", UNCERTAIN, 4.0),
         };
-        if goes_over(case) {
-            let (name, look, _) = mark("overturned");
-            marks.push(Mark::new(name, look, Shape::Beyond(level(case))));
+        if case.overturned_itself() {
+            let (name, stroke, _) = mark("overturned");
+            marks.push(Mark::new(name, stroke, Shape::Beyond(level(case))));
         } else if let Some(peak) = peak(case) {
-            let (name, look, radius_px) = mark("survived");
+            let (name, stroke, radius_px) = mark("survived");
             let circle = Shape::Circle((peak, level(case)), radius_px);
-            marks.push(Mark::new(name, look, circle));
+            marks.push(Mark::new(name, stroke, circle));
         }
     }
     marks
 }
 
 const MANY: Stroke = Stroke::new(color::GREY, 0.9, "");
+/// A fractile of the peaks at a level.
+type FractileOf = fn(&Fractiles) -> Option<f64>;
+
 /// Fractiles of the peaks at each level, over all records.
-const FRACTILES: [(&str, Stroke); 3] = [
-    ("16 %", Stroke::new(color::BLACK, 1.8, "2 3")),
-    ("median", Stroke::new(color::BLACK, 2.6, "")),
-    ("84 %", Stroke::new(color::BLACK, 1.8, "8 4")),
+const FRACTILES: [(&str, Stroke, FractileOf); 3] = [
+    ("16 %", Stroke::new(color::BLACK, 1.8, "2 3"), |at| {
+        at.peak_16
+    }),
+    ("median", Stroke::new(color::BLACK, 2.6, ""), |at| {
+        at.peak_50
+    }),
+    ("84 %", Stroke::new(color::BLACK, 1.8, "8 4"), |at| {
+        at.peak_84
+    }),
 ];
 
 /// The peaks at a level, over all records that count.
@@ -134,9 +142,12 @@ pub struct Fractiles {
     pub cases: usize,
     /// Number of those that overturned.
     pub overturned: usize,
-    /// The fractiles of 16, 50 and 84 % of the peaks, over critical if that is known, otherwise in rad; what overturned is beyond
-    /// all, and `None` is a fractile there.
-    pub peaks: [Option<f64>; 3],
+    /// The 16 % fractile of the peaks, over critical if that is known, otherwise in rad; `None` if it is among overturned cases.
+    pub peak_16: Option<f64>,
+    /// The median.
+    pub peak_50: Option<f64>,
+    /// The 84 % fractile.
+    pub peak_84: Option<f64>,
 }
 
 /// How far a case went, if its history is complete.
@@ -149,17 +160,12 @@ fn peak(case: &CaseRow) -> Option<f64> {
 /// The fractiles of the peaks (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002), level by level.
 #[must_use]
 pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
-    let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
-    let cases: Vec<&CaseRow> = results.cases.iter().filter(counts).collect();
-    let levels = by_intensity(cases, |case| case.level(results.measure)).into_iter();
+    let levels = by_intensity(results.evidence(), |case| case.level(results.measure)).into_iter();
     levels
         .map(|(intensity, cases)| {
-            let beyond = |case: &&CaseRow| {
-                if goes_over(case) {
-                    Some(f64::INFINITY)
-                } else {
-                    peak(case)
-                }
+            let beyond = |case: &&CaseRow| match case.overturned_itself() {
+                true => Some(f64::INFINITY),
+                false => peak(case),
             };
             let mut peaks: Vec<f64> = cases.iter().filter_map(beyond).collect();
             peaks.sort_by(f64::total_cmp);
@@ -169,7 +175,9 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
                 intensity,
                 cases: peaks.len(),
                 overturned: peaks.iter().filter(|peak| peak.is_infinite()).count(),
-                peaks: [0.16, 0.5, 0.84].map(fractile),
+                peak_16: fractile(0.16),
+                peak_50: fractile(0.5),
+                peak_84: fractile(0.84),
             }
         })
         .collect()
@@ -184,28 +192,11 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
     known
         .filter_map(|case| {
             let peak_rad = case.result.as_ref().ok()?.peak_rotation_rad;
-            Some(if goes_over(case) {
-                f64::INFINITY
-            } else {
-                peak_rad
+            Some(match case.overturned_itself() {
+                true => f64::INFINITY,
+                false => peak_rad,
             })
         })
-        .collect()
-}
-
-/// Whether the history itself overturned, whether certain or not.
-fn goes_over(case: &CaseRow) -> bool {
-    let ending = case.result.as_ref();
-    ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
-}
-
-/// The cases of each record that count, weakest first.
-fn records(results: &SuiteFragility) -> Vec<Vec<&CaseRow>> {
-    let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
-    let cases: Vec<&CaseRow> = results.cases.iter().filter(counts).collect();
-    cases
-        .chunk_by(|a, b| (&a.record, a.mirrored) == (&b.record, b.mirrored))
-        .map(<[_]>::to_vec)
         .collect()
 }
 
@@ -221,12 +212,9 @@ pub struct PeakUpTo {
 /// The distribution of the peaks of all cases that count, ascending; what overturned is beyond all, so that the share ends below 1.
 #[must_use]
 pub fn peaks(results: &SuiteFragility) -> Vec<PeakUpTo> {
-    let counts = |case: &&CaseRow| results.mirrored_count || !case.mirrored;
-    let cases = results.cases.iter().filter(counts);
-    let cases: Vec<&CaseRow> = cases
-        .filter(|case| case.known_verdict().is_some())
-        .collect();
-    let survived = cases.iter().filter(|case| !goes_over(case));
+    let mut cases = results.evidence();
+    cases.retain(|case| case.known_verdict().is_some());
+    let survived = cases.iter().filter(|case| !case.overturned_itself());
     let mut peaks: Vec<f64> = survived.filter_map(|case| peak(case)).collect();
     peaks.sort_by(f64::total_cmp);
     let share = |(index, peak): (usize, f64)| PeakUpTo {

@@ -1,21 +1,23 @@
 //! A suite of records: a history for every record at every level, and the fragility that follows from them.
 
 pub mod fragility;
+mod heading;
 mod ida;
 mod picture;
+mod report;
 pub mod strength;
-mod told;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
+pub use self::heading::Heading;
+pub use self::report::FILES;
 use self::strength::Strength;
-pub use self::told::{FILES, Heading};
 use super::ending::{Ending, Verdict, check_finite};
 use super::remarks::warnings;
-use super::results::{Look, Reported, Results};
+use super::results::{Reported, Results, Style};
 use super::runner::Study;
 use super::threshold::survival::Survival;
 use crate::bisection::{Width, bisect};
@@ -75,6 +77,23 @@ impl CaseRow {
     pub fn known_verdict(&self) -> Option<Verdict> {
         self.verdict()
             .filter(|verdict| *verdict != Verdict::Incomplete)
+    }
+
+    /// Whether it belongs to the record of another case, mirrored or not as that.
+    fn has_shake_of(&self, other: &Self) -> bool {
+        (&self.record, self.mirrored) == (&other.record, other.mirrored)
+    }
+
+    /// The record in words.
+    pub(super) fn record_in_words(&self) -> String {
+        let mirrored = if self.mirrored { " mirrored" } else { "" };
+        format!("{}{mirrored}", self.record)
+    }
+
+    /// Whether its history overturned, whether certain or not.
+    fn overturned_itself(&self) -> bool {
+        let ending = self.result.as_ref();
+        ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
     }
 
     /// Whether it certainly survived, but had not come to rest.
@@ -148,19 +167,12 @@ impl Study for RecordSuite<'_> {
 
     const NAME: &'static str = "suite";
 
-    fn scenario(&self) -> String {
-        self.scenario.to_toml()
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.scenario)
     }
 
     fn warnings(&self) -> Vec<String> {
         warnings(self.scenario)
-    }
-
-    fn inputs(&self) -> Vec<String> {
-        let records = self.suite.records.iter();
-        records
-            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-            .collect()
     }
 
     fn count(&self) -> usize {
@@ -200,8 +212,10 @@ impl Study for RecordSuite<'_> {
 }
 
 impl Reported for RecordSuite<'_> {
-    fn results(&self, rows: Vec<CaseRow>, look: Look) -> Result<Results, OutputError> {
-        Heading::of(self.scenario, self.suite).tell(rows, look.figure)
+    fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
+        let heading = Heading::of_resolved(&self.scenario.to_toml(), warnings(self.scenario));
+        let heading = heading.expect("the scenario has a suite");
+        heading.report(rows, style.figure)
     }
 }
 
@@ -285,11 +299,22 @@ impl RecordSuite<'_> {
     }
 }
 
-/// The cases of one intensity. Failed cases are counted separately.
+/// The cases of one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FragilityRow {
     /// The intensity.
     pub intensity: f64,
+    /// The number of cases with each outcome.
+    pub counts: Counts,
+    /// The curve at this intensity, if there is one.
+    pub curve: Option<CurvePoint>,
+    /// The curve with uncertain cases counted as overturned.
+    pub curve_with_uncertain: Option<CurvePoint>,
+}
+
+/// The number of cases with each outcome.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Counts {
     /// Number of cases that have an outcome.
     pub cases: usize,
     /// Number of those that certainly overturned.
@@ -297,15 +322,32 @@ pub struct FragilityRow {
     /// Number of those for which overturning is uncertain.
     pub uncertain: usize,
     /// Number of those that had neither overturned nor come to rest.
+    #[serde(rename = "still_rocking_counted_as_not_overturned")]
     pub still_rocking: usize,
     /// Number of cases whose history ended too early for a verdict. They do not count.
+    #[serde(rename = "incomplete_left_out")]
     pub incomplete: usize,
-    /// Number of cases whose history could not be computed.
+    /// Number of cases whose history could not be computed. They do not count.
+    #[serde(rename = "failed_left_out")]
     pub failed: usize,
-    /// The curve at this intensity, if there is one.
-    pub curve: Option<CurvePoint>,
-    /// The same with uncertain cases counted as overturned.
-    pub curve_with_uncertain: Option<CurvePoint>,
+}
+
+impl Counts {
+    fn of(cases: &[&CaseRow]) -> Self {
+        let of = |verdict: Option<Verdict>| {
+            let cases = cases.iter();
+            cases.filter(|case| case.verdict() == verdict).count()
+        };
+        let (failed, incomplete) = (of(None), of(Some(Verdict::Incomplete)));
+        Self {
+            cases: cases.len() - failed - incomplete,
+            overturned: of(Some(Verdict::Overturns)),
+            uncertain: of(Some(Verdict::Uncertain)),
+            still_rocking: cases.iter().filter(|case| case.still_rocking()).count(),
+            incomplete,
+            failed,
+        }
+    }
 }
 
 /// The values of a fragility curve at an intensity.
@@ -335,27 +377,26 @@ impl FragilityRow {
     /// The fraction of the cases that certainly overturned.
     #[must_use]
     pub fn fraction(&self) -> Option<f64> {
-        self.part(self.overturned)
+        self.part(self.counts.overturned)
     }
 
     /// The fraction of the cases that overturned or may have.
     #[must_use]
     pub fn fraction_with_uncertain(&self) -> Option<f64> {
-        self.part(self.overturned + self.uncertain)
+        self.part(self.counts.overturned + self.counts.uncertain)
     }
 
     fn part(&self, count: usize) -> Option<f64> {
-        (self.cases > 0).then(|| count as f64 / self.cases as f64)
+        let cases = self.counts.cases;
+        (cases > 0).then(|| count as f64 / cases as f64)
     }
 }
 
 /// The response to a record as it gets stronger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordSurvival<'a> {
-    /// The file.
-    pub record: &'a str,
-    /// Whether it is mirrored.
-    pub mirrored: bool,
+    /// The first case of the record.
+    case: &'a CaseRow,
     /// The strengths that the structure survives.
     pub survival: Survival,
 }
@@ -405,23 +446,11 @@ impl SuiteFragility {
         let fit = fit_from(Verdict::Overturns);
         let fit_with_uncertain = fit_from(Verdict::Uncertain);
         let levels = by_intensity(evidence, |case| case.level(measure));
-        let levels = levels.into_iter().map(|(intensity, cases)| {
-            let of = |verdict: Option<Verdict>| {
-                let cases = cases.iter();
-                cases.filter(|case| case.verdict() == verdict).count()
-            };
-            let (failed, incomplete) = (of(None), of(Some(Verdict::Incomplete)));
-            FragilityRow {
-                intensity,
-                cases: cases.len() - failed - incomplete,
-                overturned: of(Some(Verdict::Overturns)),
-                uncertain: of(Some(Verdict::Uncertain)),
-                still_rocking: cases.iter().filter(|case| case.still_rocking()).count(),
-                incomplete,
-                failed,
-                curve: CurvePoint::of(&fit, intensity),
-                curve_with_uncertain: CurvePoint::of(&fit_with_uncertain, intensity),
-            }
+        let levels = levels.into_iter().map(|(intensity, cases)| FragilityRow {
+            intensity,
+            counts: Counts::of(&cases),
+            curve: CurvePoint::of(&fit, intensity),
+            curve_with_uncertain: CurvePoint::of(&fit_with_uncertain, intensity),
         });
         Self {
             measure,
@@ -436,43 +465,49 @@ impl SuiteFragility {
     /// Whether it is uncertain for any case that counts whether it overturned.
     #[must_use]
     pub fn has_uncertain(&self) -> bool {
-        self.levels.iter().any(|level| level.uncertain > 0)
+        self.levels.iter().any(|level| level.counts.uncertain > 0)
     }
 
     /// The intensities from which each record overturns, and at which it is survived again; mirrored records only if their results
     /// differ. The first intensity that overturns is found by bisection, the others are levels of the suite.
     #[must_use]
     pub fn survivals(&self) -> Vec<RecordSurvival<'_>> {
-        let shakes = self
-            .cases
-            .chunk_by(|a, b| a.record == b.record && a.mirrored == b.mirrored);
         let mut survivals: Vec<RecordSurvival<'_>> = Vec::new();
-        for cases in shakes {
-            let levels: Vec<_> = cases
+        for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
+            let levels = cases
                 .iter()
-                .map(|case| (case.level(self.measure), case.verdict()))
-                .collect();
-            let mut survival = Survival::of_levels(&levels);
-            let first = cases
-                .iter()
-                .position(|case| case.verdict() == Some(Verdict::Overturns));
-            survival.overturns_from = first.map(|first| cases[first].overturns_from(self.measure));
-            survival.at_most = first.is_some_and(|first| {
+                .map(|case| (case.level(self.measure), case.verdict()));
+            let mut survival = Survival::of_levels(&levels.collect::<Vec<_>>());
+            let overturns = |case: &CaseRow| case.verdict() == Some(Verdict::Overturns);
+            if let Some(first) = cases.iter().position(overturns) {
                 let is_known_below = first == 0 || cases[first - 1].known_verdict().is_some();
-                cases[first].edge_at_most || !is_known_below
-            });
-            let (record, mirrored) = (cases[0].record.as_str(), cases[0].mirrored);
-            let same =
-                |other: &RecordSurvival<'_>| other.record == record && other.survival == survival;
-            if !(mirrored && survivals.last().is_some_and(same)) {
-                survivals.push(RecordSurvival {
-                    record,
-                    mirrored,
-                    survival,
-                });
+                survival.overturns_from = Some(cases[first].overturns_from(self.measure));
+                survival.at_most = cases[first].edge_at_most || !is_known_below;
+            }
+            let case = &cases[0];
+            let same = |other: &RecordSurvival<'_>| {
+                other.case.record == case.record && other.survival == survival
+            };
+            if !(case.mirrored && survivals.last().is_some_and(same)) {
+                survivals.push(RecordSurvival { case, survival });
             }
         }
         survivals
+    }
+
+    /// The cases that count.
+    fn evidence(&self) -> Vec<&CaseRow> {
+        let cases = self.cases.iter();
+        cases
+            .filter(|case| self.mirrored_count || !case.mirrored)
+            .collect()
+    }
+
+    /// The cases of each record that count, weakest first.
+    fn shakes(&self) -> Vec<Vec<&CaseRow>> {
+        let evidence = self.evidence();
+        let shakes = evidence.chunk_by(|a, b| a.has_shake_of(b));
+        shakes.map(<[_]>::to_vec).collect()
     }
 
     /// Number of records.
@@ -481,13 +516,13 @@ impl SuiteFragility {
         names(&self.cases).len()
     }
 
-    /// Names of the records whose cases all certainly overturned, or all certainly survived, as `wanted`.
+    /// Names of the records whose cases all certainly overturned, or all certainly survived: cases with this `verdict`.
     #[must_use]
-    pub fn always(&self, wanted: Verdict) -> Vec<&str> {
+    pub fn always(&self, verdict: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
         for case in &self.cases {
-            if let Some(verdict) = case.known_verdict() {
-                *alike.entry(&case.record).or_insert(true) &= verdict == wanted;
+            if let Some(known) = case.known_verdict() {
+                *alike.entry(&case.record).or_insert(true) &= known == verdict;
             }
         }
         let alike = alike.into_iter().filter(|(_, alike)| *alike);

@@ -1,25 +1,27 @@
 //! The picture of the fragility under a suite of records.
 
 use super::fragility::Fragility;
-use super::told::{CurveInWords, Heading, curves_in_words, records_in_words};
-use super::{FragilityRow, SuiteFragility};
+use super::{Counts, Heading, SuiteFragility};
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
 use crate::output::sheet::{Key, Sheet, Sign};
 use crate::output::svg::{Stroke, color};
-use crate::scenario::{Measure, Spacing};
 
-/// Draws fractions, curve and band.
-#[must_use]
-pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
-    let x = intensity_scale(heading, &results.levels, figure);
+/// Draws fractions, curve and band, with the curve in words.
+pub(super) fn draw(
+    figure: Figure,
+    heading: &Heading,
+    results: &SuiteFragility,
+    words: &str,
+) -> String {
+    let (x_label, x) = heading.axis(results, figure);
     let curves = curves(results);
     let mut marks: Vec<Mark> = Vec::new();
-    for (fit, look) in &curves {
+    for (fit, style) in &curves {
         let intensities = along(&x, &curves).into_iter();
         let points = intensities.map(|x| (x, fit.probability(x)));
-        marks.push(Mark::curve(look.name, look.line, points));
+        marks.push(Mark::curve(style.name, style.line, points));
     }
     let circle = |name, at| Mark::new(name, POINT, Shape::Circle(at, 4.5));
     for level in &results.levels {
@@ -36,84 +38,57 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     }
     let mut sheet = Sheet::new(figure, heading.title());
     sheet.legend(LEFT_PX, keys(results, &curves));
-    let words = curves_in_words(results).into_iter();
-    let words = words.map(|CurveInWords { taken, curve }| match curve {
-        Ok(curve) => format!("{curve}{taken}"),
-        Err(reason) => format!("no curve: {reason}{taken}"),
-    });
-    sheet.caption(14.0, &words.collect::<Vec<_>>().join("; "));
+    sheet.caption(14.0, words);
     sheet.gap(10.0);
-    let x_axis = (intensity_label(results.measure), x);
     let y_axis = ("fraction that overturns", Scale::exactly(0.0, 1.0, 5));
     let chart = Chart {
         below: bands(&x, &curves),
         marks,
-        ..Chart::new(405.0, x_axis, y_axis)
+        ..Chart::new(405.0, (x_label, x), y_axis)
     };
     chart.add_plot(&mut sheet);
     sheet.gap(BELOW_PX);
     sheet.finish()
 }
 
-/// The look of a curve.
-struct Look {
+/// The style of a curve.
+struct CurveStyle {
     name: &'static str,
     label: &'static str,
     line: Stroke,
 }
 
-const CURVE: Look = Look {
+const CURVE: CurveStyle = CurveStyle {
     name: "fit",
     label: "lognormal curve",
     line: Stroke::new(color::BLUE, 2.0, ""),
 };
-const CURVE_WITH_UNCERTAIN: Look = Look {
+const CURVE_WITH_UNCERTAIN: CurveStyle = CurveStyle {
     name: "fit-with-uncertain",
     label: "with uncertain cases as overturned",
     line: Stroke::new(color::BLUE, 2.0, "7 4"),
 };
 
 /// The curves to draw: with uncertain cases counted as survived, and, if there are any, also as overturned.
-fn curves(results: &SuiteFragility) -> Vec<(&Fragility, Look)> {
+fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
     let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
     let with_uncertain = results.has_uncertain().then_some(with_uncertain);
     [(&results.fit, CURVE)]
         .into_iter()
         .chain(with_uncertain)
-        .filter_map(|(fit, look)| Some((fit.as_ref().ok()?, look)))
+        .filter_map(|(fit, style)| Some((fit.as_ref().ok()?, style)))
         .collect()
 }
 
-/// The measure of the intensities, in words.
-pub(super) const fn intensity_label(measure: Measure) -> &'static str {
-    match measure {
-        Measure::Scale => "scale factor",
-        Measure::PeakG => "peak ground acceleration (g)",
-    }
-}
-
-/// The scale from a little below the lowest level to a little above the highest.
-pub(super) fn intensity_scale(heading: &Heading, levels: &[FragilityRow], figure: Figure) -> Scale {
-    let ends = [levels.first(), levels.last()];
-    let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
-    match heading.spacing {
-        Spacing::Logarithmic => {
-            let margin = (high / low).powf(0.05);
-            Scale::logarithmic(low / margin, high * margin)
-        }
-        Spacing::Linear => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),
-    }
-}
-
 /// The legend.
-fn keys(results: &SuiteFragility, curves: &[(&Fragility, Look)]) -> Vec<Key> {
-    let cases: usize = results.levels.iter().map(|level| level.cases).sum();
-    let text = format!("fraction of {}, {cases} cases", records_in_words(results));
+fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Key> {
+    let cases = Counts::of(&results.evidence()).cases;
+    let text = format!("fraction of {}, {cases} cases", results.records_in_words());
     let mut keys = vec![Key::new(text, Sign::Circle(4.5, POINT))];
     keys.extend(
         curves
             .iter()
-            .map(|(_, look)| Key::line(look.label, look.line)),
+            .map(|(_, style)| Key::line(style.label, style.line)),
     );
     if curves.len() > 1 {
         keys.push(Key::new("between these", Sign::Band(BETWEEN, 1.0)));
@@ -134,7 +109,7 @@ const POINTS: u32 = 200;
 const RISES: f64 = 4.0;
 
 /// Positive values along an axis: evenly, and closer together where a curve rises, however steep it is.
-fn along(scale: &Scale, curves: &[(&Fragility, Look)]) -> Vec<f64> {
+fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     let parts = (0..=POINTS).map(|i| f64::from(i) / f64::from(POINTS));
     let even = parts.clone().map(|part| scale.at(part));
     let rising = curves.iter().flat_map(|(fit, _)| {
@@ -149,7 +124,7 @@ fn along(scale: &Scale, curves: &[(&Fragility, Look)]) -> Vec<f64> {
 }
 
 /// The joint 95 % band of the curves, and the area between them.
-fn bands(x: &Scale, curves: &[(&Fragility, Look)]) -> Vec<Mark> {
+fn bands(x: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<Mark> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold([1.0, 0.0], |[low, high]: [f64; 2], value| {
             [low.min(value), high.max(value)]

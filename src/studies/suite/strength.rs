@@ -55,9 +55,7 @@ pub struct Capacity<'a> {
     pub scale: Option<f64>,
     /// Whether the capacity may be less: the lowest level overturns already, or the level below has no complete history.
     pub at_most: bool,
-    /// The intensity as the suite measures it, and in all [`MEASURES`], at that factor.
-    pub level: Option<f64>,
-    /// In the order of [`MEASURES`].
+    /// The intensity at that factor, in the order of [`MEASURES`].
     pub in_measures: [Option<f64>; 4],
 }
 
@@ -69,11 +67,14 @@ pub const MEASURES: [(&str, &str, f64); 4] = [
     ("arias_m_s", "Arias intensity", 2.0),
 ];
 
-/// How well a measure tells what overturns.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Efficiency of a measure: how little the intensities scatter that overturn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Efficiency {
-    /// Which of the [`MEASURES`].
-    pub measure: usize,
+    /// Name of the measure.
+    pub measure: &'static str,
+    /// The measure in words.
+    #[serde(skip)]
+    pub words: &'static str,
     /// Number of capacities.
     pub capacities: usize,
     /// Their geometric mean.
@@ -92,12 +93,8 @@ impl SuiteFragility {
     /// The capacity under each record, mirrored where that counts.
     #[must_use]
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
-        let counts = |case: &&CaseRow| self.mirrored_count || !case.mirrored;
-        let cases: Vec<&CaseRow> = self.cases.iter().filter(counts).collect();
-        cases
-            .chunk_by(|a, b| (&a.record, a.mirrored) == (&b.record, b.mirrored))
-            .map(|levels| self.capacity(levels))
-            .collect()
+        let shakes = self.shakes().into_iter();
+        shakes.map(|levels| self.capacity(&levels)).collect()
     }
 
     fn capacity<'a>(&self, levels: &[&'a CaseRow]) -> Capacity<'a> {
@@ -122,7 +119,6 @@ impl SuiteFragility {
                     .map(|below| levels[below].known_verdict());
                 below.flatten().is_none() || own.edge_at_most
             }),
-            level,
             in_measures: [
                 peak_g,
                 of(|strength| strength.velocity_m_s, 1),
@@ -190,8 +186,10 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
         let best = drawn
             .iter()
             .filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
+        let (name, words, _) = MEASURES[measure];
         Some(Efficiency {
-            measure,
+            measure: name,
+            words,
             capacities: scatter.capacities,
             median: scatter.median,
             dispersion: scatter.dispersion,

@@ -12,8 +12,11 @@ pub const EDGE_WIDTH: f64 = 1e-4;
 /// less if that reaches the last.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factors {
+    /// The first factor.
     from: f64,
+    /// The last factor.
     to: f64,
+    /// The relative step from one factor to the next.
     stride: f64,
 }
 

@@ -4,7 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
+use crate::output::table::{Column, column};
 use crate::scenario::Scenario;
+use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, Verdict};
 
 /// Where a structure first overturns as its ground motion gets stronger.
@@ -27,9 +29,7 @@ impl FirstEdge {
     /// # Errors
     /// Explains why there is none.
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
-        let model = scenario
-            .model()
-            .map_err(|error| NoAnswer::Invalid(error.to_string()))?;
+        let model = scenario.model().map_err(NoAnswer::invalid)?;
         let request = scenario.request_from_rest();
         let verdict = |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
@@ -82,6 +82,19 @@ impl FirstEdge {
             }
         }
         Ok(edge)
+    }
+
+    /// The columns of an edge in the table of rows that have one; the factor has another name in each table.
+    pub(in crate::studies) fn columns<'a, R: 'a>(
+        factor: &'static str,
+        of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
+    ) -> [Column<'a, R>; 4] {
+        [
+            column(factor, move |row| of(row)?.factor),
+            column("tried_to", move |row| Some(of(row)?.tried_to)),
+            column("uncertain_from", move |row| of(row)?.uncertain_from),
+            column("at_most", move |row| Some(yes(of(row)?.at_most))),
+        ]
     }
 
     /// The factor; infinite if none overturns.

@@ -10,21 +10,23 @@ mod digits;
 mod factors;
 pub mod first_edge;
 pub mod picture;
+mod report;
 pub mod survival;
-mod told;
 mod varied;
 
 pub(super) use digits::{rounded, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
-pub(super) use told::peak_g;
-pub use told::{FILES, check, outcome, tell};
+pub use report::FILES;
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
 
+use serde::Serialize;
 use thiserror::Error;
 
+use super::ending::columns::FAILED;
 use super::ending::{Ending, Verdict, answered};
+use super::kind::GROUND_FALLS;
 use super::results::{Results, StudyError};
 use super::runner::{Progress, Runner};
 use crate::bisection::{Width, next_middles, try_bisect};
@@ -100,6 +102,16 @@ impl FactorSample {
         }
     }
 
+    /// The outcome, or its replacement if there is no history.
+    #[must_use]
+    pub const fn outcome_name(&self) -> &'static str {
+        match &self.result {
+            Ok(ending) => ending.outcome_name(),
+            Err(NoHistory::GroundFalls(_)) => GROUND_FALLS,
+            Err(NoHistory::Failed(_)) => FAILED,
+        }
+    }
+
     /// Whether the structure overturns, as far as this is known; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
@@ -120,7 +132,7 @@ named! {
 }
 
 /// A range of factors with one verdict. The histories at both ends were simulated, and have that verdict.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FactorRange {
     /// Its least factor.
     pub from: f64,
@@ -264,6 +276,29 @@ pub fn thresholds(
         .collect())
 }
 
+/// Checks that a scenario has a ground motion to scale, and starts from rest.
+///
+/// # Errors
+/// Explains what to change.
+pub fn check(scenario: &Scenario) -> Result<(), String> {
+    scenario.check_from_rest("threshold")?;
+    if scenario.ground().is_some() {
+        return Ok(());
+    }
+    Err(
+        "a threshold needs a ground motion: give a table such as\n\n\
+         [ground.one_cosine]\n\
+         amplitude_g = 0.3\n\
+         duration_s = 0.5"
+            .to_owned(),
+    )
+}
+
+/// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+fn peak_g(scenario: &Scenario) -> f64 {
+    scenario.ground_motion().peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
+}
+
 /// The results for scenarios that differ only in their models of motion, with what each threshold depends on.
 ///
 /// # Errors
@@ -298,7 +333,7 @@ pub fn results(
             &mut *watch,
         )?;
     }
-    Ok(tell(scenarios, factors, &found, figure)?)
+    Ok(report::report(scenarios, factors, &found, figure)?)
 }
 
 /// The models and the ground motion.

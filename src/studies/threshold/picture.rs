@@ -3,7 +3,6 @@
 use nalgebra::Vector2;
 
 use super::digits::rounded;
-use super::told::outcome;
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
@@ -37,11 +36,10 @@ pub fn draw(
     factors: &Factors,
     thresholds: &[Threshold],
 ) -> String {
-    let kinds: Vec<Kind> = thresholds
-        .iter()
-        .flat_map(|threshold| threshold.samples.iter().map(kind_of))
-        .collect();
-    let names: Vec<String> = thresholds.iter().map(name).collect();
+    let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+    let kinds: Vec<Kind> = samples.map(kind_of).collect();
+    let names = thresholds.iter().map(|one| one.model.replace('_', " "));
+    let names: Vec<String> = names.collect();
     let over_critical = are_over_critical(thresholds);
     let peak = |sample: &FactorSample| match over_critical {
         true => sample.result.as_ref().ok()?.peak.over_critical(),
@@ -78,11 +76,9 @@ pub fn draw(
         });
     }
     sheet.gap(16.0);
-    let mut marks = Vec::new();
-    if over_critical {
-        let ends = [first, last].map(|factor| (factor, 1.0));
-        marks.push(Mark::curve("", CRITICAL, ends));
-    }
+    let ends = [first, last].map(|factor| (factor, 1.0));
+    let critical = over_critical.then(|| Mark::curve("", CRITICAL, ends));
+    let mut marks = Vec::from_iter(critical);
     for (threshold, stroke) in thresholds.iter().zip(curves()) {
         let faint = Stroke::new(stroke.color, 0.5, "2 3");
         marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
@@ -92,11 +88,8 @@ pub fn draw(
             let peak = peak(sample).filter(|_| !overturns);
             (sample.factor, peak.unwrap_or(f64::NAN))
         });
-        marks.push(Mark::curve(
-            format!("{} peak", threshold.model),
-            stroke,
-            points,
-        ));
+        let name = format!("{} peak", threshold.model);
+        marks.push(Mark::curve(name, stroke, points));
     }
     let label = format!("factor on the ground motion (1: {} g)", rounded(peak_g));
     let chart = Chart {
@@ -105,12 +98,8 @@ pub fn draw(
     };
     chart.add_plot(&mut sheet);
     sheet.gap(BELOW_PX);
-    let across = Axes {
-        frame: figure.right_of(LEFT_PX, Frame::default()),
-        x,
-        y,
-    };
-    let narrow = narrow(thresholds, &names, &across);
+    let frame = figure.right_of(LEFT_PX, Frame::default());
+    let narrow = narrow(thresholds, &names, &Axes { frame, x, y });
     if !narrow.is_empty() {
         sheet.caption(8.0, &narrow);
         sheet.gap(8.0);
@@ -139,12 +128,7 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     let mut listed = Vec::new();
     for (threshold, name) in thresholds.iter().zip(names) {
         for (verdict, range) in &threshold.ranges {
-            let what = match verdict {
-                Verdict::Overturns => "overturns",
-                Verdict::Uncertain => "uncertain",
-                Verdict::Incomplete => "incomplete",
-                Verdict::Survives => "survives",
-            };
+            let what = verdict.name();
             if place(range.to) - place(range.from) < NARROW_PX {
                 let [from, to] = [range.from, range.to].map(rounded);
                 listed.push(match names {
@@ -165,15 +149,10 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     }
 }
 
-/// The name of its model in words.
-fn name(threshold: &Threshold) -> String {
-    threshold.model.replace('_', " ")
-}
-
 fn kind_of(sample: &FactorSample) -> Kind {
     let ending = sample.result.as_ref().ok();
     let impacts = ending.and_then(|ending| ending.impacts_of_all_hinges());
-    Kind::of(outcome(sample), impacts)
+    Kind::of(sample.outcome_name(), impacts)
 }
 
 /// Whether all largest rotations are known over the critical one; otherwise they are drawn in radians.
@@ -205,11 +184,10 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
     let ranges = threshold.ranges.iter();
     let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
-    let ends = ranges.flat_map(|(_, range)| {
-        let ends = [(range.from, range.from_end), (range.to, range.to_end)];
-        let ends = ends.into_iter().filter(|(_, end)| *end == RangeEnd::Edge);
-        ends.map(|(factor, _)| factor)
-    });
+    let ends =
+        ranges.flat_map(|(_, range)| [(range.from, range.from_end), (range.to, range.to_end)]);
+    let ends = ends.filter(|(_, end)| *end == RangeEnd::Edge);
+    let ends = ends.map(|(factor, _)| factor);
     // Where a band meets an uncertain range, one of the two factors that enclose the edge is enough.
     ends.filter(move |factor| {
         let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();

@@ -1,4 +1,4 @@
-//! What a threshold depends on: the thresholds of the same structure with other properties that are as likely.
+//! Thresholds of a structure with other properties that are as likely.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::studies::runner::{Progress, Runner, RunnerError};
 /// The threshold of a variation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariedThreshold {
-    /// What differs, in words that follow "with".
+    /// The difference, in words that follow "with".
     pub name: String,
     /// The lowest factor that overturns it, found as that of the structure itself: from the same sampled factors. `None` if none of them
     /// does, and the first of them if it overturns already. Or why it is unknown.

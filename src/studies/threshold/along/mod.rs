@@ -74,7 +74,7 @@ impl FromStr for KeyRange {
     }
 }
 
-/// What is computed for each value.
+/// The values of a key, and the search for each of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlongOptions {
     /// The values.
@@ -141,17 +141,53 @@ impl<'a> Along<'a> {
     }
 }
 
+/// The threshold for a value, as in the table and in the summary.
+#[derive(Serialize)]
+struct Point {
+    /// The value of the key.
+    value: f64,
+    /// The least factor that certainly overturns the structure; absent if none does.
+    overturns_from_factor: Option<f64>,
+    /// The peak ground acceleration at that factor.
+    overturns_from_g: Option<f64>,
+    /// Whether that is the least factor tried, so that a smaller one may overturn as well.
+    at_most: bool,
+    /// The least factor below that for which overturning is uncertain.
+    uncertain_from_factor: Option<f64>,
+    /// The least factor that overturns before any impact, if it was searched for and found.
+    no_impact_factor: Option<f64>,
+    /// The peak ground acceleration at that factor.
+    no_impact_g: Option<f64>,
+    /// Why the threshold is unknown.
+    why_not: Option<&'static str>,
+}
+
+impl Point {
+    fn of(row: &AlongRow) -> Self {
+        let in_g = |factor: Option<f64>| Some(factor? * row.peak_g?);
+        let edge = row.edge.as_ref().ok();
+        let overturns_from_factor = edge.and_then(|edge| edge.factor);
+        let no_impact_factor = row.no_impact.as_ref().and_then(|found| found.clone().ok()?);
+        Self {
+            value: row.value,
+            overturns_from_factor,
+            overturns_from_g: in_g(overturns_from_factor),
+            at_most: edge.is_some_and(|edge| edge.at_most),
+            uncertain_from_factor: edge.and_then(|edge| edge.uncertain_from),
+            no_impact_factor,
+            no_impact_g: in_g(no_impact_factor),
+            why_not: row.edge.as_ref().err().map(NoAnswer::name),
+        }
+    }
+}
+
 impl Study for Along<'_> {
     type Row = AlongRow;
 
     const NAME: &'static str = "threshold_along";
 
-    fn scenario(&self) -> String {
-        self.scenario.to_toml()
-    }
-
-    fn inputs(&self) -> Vec<String> {
-        self.scenario.record_checksums()
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.scenario)
     }
 
     fn options(&self) -> serde_json::Value {
@@ -173,7 +209,7 @@ impl Study for Along<'_> {
             },
             Ok(scenario) => AlongRow {
                 value,
-                peak_g: Some(super::peak_g(&scenario, scenario.ground_motion())),
+                peak_g: Some(super::peak_g(&scenario)),
                 edge: FirstEdge::of(&scenario, &self.options.factors),
                 no_impact: self
                     .options

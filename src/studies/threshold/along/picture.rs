@@ -1,6 +1,6 @@
 //! The picture of thresholds along a range.
 
-use super::report::Point;
+use super::Point;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::svg::CURVES;

@@ -1,60 +1,54 @@
-//! Reports an overturning map: its table and its words.
+//! The report of an overturning map: its table and its words.
 
 use super::{CellResult, CellRow, OverturningMap, page, picture};
 use crate::argument::plain;
 use crate::dynamics::history::Outcome;
+use crate::output::OutputError;
 use crate::output::table::{Column, column, csv};
-use crate::output::{OutputError, pretty};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED, number};
-use crate::studies::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
-use crate::studies::remarks::{self, Remark, Remarks, counts, in_words};
-use crate::studies::results::{Look, Reported, Results};
+use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, counts, in_words};
+use crate::studies::results::{Reported, Results, Style};
 use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
 
+/// Names of the files, the seal last.
+pub const FILES: [&str; 4] = ["map.svg", "map.html", SUMMARY, "map.csv"];
+
 impl Reported for OverturningMap<'_> {
-    fn results(&self, cells: Vec<CellRow>, look: Look) -> Result<Results, OutputError> {
-        let cells = &cells[..];
-        let scenario = self.scenario();
+    fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
+        let scenario = self.scenario;
         let title = scenario.title().unwrap_or("Overturning map");
-        let remarks = remarks(self, cells);
-        let summary = remarks::summary(scenario, cells.len(), &remarks);
-        let picture = picture::draw(title, self, cells, look);
-        let page = page::page(title, self, cells, look);
-        let files = vec![
-            ("map.svg", picture.into_bytes()),
-            ("map.html", page.into_bytes()),
-            (SUMMARY, pretty(&summary).into_bytes()),
-            ("map.csv", csv(self.columns(), cells)?),
+        let remarks = remarks(self, &cells);
+        let incomplete = remarks.incomplete_in_words();
+        let summary = CaseSummary::new(scenario, cells.len(), &remarks, incomplete, ());
+        let others = [
+            picture::draw(title, self, &cells, style).into_bytes(),
+            page::page(title, self, &cells, style).into_bytes(),
+            csv(self.columns(), &cells)?,
         ];
-        Ok(Results {
-            files,
-            words: words(self, cells, &remarks),
-            summary,
-            ..Results::default()
-        })
+        Results::new(&FILES, &summary, words(self, &cells, &remarks), others)
     }
 }
 
 impl OverturningMap<'_> {
     /// The columns for one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
-        let [x, y] = self.axes().map(|axis| axis.key.as_str());
+        let [x, y] = self.axes.map(|axis| axis.key.as_str());
         let mut all = vec![
             column(x, |row: &CellRow| number(row.x)),
             column(y, |row: &CellRow| number(row.y)),
         ];
         all.extend(columns::columns(
-            self.has_free_hinges(),
+            self.scenario.motion().hinges().has_joints(),
             |row: &CellRow| match &row.result {
                 CellResult::Ended(ending) => Ok(ending),
-                other => Err(outcome(other)),
+                other => Err(other.outcome_name()),
             },
         ));
-        if self.is_repeated() {
-            all.push(column(OUTCOMES, |row: &CellRow| {
+        if self.repeat {
+            all.push(column("outcomes", |row: &CellRow| {
                 let outcomes = row.outcomes.as_ref();
                 outcomes.map(|outcomes| match outcomes {
                     Ok(count) => count.to_string(),
@@ -66,32 +60,9 @@ impl OverturningMap<'_> {
     }
 }
 
-/// The outcome of a cell, as in the table.
-#[must_use]
-pub const fn outcome(result: &CellResult) -> &'static str {
-    match result {
-        CellResult::Ended(ending) => ending.outcome_name(),
-        CellResult::CannotStand => CANNOT_STAND,
-        CellResult::NotFourLinks => NOT_FOUR_LINKS,
-        CellResult::Failed(_) => FAILED,
-    }
-}
-
-/// The column with the number of outcomes of a cell and its repetitions.
-const OUTCOMES: &str = "outcomes";
-
-/// How many cells have an outcome that depends on how they are computed.
-fn doubtful(rows: &[CellRow]) -> usize {
-    rows.iter().filter(|row| is_doubtful(row)).count()
-}
-
-pub(super) fn is_doubtful(row: &CellRow) -> bool {
-    matches!(row.outcomes, Some(Ok(2..)))
-}
-
 /// The remarks on the cells: those that failed, those with a failed repetition, and those that are uncertain.
 fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
-    let [x_name, y_name] = map.axes().map(|axis| axis.key.as_str());
+    let [x_name, y_name] = map.axes.map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
     for cell in cells {
         let case = || format!("{x_name} {}, {y_name} {}", plain(cell.x), plain(cell.y));
@@ -122,20 +93,20 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
     };
     let counts = counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];
-    if map.is_repeated() {
+    if map.repeat {
         lines.push(format!(
             "{} of them have another outcome in a repetition, if only rest instead of still rocking",
-            doubtful(cells)
+            cells.iter().filter(|cell| cell.is_doubtful()).count()
         ));
     }
-    lines.extend(remarks::rough_guide(map.scenario()).map(str::to_owned));
+    lines.extend(remarks::rough_guide(map.scenario).map(str::to_owned));
     lines.extend(remarks.incomplete_in_words());
     lines.extend(remarks.uncertain_in_words(SUMMARY));
     lines.extend(remarks.failed_in_words(SUMMARY));
     lines.join("\n  ")
 }
 
-impl Look {
+impl Style {
     /// The factors that turn durations into p t_p, and amplitudes into a / A_L.
     ///
     /// # Errors

@@ -1,0 +1,221 @@
+//! The report of an ensemble: files, JSON and words of any question.
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::influence::{self, Influence, percent};
+use super::{NoAnswer, Samples};
+use crate::output::table::{Cell, Column, column, csv, several};
+use crate::output::{Figure, OutputError};
+use crate::scenario::Uncertain;
+use crate::studies::remarks::warnings;
+use crate::studies::results::Results;
+use crate::studies::statistics::Share;
+
+/// The findings about the answers to a question.
+pub struct Findings<'a, A, D> {
+    /// The first sentence, before the influence of the uncertain numbers; `None` if no sample has an answer.
+    pub(super) first: Option<String>,
+    /// The lines after that.
+    pub(super) lines: Vec<String>,
+    /// The influence of the uncertain numbers. The first sentence has the first that is known.
+    pub(super) influences: Vec<Influence<'a>>,
+    /// How many histories have no verdict, and what to do.
+    pub(super) no_verdict: Option<String>,
+    /// The part of the summary that only this question has.
+    pub(super) details: D,
+    /// Pictures and pages.
+    pub(super) pictures: Vec<String>,
+    /// Tables before that of the samples.
+    pub(super) tables: Vec<Vec<u8>>,
+    /// The columns of the table of samples; without columns there is no such table.
+    pub(super) columns: Vec<Column<'a, Line<'a, A>>>,
+    /// As in [`Results`].
+    pub(super) peaks: Vec<f64>,
+}
+
+/// A row of the table of samples: its number, from 1, or 0 for the scenario itself; its values; and its answer.
+pub(super) struct Line<'a, A> {
+    pub(super) number: usize,
+    values: Vec<Option<f64>>,
+    pub(super) answer: &'a Result<A, NoAnswer>,
+}
+
+/// The scenario itself, then all samples.
+pub(super) fn lines<'a, A>(samples: &Samples<'a, A>) -> Vec<Line<'a, A>> {
+    let own = Line {
+        number: 0,
+        values: samples.uncertain.keys.iter().map(|key| key.own).collect(),
+        answer: samples.own,
+    };
+    let rows = samples.rows.iter().zip(1..).map(|(row, number)| Line {
+        number,
+        values: row.values.iter().copied().map(Some).collect(),
+        answer: &row.answer,
+    });
+    [own].into_iter().chain(rows).collect()
+}
+
+/// The columns with the numbers of the samples and their values.
+fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A>>> {
+    let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
+    vec![
+        column("sample", |line: &Line<'_, A>| line.number),
+        several(names, |line: &Line<'_, A>, cells: &mut Vec<Cell<'_>>| {
+            cells.extend(line.values.iter().map(|value| Cell::from(*value)));
+        }),
+    ]
+}
+
+/// A column of the answers; it is empty for samples without one.
+pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
+    name: &'static str,
+    cell: impl Fn(&A) -> C + 'a,
+) -> Column<'a, Line<'a, A>> {
+    column(name, move |line: &Line<'_, A>| {
+        line.answer.as_ref().ok().map(&cell)
+    })
+}
+
+/// The column with the reasons of samples without an answer.
+pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
+    column("why_not", |line: &Line<'_, A>| {
+        line.answer.as_ref().err().map(NoAnswer::name)
+    })
+}
+
+/// The uncertainty that samples do not cover.
+const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
+
+/// Summary of the samples of a scenario.
+#[derive(Serialize)]
+struct SampleSummary<'a, D> {
+    /// Name of the program.
+    program: &'static str,
+    /// Its version.
+    version: &'static str,
+    /// The scenario with all defaults.
+    scenario: Value,
+    /// Unlikely numbers, limits of the model, histories without a verdict.
+    warnings: Vec<String>,
+    /// Number of samples.
+    samples: usize,
+    /// Number of samples with an answer.
+    answered: usize,
+    /// Number of samples whose values make no valid structure.
+    invalid: usize,
+    /// Number of samples that could not be computed.
+    failed: usize,
+    /// Number of samples that ended too early for a verdict.
+    incomplete: usize,
+    /// The samples without an answer, and the reasons.
+    without_answer: Vec<Value>,
+    /// The uncertainty that samples do not cover.
+    not_considered: &'static str,
+    #[serde(flatten)]
+    details: &'a D,
+    /// Influence of each uncertain number, for each answer.
+    what_matters: Map<String, Value>,
+}
+
+/// Quantiles of the answers; `None` where they are not known.
+#[derive(Serialize)]
+pub(super) struct Band {
+    quantile_05: Option<f64>,
+    median: Option<f64>,
+    quantile_95: Option<f64>,
+}
+
+impl From<Option<[f64; 3]>> for Band {
+    fn from(band: Option<[f64; 3]>) -> Self {
+        let finite = |which: usize| Some(band?[which]).filter(|value| value.is_finite());
+        Self {
+            quantile_05: finite(0),
+            median: finite(1),
+            quantile_95: finite(2),
+        }
+    }
+}
+
+impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
+    pub(super) fn results(
+        self,
+        samples: &Samples<'a, A>,
+        names: &[&'static str],
+        figure: Figure,
+    ) -> Result<Results, OutputError> {
+        let without = |name: &str| {
+            let reasons = samples.without().filter(|(_, why)| why.name() == name);
+            reasons.map(|(_, why)| why).collect::<Vec<_>>()
+        };
+        let [invalid, failed] = ["invalid", "failed"].map(without);
+        let reason = |(sample, why): (usize, &NoAnswer)| json!({ "sample": sample, "why": why.name(), "reason": why.reason() });
+        let influences = self.influences.iter();
+        let summary = SampleSummary {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            scenario: samples.scenario.to_json(),
+            warnings: [warnings(samples.scenario), Vec::from_iter(self.no_verdict)].concat(),
+            samples: samples.rows.len(),
+            answered: samples.answers().count(),
+            invalid: invalid.len(),
+            failed: failed.len(),
+            incomplete: without("incomplete").len(),
+            without_answer: samples.without().map(reason).collect(),
+            not_considered: NOT_CONSIDERED,
+            details: &self.details,
+            what_matters: influences
+                .map(|influence| (influence.name.to_owned(), json!(influence.numbers)))
+                .collect(),
+        };
+        let mut influences = self.influences.iter();
+        let known = influences
+            .clone()
+            .find(|influence| influence.numbers.is_some());
+        let decides = known
+            .or(influences.next_back())
+            .map_or(String::new(), Influence::in_words);
+        let mut words = vec![
+            self.first
+                .map_or("no sample has an answer".to_owned(), |first| {
+                    format!("{first};\n    {decides};\n    {NOT_CONSIDERED}")
+                }),
+        ];
+        words.extend(self.lines);
+        for (reasons, what) in [
+            (invalid, "make no structure that stands"),
+            (failed, "could not be computed"),
+        ] {
+            words.extend(reasons.first().map(|first| {
+                format!(
+                    "{} of {} samples {what}, and are left out of the shares; the first: {}",
+                    reasons.len(),
+                    samples.rows.len(),
+                    first.reason()
+                )
+            }));
+        }
+        words.extend(samples.no_verdict());
+        let title = samples.title("Influence of uncertain data");
+        let mut contents: Vec<Vec<u8>> =
+            self.pictures.into_iter().map(String::into_bytes).collect();
+        contents.push(influence::draw(figure, title, &self.influences).into_bytes());
+        contents.extend(self.tables);
+        if !self.columns.is_empty() {
+            let mut columns = sample_columns(samples.uncertain);
+            columns.extend(self.columns);
+            contents.push(csv(columns, &lines(samples))?);
+        }
+        Ok(Results {
+            peaks: self.peaks,
+            ..Results::new(names, &summary, words.join("\n  "), contents)?
+        })
+    }
+}
+
+/// A share with its interval.
+pub(super) fn share_in_words(share: &Share) -> String {
+    let [part, low, high] = [share.share, share.low, share.high].map(percent);
+    let Share { count, of, .. } = share;
+    format!("{part} (95 %: {low} to {high}), {count} of {of} samples")
+}

@@ -1,0 +1,123 @@
+//! The answers of all samples side by side.
+
+use serde::{Deserialize, Serialize};
+
+use super::NoAnswer;
+use super::influence::Influence;
+use super::matters::{Matters, total_indices, what_matters};
+use crate::scenario::{Scenario, Uncertain};
+use crate::studies::remarks::no_verdict;
+use crate::studies::statistics::{Share, ranks};
+
+/// A sample and its answer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SampleRow<A> {
+    /// Its values, in the order of the keys; empty for the scenario itself.
+    pub values: Vec<f64>,
+    /// Its answer.
+    pub answer: Result<A, NoAnswer>,
+}
+
+/// The rows of an ensemble, with that of the scenario itself set apart.
+pub struct Samples<'a, A> {
+    /// The scenario.
+    pub(crate) scenario: &'a Scenario,
+    pub(crate) uncertain: &'a Uncertain,
+    /// The answer of the scenario itself.
+    pub(crate) own: &'a Result<A, NoAnswer>,
+    /// The samples, in their order.
+    pub(crate) rows: &'a [SampleRow<A>],
+    /// Samples in which one number has another value, as [`Uncertain::cases`] describes; empty without total indices.
+    moved: &'a [SampleRow<A>],
+}
+
+impl<'a, A> Samples<'a, A> {
+    pub(crate) fn new(
+        scenario: &'a Scenario,
+        uncertain: &'a Uncertain,
+        rows: &'a [SampleRow<A>],
+    ) -> Self {
+        let (own, samples) = rows.split_first().expect("the scenario itself is a case");
+        let (rows, moved) = samples.split_at(uncertain.samples.min(samples.len()));
+        Self {
+            scenario,
+            uncertain,
+            own: &own.answer,
+            rows,
+            moved,
+        }
+    }
+
+    /// The title of the scenario, or another one.
+    pub(crate) fn title(&self, otherwise: &'a str) -> &'a str {
+        self.scenario.title().unwrap_or(otherwise)
+    }
+
+    /// The answers that there are.
+    pub(crate) fn answers(&self) -> impl Iterator<Item = &'a A> + Clone + use<'a, A> {
+        self.rows.iter().filter_map(|row| row.answer.as_ref().ok())
+    }
+
+    /// The samples without an answer: their numbers, from 1, and the reasons.
+    pub(super) fn without(&self) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
+        let rows = (1..).zip(self.rows);
+        rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
+    }
+
+    /// The share of the answers that fulfil a condition; `None` without answers.
+    pub(crate) fn share(&self, condition: impl Fn(&A) -> bool) -> Option<Share> {
+        let count = self.answers().filter(|answer| condition(answer)).count();
+        Share::of(count, self.answers().count())
+    }
+
+    /// How many samples ended too early for a verdict, and what to do; `None` if none did.
+    pub(super) fn no_verdict(&self) -> Option<String> {
+        let incomplete = self
+            .without()
+            .filter(|(_, why)| **why == NoAnswer::Incomplete);
+        no_verdict(incomplete.count(), self.rows.len(), "samples")
+    }
+
+    /// The influence of the uncertain numbers on a number of each sample, or on its rank.
+    pub(super) fn influence(
+        &self,
+        names: [&'static str; 2],
+        by_rank: bool,
+        number: impl Fn(&A) -> f64,
+    ) -> Influence<'a> {
+        let matters = self.matters(by_rank, number);
+        Influence::new(names, self.uncertain, matters)
+    }
+
+    fn matters(&self, by_rank: bool, number: impl Fn(&A) -> f64) -> Option<Vec<Matters>> {
+        let known = |rows: &[SampleRow<A>]| -> Vec<Option<f64>> {
+            let answers = rows.iter().map(|row| row.answer.as_ref().ok());
+            answers.map(|answer| answer.map(&number)).collect()
+        };
+        let answered = self.rows.iter().filter(|row| row.answer.is_ok());
+        let values: Vec<Vec<f64>> = answered.map(|row| row.values.clone()).collect();
+        let own = numbers(known(self.rows), by_rank);
+        let answers: Vec<f64> = own.into_iter().flatten().collect();
+        let mut matters = what_matters(&values, &answers)?;
+        if !self.moved.is_empty() {
+            let all = numbers([self.rows, self.moved].map(known).concat(), by_rank);
+            let (own, moved) = all.split_at(self.rows.len());
+            for (matters, total) in matters.iter_mut().zip(total_indices(own, moved)?) {
+                matters.total = Some(total);
+            }
+        }
+        Some(matters)
+    }
+}
+
+/// The known numbers, or their ranks.
+fn numbers(of: Vec<Option<f64>>, by_rank: bool) -> Vec<Option<f64>> {
+    if !by_rank {
+        return of;
+    }
+    let known: Vec<f64> = of.iter().flatten().copied().collect();
+    let mut ranks = ranks(&known).into_iter();
+    of.into_iter()
+        .map(|number| number.and_then(|_| ranks.next()))
+        .collect()
+}

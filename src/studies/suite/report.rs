@@ -1,0 +1,438 @@
+//! The report of a suite of records: its tables, the fragility of the structure, and its words.
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::fragility::{Errors, Fragility, NoFit};
+use super::ida::{Fractiles, PeakUpTo};
+use super::strength::{Capacity, Efficiency, MEASURES, efficiencies};
+use super::{CaseRow, Counts, CurvePoint, FragilityRow, Heading, SuiteFragility, ida, picture};
+use crate::output::table::{Cell, Column, column, csv, fields, several};
+use crate::output::{Figure, OutputError};
+use crate::scenario::{Measure, shown};
+use crate::studies::ending::Verdict;
+use crate::studies::ending::columns::{self, FAILED, number, yes};
+use crate::studies::remarks::{Remarks, counts, in_words, rough_guide_of};
+use crate::studies::results::Results;
+use crate::studies::threshold::{rounded, survival};
+
+const FRAGILITY: &str = "fragility.json";
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 10] = [
+    "suite.svg",
+    "ida.svg",
+    "peaks.svg",
+    "ida.csv",
+    "peaks.csv",
+    "capacity.csv",
+    "intensity.csv",
+    "fragility.csv",
+    FRAGILITY,
+    "suite.csv",
+];
+
+/// Summary of a suite of records. Missing values are null.
+#[derive(Serialize)]
+pub struct Summary<'a> {
+    /// Name of the program.
+    program: &'static str,
+    /// Its version.
+    version: &'static str,
+    /// The scenario with all defaults.
+    scenario: &'a Value,
+    /// Unlikely numbers, limits of the model, histories without a verdict.
+    warnings: Vec<String>,
+    /// The measure of the intensities.
+    intensity: &'static str,
+    #[serde(flatten)]
+    curve: Curve,
+    /// Number of records.
+    records: usize,
+    #[serde(flatten)]
+    counts: Counts,
+    /// Measures of intensity, the most efficient first.
+    intensity_measures: Vec<Efficiency>,
+    /// Whether mirrored records count: their results are no mirror images.
+    mirrored_cases_count: bool,
+    /// Records that never overturn the structure.
+    records_that_never_overturn: Vec<&'a str>,
+    /// Records that overturn the structure at every level.
+    records_that_always_overturn: Vec<&'a str>,
+    /// The curve with uncertain cases counted as overturned, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_uncertain_as_overturned: Option<Curve>,
+    #[serde(flatten)]
+    remarks: Remarks,
+}
+
+/// A fragility curve with its standard errors, or why there is none.
+#[derive(Serialize)]
+struct Curve {
+    /// The intensity at which half of the cases overturn.
+    median: Option<f64>,
+    /// Its standard error if all cases are independent.
+    median_standard_error: Option<f64>,
+    /// Its standard error if the cases of a record depend on each other.
+    median_standard_error_by_record: Option<f64>,
+    /// Standard deviation of the logarithm of the intensity that overturns.
+    dispersion: Option<f64>,
+    /// Its standard error if all cases are independent.
+    dispersion_standard_error: Option<f64>,
+    /// Its standard error if the cases of a record depend on each other.
+    dispersion_standard_error_by_record: Option<f64>,
+    /// The largest logarithm of the likelihood.
+    log_likelihood: Option<f64>,
+    /// Why there is no curve.
+    no_fit: Option<String>,
+}
+
+impl From<&Result<Fragility, NoFit>> for Curve {
+    fn from(found: &Result<Fragility, NoFit>) -> Self {
+        let fit = found.as_ref().ok();
+        let by_record = fit.and_then(|fit| fit.clustered);
+        Self {
+            median: fit.map(|fit| fit.median),
+            median_standard_error: fit.map(|fit| fit.independent.median),
+            median_standard_error_by_record: by_record.map(|errors| errors.median),
+            dispersion: fit.map(|fit| fit.dispersion),
+            dispersion_standard_error: fit.map(|fit| fit.independent.dispersion),
+            dispersion_standard_error_by_record: by_record.map(|errors| errors.dispersion),
+            log_likelihood: fit.map(|fit| fit.log_likelihood),
+            no_fit: found.as_ref().err().map(ToString::to_string),
+        }
+    }
+}
+
+impl Heading {
+    /// The files and words for all rows.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn report(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
+        let results = SuiteFragility::new(self.measure, rows);
+        let capacities = results.capacities();
+        let measures = efficiencies(&capacities);
+        let remarks = self.remarks(&results);
+        let words = self.words(&results, &capacities, &measures, &remarks);
+        let efficiencies = csv(efficiency_columns(), &measures)?;
+        let incomplete = remarks.incomplete_in_words();
+        let with_uncertain = results
+            .has_uncertain()
+            .then_some(&results.fit_with_uncertain);
+        let summary = Summary {
+            program: env!("CARGO_PKG_NAME"),
+            version: env!("CARGO_PKG_VERSION"),
+            scenario: &self.scenario,
+            warnings: self.warnings.iter().cloned().chain(incomplete).collect(),
+            intensity: self.measure.column(),
+            curve: (&results.fit).into(),
+            records: results.record_count(),
+            counts: Counts::of(&results.evidence()),
+            intensity_measures: measures,
+            mirrored_cases_count: results.mirrored_count,
+            records_that_never_overturn: results.always(Verdict::Survives),
+            records_that_always_overturn: results.always(Verdict::Overturns),
+            with_uncertain_as_overturned: with_uncertain.map(Curve::from),
+            remarks,
+        };
+        let captions = results
+            .curves()
+            .into_iter()
+            .map(|(taken, curve)| match curve {
+                Ok(curve) => format!("{curve}{taken}"),
+                Err(reason) => format!("no curve: {reason}{taken}"),
+            });
+        let caption = captions.collect::<Vec<_>>().join("; ");
+        let others = [
+            picture::draw(figure, self, &results, &caption).into_bytes(),
+            ida::draw(figure, self, &results).into_bytes(),
+            ida::draw_peaks(figure, self, &results).into_bytes(),
+            csv(self.ida_columns(), &ida::fractiles(&results))?,
+            csv(
+                fields!(|at: &PeakUpTo| at => peak, share),
+                &ida::peaks(&results),
+            )?,
+            csv(capacity_columns(), &capacities)?,
+            efficiencies,
+            csv(self.level_columns(), &results.levels)?,
+            csv(self.case_columns(), &results.cases)?,
+        ];
+        Ok(Results {
+            peaks: ida::rotations_rad(&results.cases),
+            ..Results::new(&FILES, &summary, words, others)?
+        })
+    }
+
+    /// The remarks on the cases: those that failed or are uncertain, with the reasons.
+    fn remarks(&self, results: &SuiteFragility) -> Remarks {
+        let mut remarks = Remarks::default();
+        for case in &results.cases {
+            let name = || format!("{}, {}", case.record_in_words(), self.level(case));
+            remarks.note(name, case.result.as_ref().map_err(String::as_str));
+        }
+        remarks
+    }
+
+    /// The results in words, line by line.
+    fn words(
+        &self,
+        results: &SuiteFragility,
+        capacities: &[Capacity<'_>],
+        measures: &[Efficiency],
+        remarks: &Remarks,
+    ) -> String {
+        let outcome = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), in_words);
+        let mut lines = vec![format!(
+            "{} cases of {}: {}",
+            results.cases.len(),
+            results.records_in_words(),
+            counts(results.cases.iter().map(outcome))
+        )];
+        let column = self.measure.column();
+        lines.extend(
+            results
+                .curves()
+                .into_iter()
+                .map(|(taken, curve)| match curve {
+                    Ok(curve) => format!("fragility over {column}{taken}: {curve}\n    ({FIT})"),
+                    Err(reason) => format!("no fragility curve{taken}: {reason}"),
+                }),
+        );
+        lines.extend(self.measures_in_words(capacities, measures));
+        for record in results.survivals() {
+            let words = survival::in_words(&record.survival, unit(self.measure));
+            lines.push(format!("{}: {words}", record.case.record_in_words()));
+        }
+        lines.push(searched(results));
+        lines.extend(rough_guide_of(&self.warnings).map(str::to_owned));
+        if results.cases.iter().any(CaseRow::still_rocking) {
+            lines.push("those still rocking at the end count as not overturned".to_owned());
+        }
+        let incomplete = remarks.incomplete_in_words();
+        lines.extend(incomplete.map(|words| format!("{words}; they do not count")));
+        lines.extend(remarks.uncertain_in_words(FRAGILITY));
+        let failed = remarks.failed_in_words(FRAGILITY);
+        lines.extend(failed.map(|words| format!("{words}; what failed does not count")));
+        lines.join("\n  ")
+    }
+
+    /// The most efficient measure of intensity, and the others.
+    fn measures_in_words(
+        &self,
+        capacities: &[Capacity<'_>],
+        measures: &[Efficiency],
+    ) -> Option<String> {
+        let (best, others) = measures.split_first()?;
+        let of = |one: &Efficiency| {
+            let at = match one.measure {
+                "spectral_acceleration_g" => format!(" at {}", self.spectral()),
+                _ => String::new(),
+            };
+            let interval = one.dispersion_of_factor_interval;
+            let interval = interval.map_or(String::new(), |[low, high]| {
+                format!(" ({low:.2} to {high:.2})")
+            });
+            format!(
+                "{}{at} {:.2}{interval}",
+                one.words, one.dispersion_of_factor
+            )
+        };
+        let others: Vec<String> = others.iter().map(of).collect();
+        let all = capacities.len();
+        let left_out = match all - best.capacities {
+            0 => String::new(),
+            count => format!("; {count} of {all} that do not overturn are left out"),
+        };
+        Some(format!(
+            "most efficient measure of intensity: {}; {}\n    (dispersion of the factor on a record that overturns, 95 % by bootstrap over \
+             records; the first is the best in {:.0} % of the draws){left_out}",
+            of(best),
+            others.join(", "),
+            100.0 * best.best_share
+        ))
+    }
+
+    /// The columns for one row per case.
+    fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
+        let mut all = vec![
+            column("record", |case: &CaseRow| shown(&case.record)),
+            column(
+                "sign",
+                |case: &CaseRow| if case.mirrored { "-1" } else { "1" },
+            ),
+            column("scale", |case: &CaseRow| number(case.scale)),
+            column("peak_g", |case: &CaseRow| number(case.peak_g)),
+        ];
+        all.extend(columns::columns(self.has_joints(), |case: &CaseRow| {
+            case.result.as_ref().map_err(|_| FAILED)
+        }));
+        all
+    }
+
+    /// The columns for one row per level. Missing values are empty.
+    fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
+        type Curve = fn(&FragilityRow) -> Option<CurvePoint>;
+        let probability = |[probability, low, high]: [&'static str; 3], curve: Curve| {
+            [
+                column(probability, move |level| {
+                    curve(level).map(|point| point.probability)
+                }),
+                column(low, move |level| curve(level).map(|point| point.low)),
+                column(high, move |level| curve(level).map(|point| point.high)),
+            ]
+        };
+        let mut all = vec![column(self.measure.column(), |level: &FragilityRow| {
+            level.intensity
+        })];
+        all.extend(fields!(
+            |level: &FragilityRow| level.counts => cases, overturned, still_rocking, incomplete, failed
+        ));
+        all.push(column("fraction", FragilityRow::fraction));
+        let names = ["probability", "probability_low", "probability_high"];
+        all.extend(probability(names, |level| level.curve));
+        if self.has_joints() {
+            // The number of uncertain cases, and the columns that count them as overturned.
+            all.extend([
+                column("uncertain", |level: &FragilityRow| level.counts.uncertain),
+                column(
+                    "fraction_with_uncertain",
+                    FragilityRow::fraction_with_uncertain,
+                ),
+            ]);
+            let names = [
+                "probability_with_uncertain",
+                "probability_with_uncertain_low",
+                "probability_with_uncertain_high",
+            ];
+            all.extend(probability(names, |level| level.curve_with_uncertain));
+        }
+        all
+    }
+
+    /// The columns for one row per level of the incremental dynamic analysis.
+    fn ida_columns(&self) -> Vec<Column<'static, Fractiles>> {
+        let mut all = vec![column(self.measure.column(), |level: &Fractiles| {
+            level.intensity
+        })];
+        all.extend(
+            fields!(|level: &Fractiles| level => cases, overturned, peak_16, peak_50, peak_84),
+        );
+        all
+    }
+}
+
+/// The columns for one row per record. Missing values are empty.
+fn capacity_columns<'r>() -> Vec<Column<'r, Capacity<'r>>> {
+    let measures = MEASURES.map(|(name, _, _)| name.to_owned()).to_vec();
+    vec![
+        column("record", |capacity: &Capacity<'_>| shown(capacity.record)),
+        column(
+            "sign",
+            |capacity: &Capacity<'_>| if capacity.mirrored { "-1" } else { "1" },
+        ),
+        column("scale", |capacity: &Capacity<'_>| capacity.scale),
+        several(
+            measures,
+            |capacity: &Capacity<'_>, cells: &mut Vec<Cell<'_>>| {
+                cells.extend(capacity.in_measures.map(Cell::from));
+            },
+        ),
+        column("at_most", |capacity: &Capacity<'_>| yes(capacity.at_most)),
+    ]
+}
+
+/// A row per measure of intensity, the most efficient first.
+fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
+    let end = |name: &'static str, end: usize| {
+        column(name, move |of: &Efficiency| {
+            Some(of.dispersion_of_factor_interval?[end])
+        })
+    };
+    let mut all = Vec::from(fields!(
+        |of: &Efficiency| of => measure, capacities, median, dispersion, dispersion_of_factor
+    ));
+    all.extend([
+        end("dispersion_of_factor_low", 0),
+        end("dispersion_of_factor_high", 1),
+    ]);
+    all.extend(fields!(|of: &Efficiency| of => best_share));
+    all
+}
+
+impl SuiteFragility {
+    /// The number of records, in words.
+    pub(super) fn records_in_words(&self) -> String {
+        match self.record_count() {
+            1 => "1 record".to_owned(),
+            count => format!("{count} records"),
+        }
+    }
+
+    /// The curve in words, or why there is none, after how uncertain cases are counted: as survived, and if there are any, also as
+    /// overturned.
+    fn curves(&self) -> Vec<(String, Result<String, String>)> {
+        let uncertain = Counts::of(&self.evidence()).uncertain;
+        let curve = |fit: &Result<Fragility, NoFit>, how: &str| {
+            let taken = match uncertain {
+                0 => String::new(),
+                1 => format!(", 1 uncertain case taken as {how}"),
+                _ => format!(", {uncertain} uncertain cases taken as {how}"),
+            };
+            let words = fit.as_ref().map(|fit| fit_in_words(fit, self.measure));
+            (taken, words.map_err(ToString::to_string))
+        };
+        let mut curves = vec![curve(&self.fit, "survived")];
+        if uncertain > 0 {
+            curves.push(curve(&self.fit_with_uncertain, "overturned"));
+        }
+        curves
+    }
+}
+
+/// A curve in words, with its standard errors; those by record come last.
+fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
+    let unit = unit(measure);
+    let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
+        let independent = error(&fit.independent);
+        // An error has at most two significant digits.
+        let digits = digits(independent);
+        let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
+            format!(" (by record ± {:.digits$}{unit})", error(clustered))
+        });
+        format!("{value:.digits$}{unit} ± {independent:.digits$}{unit}{by_record}")
+    };
+    format!(
+        "median {}, dispersion {}",
+        quantity(fit.median, |errors| errors.median, unit),
+        quantity(fit.dispersion, |errors| errors.dispersion, "")
+    )
+}
+
+/// Number of decimals that show two digits of an error.
+fn digits(error: f64) -> usize {
+    (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
+}
+
+/// Definition of the fitted curve, whose median is not that of the capacities.
+const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";
+
+/// The levels that were tried, and between which overturning was not searched for.
+fn searched(results: &SuiteFragility) -> String {
+    let ends = [results.levels.first(), results.levels.last()];
+    let [from, to] = ends.map(|level| rounded(level.map_or(0.0, |level| level.intensity)));
+    let unit = unit(results.measure);
+    format!(
+        "tried: {} levels from {from} to {to}{unit}; where a record first overturns is bisected between two of them, and lower ranges that \
+         overturn, below the first level or between levels, were not searched for",
+        results.levels.len()
+    )
+}
+
+/// The unit that follows an intensity.
+const fn unit(measure: Measure) -> &'static str {
+    match measure {
+        Measure::Scale => "",
+        Measure::PeakG => " g",
+    }
+}

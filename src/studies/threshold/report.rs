@@ -1,0 +1,465 @@
+//! The report of thresholds of overturning: their table, summary and words.
+
+use serde::Serialize;
+use serde_json::Value;
+
+use super::digits::{rounded, rounded_range};
+use super::survival::{self, Survival};
+use super::{FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, peak_g, picture};
+use crate::dynamics::history::Outcome;
+use crate::output::table::{column, csv};
+use crate::output::{Figure, OutputError};
+use crate::scenario::{Ground, Scenario};
+use crate::studies::ending::{Ending, Verdict};
+use crate::studies::remarks::{self, Remarks};
+use crate::studies::results::Results;
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
+
+/// Summary of the thresholds of scenarios that differ only in their models.
+#[derive(Serialize)]
+pub struct Summary<'a> {
+    /// Name of the program.
+    program: &'static str,
+    /// Its version.
+    version: &'static str,
+    /// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+    peak_acceleration_g: f64,
+    /// The factors that were sampled.
+    factors: Factors,
+    /// Unlikely numbers, limits of the models, histories without a verdict.
+    warnings: Vec<String>,
+    /// The threshold of each model.
+    models: Vec<ModelSummary<'a>>,
+}
+
+/// Summary of the threshold of a model.
+#[derive(Serialize)]
+struct ModelSummary<'a> {
+    /// Name of the model.
+    model: &'a str,
+    /// The scenario with all defaults.
+    scenario: Value,
+    /// Name and checksum of each record file.
+    record_checksums: Vec<String>,
+    /// The least factor that certainly overturns.
+    lowest_factor: Option<f64>,
+    /// Ranges of factors that overturn, ascending.
+    bands: Vec<RangeSummary>,
+    /// Ranges between bands that survive.
+    gaps: Vec<RangeSummary>,
+    /// Ranges for which overturning is uncertain.
+    uncertain: Vec<RangeSummary>,
+    /// Ranges whose histories end too early for a verdict.
+    incomplete: Vec<RangeSummary>,
+    #[serde(flatten)]
+    remarks: Remarks,
+    /// The lowest factors of structures with other properties.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    variations: Vec<VariedSummary<'a>>,
+    /// All histories, with ascending factors.
+    samples: Vec<SampleSummary<'a>>,
+}
+
+/// A range of factors.
+#[derive(Serialize)]
+struct RangeSummary {
+    #[serde(flatten)]
+    range: FactorRange,
+    /// Peak ground acceleration at its least factor, in units of gravity.
+    from_peak_g: f64,
+    /// Peak ground acceleration at its largest factor.
+    to_peak_g: f64,
+}
+
+/// The lowest factor of a structure with other properties.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum VariedSummary<'a> {
+    /// Found.
+    Known {
+        /// The difference from the structure itself.
+        with: &'a str,
+        /// The lowest factor that overturns; null if none does.
+        factor: Option<f64>,
+        /// Why lower factors are not known to overturn.
+        from_end: Option<RangeEnd>,
+        /// Peak ground acceleration at that factor, in units of gravity.
+        peak_g: Option<f64>,
+        /// Number of histories that ended too early for a verdict.
+        incomplete: usize,
+    },
+    /// Unknown.
+    Unknown {
+        /// The difference from the structure itself.
+        with: &'a str,
+        /// The reason.
+        failed: &'a str,
+    },
+}
+
+/// The history at a factor.
+#[derive(Serialize)]
+struct SampleSummary<'a> {
+    /// The factor.
+    factor: f64,
+    /// Its outcome.
+    outcome: &'static str,
+    #[serde(flatten)]
+    history: Option<HistorySummary>,
+    /// Why its outcome is uncertain, or why it has no history.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reason: Option<&'a str>,
+}
+
+/// The numbers of a history.
+#[derive(Serialize)]
+struct HistorySummary {
+    /// The side to which it overturned; null unless that is certain.
+    overturning_sway: Option<&'static str>,
+    /// Number of impacts.
+    impacts: Option<usize>,
+    /// The time of the outcome, in seconds.
+    outcome_time_s: f64,
+    /// Largest rotation over the critical one.
+    peak_rotation_over_critical: Option<f64>,
+    /// Largest rotation of any body, in radians.
+    peak_rotation_rad: Option<f64>,
+}
+
+/// Files and words for the thresholds of scenarios that differ only in their models; one of the files is JSON.
+///
+/// # Errors
+/// When a value is not finite.
+pub fn report(
+    scenarios: &[&Scenario],
+    factors: &Factors,
+    thresholds: &[Threshold],
+    figure: Figure,
+) -> Result<Results, OutputError> {
+    let scenario = scenarios[0];
+    let title = scenario.title();
+    let title = title.unwrap_or("Threshold of overturning");
+    let peak_g = peak_g(scenario);
+    let models = thresholds.iter().zip(scenarios);
+    let summary = Summary {
+        program: env!("CARGO_PKG_NAME"),
+        version: env!("CARGO_PKG_VERSION"),
+        peak_acceleration_g: peak_g,
+        factors: *factors,
+        warnings: warnings(scenarios, thresholds),
+        models: models
+            .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
+            .collect(),
+    };
+    let picture = picture::draw(figure, title, peak_g, factors, thresholds);
+    let others = [picture.into_bytes(), table(thresholds)?];
+    Results::new(&FILES, &summary, words(scenarios, thresholds), others)
+}
+
+/// The samples, model by model, with ascending factors.
+fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
+    type Row<'a> = (&'a str, &'a FactorSample);
+    let rows: Vec<Row<'_>> = thresholds
+        .iter()
+        .flat_map(|threshold| {
+            let samples = threshold.samples.iter();
+            samples.map(|sample| (&*threshold.model, sample))
+        })
+        .collect();
+    fn ending<'a>(row: &Row<'a>) -> Option<&'a Ending> {
+        row.1.result.as_ref().ok()
+    }
+    let columns = [
+        column("model", |row: &Row<'_>| row.0.to_owned()),
+        column("factor", |row: &Row<'_>| row.1.factor),
+        column("outcome", |row: &Row<'_>| row.1.outcome_name()),
+        column("overturning_sway", |row| {
+            ending(row).and_then(Ending::overturning_sway)
+        }),
+        column("impacts", |row| {
+            ending(row).and_then(|ending| ending.impacts)
+        }),
+        column("outcome_time_s", |row| {
+            ending(row).map(|ending| ending.outcome_time_s)
+        }),
+        column("peak_rotation_over_critical", |row| {
+            ending(row).and_then(|ending| ending.peak.over_critical())
+        }),
+        column("peak_rotation_rad", |row: &Row<'_>| row.1.peak_rotation_rad),
+    ];
+    csv(columns, &rows)
+}
+
+/// Warnings of all models, each once, and histories without a verdict.
+fn warnings(scenarios: &[&Scenario], thresholds: &[Threshold]) -> Vec<String> {
+    let mut warnings: Vec<String> = Vec::new();
+    for warning in scenarios.iter().flat_map(|one| remarks::warnings(one)) {
+        if !warnings.contains(&warning) {
+            warnings.push(warning);
+        }
+    }
+    let remarks = thresholds.iter().map(Threshold::remarks);
+    warnings.extend(remarks.filter_map(|remarks| remarks.incomplete_in_words()));
+    let varied = thresholds.iter().flat_map(|threshold| &threshold.varied);
+    warnings.extend(
+        varied.filter_map(|varied| Some(format!("with {}: {}", varied.name, varied.no_verdict()?))),
+    );
+    warnings
+}
+
+impl Threshold {
+    fn summary(&self, scenario: &Scenario, peak_g: f64) -> ModelSummary<'_> {
+        let ranges = |ranges: Vec<FactorRange>| {
+            let ranges = ranges.into_iter().map(|range| RangeSummary {
+                from_peak_g: range.from * peak_g,
+                to_peak_g: range.to * peak_g,
+                range,
+            });
+            ranges.collect()
+        };
+        let varied = self.varied.iter().map(|varied| match &varied.factor {
+            Ok(factor) => VariedSummary::Known {
+                with: &varied.name,
+                factor: *factor,
+                from_end: factor.map(|factor| match self.is_first(factor) {
+                    true => RangeEnd::Sampled,
+                    false => RangeEnd::Edge,
+                }),
+                peak_g: factor.map(|factor| factor * peak_g),
+                incomplete: varied.incomplete,
+            },
+            Err(reason) => VariedSummary::Unknown {
+                with: &varied.name,
+                failed: reason,
+            },
+        });
+        ModelSummary {
+            model: &self.model,
+            scenario: scenario.to_json(),
+            record_checksums: scenario.record_checksums(),
+            lowest_factor: self.lowest_factor(),
+            bands: ranges(self.bands()),
+            gaps: ranges(self.gaps()),
+            uncertain: ranges(self.uncertain()),
+            incomplete: ranges(self.incomplete()),
+            remarks: self.remarks(),
+            variations: varied.collect(),
+            samples: self.samples.iter().map(SampleSummary::of).collect(),
+        }
+    }
+
+    /// The remarks on its histories.
+    fn remarks(&self) -> Remarks {
+        let mut remarks = Remarks::default();
+        for ending in self.samples.iter().flat_map(|sample| &sample.result) {
+            remarks.note_history(ending);
+        }
+        remarks
+    }
+
+    /// Whether a factor is the smallest one tried, so that smaller ones may overturn as well.
+    fn is_first(&self, factor: f64) -> bool {
+        let first = self.samples.first();
+        first.is_some_and(|first| first.factor == factor)
+    }
+}
+
+impl<'a> SampleSummary<'a> {
+    fn of(sample: &'a FactorSample) -> Self {
+        let ending = sample.result.as_ref();
+        Self {
+            factor: sample.factor,
+            outcome: sample.outcome_name(),
+            history: ending.ok().map(|ending| HistorySummary {
+                overturning_sway: ending.overturning_sway(),
+                impacts: ending.impacts,
+                outcome_time_s: ending.outcome_time_s,
+                peak_rotation_over_critical: ending.peak.over_critical(),
+                peak_rotation_rad: sample.peak_rotation_rad,
+            }),
+            reason: match ending {
+                Ok(ending) => ending.uncertain.as_deref(),
+                Err(NoHistory::GroundFalls(reason) | NoHistory::Failed(reason)) => Some(reason),
+            },
+        }
+    }
+}
+
+/// A factor, and the peak ground acceleration there.
+fn at(factor: f64, peak_g: f64) -> String {
+    format!("{} ({} g)", rounded(factor), rounded(factor * peak_g))
+}
+
+/// The results in words: one line for a record, one line per range for a pulse.
+fn words(scenarios: &[&Scenario], thresholds: &[Threshold]) -> String {
+    let peak_g = peak_g(scenarios[0]);
+    let mut lines = Vec::new();
+    for threshold in thresholds {
+        let model = match thresholds {
+            [_] => String::new(),
+            _ => threshold.model.replace('_', " "),
+        };
+        if let Some(Ground::Record(record)) = scenarios[0].ground() {
+            let comma = if model.is_empty() { "" } else { ", " };
+            let strengths = survival::in_words(&Survival::of_threshold(threshold), "");
+            let (file, peak) = (record.main.name(), rounded(peak_g));
+            lines.push(format!(
+                "  {file}{comma}{model}: {strengths} (1 is {peak} g)"
+            ));
+        } else {
+            lines.extend(Some(model).filter(|model| !model.is_empty()));
+            lines.extend(threshold.ranges_in_words(peak_g));
+        }
+        lines.extend(threshold.doubts_in_words());
+        lines.extend(threshold.varied_in_words(peak_g));
+    }
+    let caveat = scenarios.iter().find_map(|one| remarks::rough_guide(one));
+    lines.extend(caveat.map(|caveat| format!("  {caveat}")));
+    lines.join("\n") + "\n"
+}
+
+impl Factors {
+    /// The factors that were tried, in words.
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        format!(
+            "sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
+            self.first(),
+            self.last(),
+            (1e6 * self.stride()).round() / 1e4,
+        )
+    }
+}
+
+impl Threshold {
+    /// The lowest factors that overturn the structure with other properties.
+    fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
+        self.varied.iter().map(move |varied| {
+            let no_verdict = varied.no_verdict();
+            let certainly = if no_verdict.is_some() {
+                "certainly "
+            } else {
+                ""
+            };
+            let answer = match &varied.factor {
+                Ok(Some(factor)) if self.is_first(*factor) => {
+                    let at = at(*factor, peak_g);
+                    format!("overturns at factor {at} already, the smallest tried")
+                }
+                Ok(Some(factor)) => format!("from factor {}", at(*factor, peak_g)),
+                Ok(None) => format!("does not {certainly}overturn at any factor tried"),
+                Err(reason) => reason.clone(),
+            };
+            let no_verdict = no_verdict.map_or(String::new(), |words| format!("; {words}"));
+            format!("  with {}: {answer}{no_verdict}", varied.name)
+        })
+    }
+
+    /// A line for each band, with the range that follows it.
+    fn ranges_in_words(&self, peak_g: f64) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        if self.bands().is_empty() {
+            let is_certain = self.uncertain().is_empty() && self.incomplete().is_empty();
+            let certainly = if is_certain { "" } else { "certainly " };
+            let last = self.samples.iter().rfind(|sample| sample.result.is_ok());
+            let last = at(last.map_or(0.0, |sample| sample.factor), peak_g);
+            lines.push(format!(
+                "  does not {certainly}overturn up to factor {last}"
+            ));
+        }
+        if let Some((verdict, first)) = self.ranges.first()
+            && *verdict != Verdict::Survives
+            && first.from_end == RangeEnd::Sampled
+        {
+            let what = verdict.name();
+            let range = if *verdict == Verdict::Overturns {
+                "band"
+            } else {
+                "range"
+            };
+            lines.push(format!(
+                "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
+            ));
+        }
+        let before = lines.len();
+        let mut printed_end: Option<f64> = None;
+        for (verdict, range) in &self.ranges {
+            let ends = |ends: [f64; 2]| {
+                let factors = rounded_range(ends);
+                let accelerations_g = rounded_range(ends.map(|factor| factor * peak_g));
+                [0, 1].map(|end| format!("{} ({} g)", factors[end], accelerations_g[end]))
+            };
+            let [begins, mut to] = ends([range.from, range.to]);
+            // After "up to" only ends are printed, so each must differ from the last one.
+            if let (Some(last), false) = (printed_end, *verdict == Verdict::Overturns) {
+                [_, to] = ends([last, range.to]);
+            }
+            printed_end = Some(range.to);
+            let beyond = match range.to_end {
+                RangeEnd::Unknown => "; not known beyond",
+                RangeEnd::Sampled | RangeEnd::Edge => "",
+            };
+            let is_last = range.to_end == RangeEnd::Sampled;
+            let all = match is_last {
+                true => format!("from factor {begins} up to the largest factor"),
+                false if range.from == range.to => format!("at factor {begins}{beyond}"),
+                false => format!("from factor {begins} to {to}{beyond}"),
+            };
+            let what = verdict.name();
+            let line = lines.get_mut(before..).and_then(<[_]>::last_mut);
+            match (verdict, line) {
+                (Verdict::Survives, None) => {}
+                (Verdict::Overturns, _) | (_, None) => lines.push(format!("  {what} {all}")),
+                (_, Some(line)) if is_last => *line += &format!("; {what} from there on"),
+                (Verdict::Survives, Some(line)) => {
+                    *line += &format!("; survives again up to {to}{beyond}");
+                }
+                (_, Some(line)) => *line += &format!("; {what} up to {to}{beyond}"),
+            }
+        }
+        lines
+    }
+
+    /// The doubts about the ranges.
+    fn doubts_in_words(&self) -> Vec<String> {
+        let falls =
+            |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+        let histories = self.samples.iter().filter(|sample| !falls(sample));
+        let all = histories.clone().count();
+        let listed = |what: &str, reasons: Vec<(f64, &str)>| {
+            let (factor, reason) = reasons.first()?;
+            let (count, factor) = (reasons.len(), rounded(*factor));
+            Some(format!(
+                "  {what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
+            ))
+        };
+        let reasons = |failed: bool| {
+            let summaries = histories
+                .clone()
+                .filter(|sample| sample.result.is_err() == failed);
+            let reasons = summaries.map(SampleSummary::of);
+            reasons
+                .filter_map(|sample| Some((sample.factor, sample.reason?)))
+                .collect()
+        };
+        let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
+        lines.extend(self.samples.iter().find(falls).map(|first| {
+            let factor = rounded(first.factor);
+            format!("  from factor {factor} on, the ground falls as fast as a free body at some time, which this model does not cover")
+        }));
+        lines.extend(listed("failed", reasons(true)));
+        let incomplete = self.remarks().incomplete_in_words();
+        lines.extend(incomplete.map(|words| format!("  {words}")));
+        let rocking = histories.filter(|sample| {
+            let ending = sample.result.as_ref();
+            ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
+        });
+        let rocking = rocking.count();
+        lines.extend((rocking > 0).then(|| {
+            format!("  still rocking at the end of the run, which counts as survived: {rocking} of {all} histories")
+        }));
+        lines
+    }
+}
