@@ -73,7 +73,7 @@ pub fn try_bisect<E>(
 /// Two numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number: neighbours, or
 /// two between which it falls by no more than this rounding, or, where it ends, that are no farther apart than this.
 ///
-/// It asks as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
+/// It evaluates the function as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
 /// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2020).
 pub fn falls_below_zero(
     mut low: f64,

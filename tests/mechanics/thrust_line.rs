@@ -622,10 +622,14 @@ fn samples_without_demand_are_the_same() {
             ..spared
         }
     );
-    assert!(without.iter().all(|sample| sample.demand == Demand::NONE));
+    assert!(
+        without
+            .iter()
+            .all(|sample| sample.demand == Demand::default())
+    );
     assert!(with.iter().any(|sample| sample.demand.friction > 0.1));
     for sample in &mut with {
-        sample.demand = Demand::NONE;
+        sample.demand = Demand::default();
     }
     assert!(with == without);
 }

@@ -214,7 +214,8 @@ impl Model for Rule {
             time_s: 1.0,
             max_transitions: 1,
         };
-        let outcome = match overturns.ok_or(failure)? {
+        let failure = || SimulationError::computation(failure);
+        let outcome = match overturns.ok_or_else(failure)? {
             true => Outcome::Overturned(Sway::Left),
             false => Outcome::Rest,
         };

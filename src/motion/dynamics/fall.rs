@@ -20,7 +20,7 @@ pub(super) const MOST_STEPS: usize = 20_000;
 pub enum FallEnd {
     /// A body has turned by [`TURNED_RAD`].
     Turned,
-    /// It took longer than [`LONGEST_S`], or too many steps.
+    /// The fall took longer than [`LONGEST_S`], or too many steps.
     Slow,
     /// Its model moves it no further, for this reason.
     Model(String),

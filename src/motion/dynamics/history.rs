@@ -30,9 +30,9 @@ pub enum Outcome {
     Vibrates,
     /// A joint opened or slipped, and the structure came to rest.
     Rest,
-    /// It overturned, to this side: it passed the point from which gravity alone overturns it, and did not return.
+    /// Overturned, to this side: the structure passed the point from which gravity alone overturns it, and did not return.
     Overturned(Sway),
-    /// It still moved at the end of a complete history: it survives, but has not come to rest.
+    /// Still moving at the end of a complete history: the structure survives, but has not come to rest.
     StillRocking,
     /// The history ended too early for a verdict: the ground still moved, or more than a quarter of the energy barrier was left. It
     /// counts neither as survived nor as overturned.
@@ -79,13 +79,14 @@ impl fmt::Display for Outcome {
 }
 
 /// State of motion of a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum State {
-    /// It is at rest, undeformed.
+    /// At rest, undeformed.
+    #[default]
     Rest,
-    /// It rocks, swayed to this side.
+    /// Rocking, swayed to this side.
     Rocking(Sway),
-    /// It has overturned, to this side.
+    /// Overturned, to this side.
     Overturned(Sway),
 }
 
@@ -120,7 +121,7 @@ pub struct OpenHinge {
 }
 
 /// State of a structure at an instant of the output. Rotations are positive anticlockwise.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Time in seconds.
     pub time_s: f64,
@@ -278,32 +279,6 @@ pub struct JointPressure {
 }
 
 impl Sample {
-    /// A structure at rest on still ground, with no other data: all lists are empty.
-    #[must_use]
-    pub const fn at_rest(time_s: f64) -> Self {
-        Self {
-            time_s,
-            ground_acceleration_m_s2: 0.0,
-            vertical_acceleration_m_s2: 0.0,
-            feet_apart_m: Vector2::new(0.0, 0.0),
-            phase: 0,
-            state: State::Rest,
-            rotations_rad: Vec::new(),
-            rates_rad_s: Vec::new(),
-            poses: Vec::new(),
-            hinges: Vec::new(),
-            demand: Demand::NONE,
-            energy_j: 0.0,
-            energy_ratio: None,
-            rotation_over_critical: None,
-            gaps_m: Vec::new(),
-            eccentricity_ratios: Vec::new(),
-            offsets_m: Vec::new(),
-            pressures: Vec::new(),
-            ties: Vec::new(),
-        }
-    }
-
     /// Makes of this the sample of another instant, at rest, with the memory of its lists, which are empty.
     pub(super) fn begin(&mut self, time_s: f64, ground_m_s2: Vector2<f64>, phase: usize) {
         self.time_s = time_s;
@@ -317,7 +292,7 @@ impl Sample {
         self.rates_rad_s.clear();
         self.poses.clear();
         self.hinges.clear();
-        self.demand = Demand::NONE;
+        self.demand = Demand::default();
         self.gaps_m.clear();
         self.eccentricity_ratios.clear();
         self.offsets_m.clear();

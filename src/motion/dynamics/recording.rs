@@ -55,7 +55,7 @@ pub struct Samples {
     pub poses: Vec<[f64; 3]>,
     /// Open hinges: those of sample `i` are from `first_hinge[i]` up to `first_hinge[i + 1]`, or the end.
     pub hinges: Vec<OpenHinge>,
-    /// Where the hinges of each sample begin.
+    /// Index of the first hinge of each sample.
     pub first_hinge: Vec<usize>,
     /// Thrust excess and friction demand of the sections.
     pub demand: Vec<Demand>,

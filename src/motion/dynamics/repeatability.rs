@@ -302,13 +302,13 @@ named! {
     /// Whether a structure overturns, as far as that is known.
     #[derive(PartialOrd, Ord)]
     pub enum Verdict {
-        /// It does not.
+        /// The structure survives.
         Survives = "survives",
         /// The history ended too early: [`Outcome::Incomplete`].
         Incomplete = "incomplete",
         /// That depends on how it is computed.
         Uncertain = "uncertain",
-        /// It does.
+        /// The structure overturns.
         Overturns = "overturns",
     }
 }
@@ -484,12 +484,9 @@ impl Jobs for Checks<'_> {
     }
 
     fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
-        let Job {
-            case, repetition, ..
-        } = job;
-        let Some(repetition) = repetition else {
-            self.keep(case, answer);
-            return;
+        let case = job.case;
+        let Some(repetition) = job.repetition else {
+            return self.keep(case, answer);
         };
         if let Some(Ok(own)) = &self.own[case] {
             self.doubts[case] = objection(own, self.names[repetition], &answer);

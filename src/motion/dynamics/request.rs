@@ -18,7 +18,7 @@ pub struct Request {
     pub end_s: f64,
     /// Interval of the samples, in 1e-6 to 1e6, of which there are at most 1e7. Some models end their steps there.
     pub output_step_s: f64,
-    /// Where the motion starts from; `None`: from rest.
+    /// The start of the motion; `None`: from rest.
     pub initial: Option<Initial>,
     /// Error that the integrator may make in a step, relative to the state, in 1e-13 to 1e-3.
     pub relative_tolerance: f64,

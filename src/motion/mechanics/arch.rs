@@ -46,7 +46,7 @@ named! {
 }
 
 impl MeasuredAt {
-    /// Where lengths along this line are measured, in words.
+    /// The line along which lengths are measured, in words.
     #[must_use]
     pub const fn in_words(self) -> &'static str {
         match self {
@@ -121,7 +121,7 @@ impl Arch {
     ///
     /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
     /// that (from 1e-6, below 2) and `embrace_deg` the angle from springing to springing (1 to 180).
-    /// [`Arch::incipient`] tells whether it stands.
+    /// [`Arch::incipient`] computes whether it stands.
     ///
     /// # Errors
     /// When an argument is outside its range.
@@ -269,7 +269,7 @@ impl Arch {
         )
     }
 
-    /// Where hinges may open.
+    /// Sections at which hinges may open.
     #[must_use]
     pub fn sites(&self) -> HingeSites {
         self.voussoirs

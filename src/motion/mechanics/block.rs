@@ -38,7 +38,7 @@ impl Block {
         let moments = outline_m
             .into_iter()
             .map(|curve| curve.swept(pole_m))
-            .fold(MassMoments::NONE, Add::add);
+            .fold(MassMoments::default(), Add::add);
         let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
         let centre = moments.first / moments.mass;
         Self {

@@ -55,30 +55,15 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
         acceleration: 0.0,
         body_force_g: Vector2::new(acceleration_g, -1.0),
     };
-    let (mut poses, mut hinges) = (Vec::new(), Vec::new());
-    link.mechanism.place(q_rad, &mut poses, &mut hinges);
-    for pose in &mut poses {
-        *pose = pose.scaled(structure.length_m());
-    }
-    for hinge in &mut hinges {
-        *hinge *= structure.length_m();
-    }
-    if sway == Sway::Left {
-        poses.reverse();
-        hinges.reverse();
-        for pose in &mut poses {
-            *pose = pose.mirrored();
-        }
-        for hinge in &mut hinges {
-            hinge.x = -hinge.x;
-        }
-    }
+    let (mut poses, mut hinges_m) = (Vec::new(), Vec::new());
+    let (mechanism, displaced) = (&link.mechanism, (q_rad, sway));
+    structure.place_m(mechanism, displaced, &mut poses, &mut hinges_m);
     Some(Displaced {
         q_rad,
         acceleration_g,
         poses,
-        hinges_m: hinges,
-        friction: structure.demand(&link.mechanism, &held).friction,
+        hinges_m,
+        friction: structure.demand(mechanism, &held).friction,
     })
 }
 
@@ -115,7 +100,7 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
-    /// Where it is in the undeformed structure, in metres.
+    /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// Index of the body; `None`: it stands still.
     pub body: Option<usize>,
@@ -132,7 +117,7 @@ impl Carried {
 /// The point whose displacement is reported: a point of the structure, or the common centre of several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
-    /// Where it is in the undeformed structure, in metres.
+    /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// The points with their weights, which add up to one.
     points: Vec<(f64, Carried)>,
@@ -202,14 +187,14 @@ pub struct Capacity {
     pub to_oscillator: f64,
     /// From rest to the unstable equilibrium, at equal steps of the coordinate, and where ties yield or break.
     pub curve: Vec<CurvePoint>,
-    /// Where its ties give way; empty without ties.
+    /// Points of the way at which its ties give way; empty without ties.
     pub ties: Vec<TieOnTheWay>,
 }
 
 /// At which parts of the way to the unstable equilibrium a tie gives way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivesWay {
-    /// It yields for the first time, if it does.
+    /// The part of the way at which it first yields, if it does.
     pub yields: Option<f64>,
     /// The last at which it is whole and the first at which it is broken, if it breaks.
     pub breaks: Option<[f64; 2]>,
@@ -218,9 +203,9 @@ pub struct GivesWay {
 /// At which displacements of the control point a tie gives way, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TieOnTheWay {
-    /// It yields, if it does.
+    /// Displacement at which it yields, if it does.
     pub yields_at_m: Option<f64>,
-    /// It breaks, if it does.
+    /// Displacement at which it breaks, if it does.
     pub breaks_at_m: Option<f64>,
 }
 
@@ -233,7 +218,7 @@ pub enum CapacityError {
         .at_m.x, .at_m.y, side = .sway.name()
     )]
     Control {
-        /// Where it is.
+        /// Its position.
         at_m: Vector2<f64>,
         /// The side.
         sway: Sway,

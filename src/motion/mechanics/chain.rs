@@ -42,7 +42,7 @@ pub struct Motion {
 }
 
 /// Thrust excess and friction demand of a structure: see [`crate::mechanics::four_link::thrust`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// How far the line of thrust leaves the structure, over the thickness: the largest value of
     /// its sections, zero if it stays inside.
@@ -175,6 +175,31 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Incipient acceleration to the right, in units of gravity; for a structure that is its own mirror image, to either side.
     fn incipient_g(&self) -> f64 {
         self.incipient_towards_g(Sway::Right)
+    }
+    /// Puts the poses of the bodies of one of its mechanisms, displaced to a side, and the positions of its hinges into the two lists, from
+    /// left to right and in metres.
+    fn place_m(
+        &self,
+        mechanism: &Self::Mechanism,
+        (q_rad, sway): (f64, Sway),
+        poses: &mut Vec<Pose>,
+        hinges_m: &mut Vec<Vector2<f64>>,
+    ) {
+        mechanism.place(q_rad, poses, hinges_m);
+        if sway == Sway::Left {
+            poses.reverse();
+            hinges_m.reverse();
+        }
+        for pose in poses {
+            let placed = pose.scaled(self.length_m());
+            *pose = match sway {
+                Sway::Right => placed,
+                Sway::Left => placed.mirrored(),
+            };
+        }
+        for hinge in hinges_m {
+            *hinge = Vector2::new(sway.sign() * hinge.x, hinge.y) * self.length_m();
+        }
     }
     /// Thrust excess and friction demand of one of its mechanisms in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;

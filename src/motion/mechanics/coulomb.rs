@@ -45,9 +45,9 @@ const LEAST_PART: f64 = 1e-6;
 pub enum Along {
     /// Both ends are free: there is no friction.
     Free,
-    /// It sticks.
+    /// The joint sticks.
     Stick,
-    /// It slips; friction on the right block has this sign.
+    /// The joint slips; friction on the right block has this sign.
     Slip(f64),
 }
 
@@ -411,19 +411,14 @@ impl Program {
         let mut carried = Vector3::zeros();
         let mut gain = Matrix3::zeros();
         for joint in 0..joints {
-            let Balance {
-                mut matrix,
-                coupling,
-                onward,
-                mut right,
-            } = system(self, joint);
+            let mut balance = system(self, joint);
             if joint > 0 {
-                matrix -= coupling * gain;
-                right -= coupling * carried;
+                balance.matrix -= balance.coupling * gain;
+                balance.right -= balance.coupling * carried;
             }
-            let pivot = inverse(&matrix);
-            carried = pivot * right;
-            gain = pivot * onward;
+            let pivot = inverse(&balance.matrix);
+            carried = pivot * balance.right;
+            gain = pivot * balance.onward;
             self.target[joint] = carried;
             self.gains[joint] = gain;
         }

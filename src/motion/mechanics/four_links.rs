@@ -55,13 +55,13 @@ impl Size {
 /// Why a structure does not rock as four links.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FourLinkError {
-    /// It does not start as one.
+    /// The structure does not start as four links.
     #[error(transparent)]
     Limit(#[from] LimitError),
-    /// It is a free-standing stack.
+    /// The structure is a free-standing stack.
     #[error("a stack on one support has no four links: give [free_hinges] or [elastic_joints]")]
     Stack,
-    /// It has ties.
+    /// The structure has ties.
     #[error(
         "four links take no ties: what a tie pulls changes as the links move, and the mechanisms after impacts are found from \
          weights alone; give [free_hinges] or [elastic_joints]"

@@ -61,7 +61,7 @@ pub enum FrictionError {
         "with a coefficient of friction of {0:?} the row cannot carry its own weight; give a larger friction_coefficient"
     )]
     CannotStand(f64),
-    /// It falls with any coefficient.
+    /// The row falls with any coefficient.
     #[error("the row cannot carry its own weight, whatever the friction")]
     NeverStands,
     /// The programme was not solved.

@@ -1,4 +1,4 @@
-//! Where the blocks of a row are: positions from the gaps of its joints.
+//! Positions of the blocks of a row, from the gaps of its joints.
 //!
 //! A joint that neither slides nor is penetrated has two coordinates, the gaps `g_I, g_E >= 0` at its corners. With
 //! `s` the handedness of the row and `t` the thickness of the joint, the right face is turned against the left one
@@ -61,7 +61,7 @@ pub struct Placement {
     undeformed_m: Vec<Vector2<f64>>,
     handedness: f64,
     supports: Supports,
-    /// Where the left and the right support are.
+    /// Positions of the left and the right support.
     pub support_poses: [Pose; 2],
     /// Gaps of every joint at intrados and extrados, in metres.
     pub gaps_m: Vec<[f64; 2]>,
@@ -69,7 +69,7 @@ pub struct Placement {
     pub poses: Vec<Pose>,
     /// Centres of gravity of the blocks, in metres.
     pub centres_m: Vec<Vector2<f64>>,
-    /// Where the joints press.
+    /// Frames of the joints, at which these press.
     pub frames: Vec<Frame>,
     /// The mismatch by rounding at the last open joint of an arch; `None` for stacks, and while all joints are shut.
     pub closure: Option<Closure>,

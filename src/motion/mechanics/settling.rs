@@ -6,7 +6,7 @@
 //! which snaps to three other hinges, or falls (`descent`). So a path of equilibria is made of pieces, and which ones they are depends
 //! on where it began: here, at the undeformed row.
 //!
-//! The same holds of a push that grows while the supports stand still: it moves nothing until it makes hinges snap. That push is the first motion; the
+//! Likewise for a push that grows while the supports stand still: it moves nothing until it makes hinges snap. That push is the first motion; the
 //! push at which the row falls, its capacity, may be many times larger.
 //!
 //! Ties are stretched by what the row does, and pull back. They may hold it on more than three hinges, where it goes on little by little: the
@@ -113,7 +113,7 @@ impl Movements {
         [of(-1.0, &self.left), of(1.0, &self.right)]
     }
 
-    /// Where the left and the right support of a row are then.
+    /// Positions of the left and the right support of a row then.
     #[must_use]
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
         let joints = &row.joints;
@@ -133,7 +133,7 @@ impl Movements {
 /// The condition of a row: where its supports are, and the force on a unit of its mass, in units of gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Where the left and the right support are.
+    /// Positions of the left and the right support.
     pub supports: [Pose; 2],
     /// Gravity and inertia over gravity.
     pub force_g: Vector2<f64>,
@@ -142,7 +142,7 @@ pub struct Condition {
 /// Hinges that gave way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Snap {
-    /// Where along the way, in metres if supports move.
+    /// Place along the way, in metres if supports move.
     #[serde(rename = "at_m")]
     pub at: f64,
     /// The hinges before; `None` where the row was undeformed.
@@ -185,15 +185,15 @@ pub enum SettlingError {
     /// No hinges were found on which it stands.
     #[error("its hinges give way, and no others were found on which it rests")]
     Lost {
-        /// Where along the way.
+        /// Place along the way.
         at: f64,
     },
-    /// It rests with a joint that is open at both edges.
+    /// The row rests with a joint that is open at both edges.
     #[error(
         "its hinges give way, and joint {joint} (from 0 at the left springing) parts: blocks that do not touch are not followed"
     )]
     Parted {
-        /// Where along the way.
+        /// Place along the way.
         at: f64,
         /// Which joint, from 0 on the left support.
         joint: usize,
@@ -201,7 +201,7 @@ pub enum SettlingError {
 }
 
 impl SettlingError {
-    /// Where along the way the row was lost; `None` where that is not known.
+    /// Place along the way at which the row was lost; `None` if that is not known.
     #[must_use]
     pub const fn at(&self) -> Option<f64> {
         match self {
@@ -220,7 +220,7 @@ pub struct Follower<'a> {
     hinges: Option<Pins>,
     /// Its condition.
     pub condition: Condition,
-    /// Where its blocks are, and what its ties remember.
+    /// Positions of its blocks, and the memory of its ties.
     pub stance: Stance,
     /// Hinges that gave way so far.
     pub snaps: Vec<Snap>,
@@ -268,7 +268,7 @@ impl<'a> Follower<'a> {
             .is_some_and(|pins| pins.hinges.len() > 3)
     }
 
-    /// Where its blocks are.
+    /// Positions of its blocks.
     #[must_use]
     pub const fn placement(&self) -> &Placement {
         &self.stance.placement

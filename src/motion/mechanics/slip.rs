@@ -76,7 +76,7 @@ impl Position {
         self.centre_m + self.turned(arm_m)
     }
 
-    /// Where a vector of the block in the undeformed row points now.
+    /// Present direction of a vector of the block in the undeformed row.
     fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(product(self.half, self.half), vector)
     }
@@ -189,14 +189,14 @@ pub struct Contact {
     pub normal: Vector2<f64>,
     /// Cosine and sine of half the angle between the faces. Forces on offset faces lean by it.
     half: Vector2<f64>,
-    /// Where the overlap of the faces begins and ends, along the joint from `middle_m`, in metres.
+    /// The ends of the overlap of the faces, along the joint from `middle_m`, in metres.
     pub ends_m: [f64; 2],
     /// Gaps at these ends and the offset of the right face towards the extrados, in metres.
     pub coordinates_m: Vector3<f64>,
 }
 
 impl Contact {
-    /// Where the overlap ends on the given edge.
+    /// The end of the overlap on the given edge.
     #[must_use]
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         let intrados_m = self.middle_m + self.along * self.ends_m[0];

@@ -48,7 +48,7 @@ pub struct RowOnset {
 /// Why a row has no onset.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StabilityError {
-    /// It does not carry its own weight.
+    /// The row does not carry its own weight.
     #[error("the row cannot carry its own weight")]
     CannotStand(Vec<Opening>),
     /// The velocities of a trial were not found.
@@ -307,7 +307,7 @@ impl Highest {
         None
     }
 
-    /// Where the constraints of the basis meet.
+    /// The point at which the constraints of the basis meet.
     fn corner(&self) -> DVector<f64> {
         let basis = || self.basis.iter().map(|index| &self.constraints[*index]);
         let width = self.basis.len();

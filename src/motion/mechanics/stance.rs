@@ -6,10 +6,10 @@ use super::lanes::Lanes;
 use super::tie::{TieLine, TieMemory};
 use crate::mechanics::geometry::pose::Pose;
 
-/// Where the blocks of a row are, and what its ties remember.
+/// Positions of the blocks of a row, and the memory of its ties.
 #[derive(Clone, Debug)]
 pub struct Stance {
-    /// Where its blocks are.
+    /// Positions of its blocks.
     pub placement: Placement,
     /// Memory of its ties.
     pub ties: Vec<TieMemory<Lanes<1>>>,

@@ -10,12 +10,12 @@ use super::block::Block;
 use super::geometry::rigid::{Momentum, Twist, mirrored};
 use super::lanes::{Lanes, Real, both, remembered};
 
-/// Where a tie holds on.
+/// An end of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
     /// Index of the block; `None`: a support, or the ground.
     pub block: Option<usize>,
-    /// Where, in the undeformed structure, in metres.
+    /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Anchor {
 /// A tie, as it is in the undeformed structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {
-    /// Where it holds on.
+    /// Its two ends.
     pub ends: [Anchor; 2],
     /// Force in N for each metre that it is stretched.
     pub stiffness_n_m: f64,
@@ -49,7 +49,7 @@ pub enum TieError {
     /// A number is out of range.
     #[error("{0}")]
     Value(String),
-    /// It holds on to a block that is not there.
+    /// An end is on a block that does not exist.
     #[error("there is no block {number}", number = .0 + 1)]
     NoBlock(usize),
     /// Both ends are at one place.
@@ -59,9 +59,11 @@ pub enum TieError {
     #[error("both ends are on block {number}, which is rigid: such a tie does nothing", number = .0 + 1)]
     OneBlock(usize),
     /// Both ends are on supports.
-    #[error("both ends are on supports, which move as they are told: such a tie does nothing")]
+    #[error("both ends are on supports, which a tie cannot move: such a tie does nothing")]
     OnSupports,
 }
+
+const NOT_NEGATIVE: &str = "a number that is not negative: a tie does not push";
 
 impl Tie {
     /// Checks its numbers, and that it is between two of so many blocks, or one of them and a support. `size_m` is the length of the
@@ -74,44 +76,25 @@ impl Tie {
         let (stiffness_n_m, prestress_n) = (self.stiffness_n_m, self.prestress_n);
         let (yield_force_n, breaks_at_strain) = (self.yield_force_n, self.breaks_at_strain);
         let positive = "a positive number";
-        let not_negative = "a number that is not negative: a tie does not push";
         let value = |message: String| Err(TieError::Value(message));
-        for (key, number, allowed, holds) in [
-            (
-                "stiffness_n_m",
-                stiffness_n_m,
-                positive,
-                stiffness_n_m > 0.0 && stiffness_n_m.is_finite(),
-            ),
-            (
-                "prestress_n",
-                prestress_n,
-                not_negative,
-                prestress_n >= 0.0 && prestress_n.is_finite(),
-            ),
-            (
-                "yield_force_n",
-                yield_force_n,
-                positive,
-                yield_force_n > 0.0,
-            ),
+        for (key, number, most, allowed) in [
+            ("stiffness_n_m", stiffness_n_m, f64::MAX, positive),
+            ("prestress_n", prestress_n, f64::MAX, NOT_NEGATIVE),
+            ("yield_force_n", yield_force_n, f64::INFINITY, positive),
             (
                 "breaks_at_strain",
                 breaks_at_strain,
+                f64::INFINITY,
                 positive,
-                breaks_at_strain > 0.0,
             ),
         ] {
-            if !holds {
+            let may_be_zero = allowed == NOT_NEGATIVE;
+            if !(number > 0.0 || number == 0.0 && may_be_zero) || number > most {
                 return value(format!("`{key} = {number:?}` of a tie must be {allowed}"));
             }
         }
-        if let Some(number) = from
-            .at_m
-            .iter()
-            .chain(&to.at_m)
-            .find(|part| !part.is_finite())
-        {
+        let mut parts = from.at_m.iter().chain(&to.at_m);
+        if let Some(number) = parts.find(|part| !part.is_finite()) {
             return value(format!("`point = {number:?}` of a tie must be finite"));
         }
         let mut named = [from.block, to.block].into_iter().flatten();
@@ -249,7 +232,7 @@ impl Tie {
 pub struct TieLine {
     /// Indices of the blocks at its ends; `None`: a support, or the ground.
     pub ends: [Option<usize>; 2],
-    /// Where its ends are.
+    /// Positions of its ends.
     pub ends_m: [Vector2<f64>; 2],
     /// Unit vector from its first end to its second one.
     pub along: Vector2<f64>,

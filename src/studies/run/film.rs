@@ -63,7 +63,10 @@ mod tests {
         for count in [1, 7, 8, 9, 100, 1023, 1024] {
             let mut film = Film::new(8);
             for i in 0..count {
-                film.push(&Sample::at_rest(f64::from(i)));
+                film.push(&Sample {
+                    time_s: f64::from(i),
+                    ..Sample::default()
+                });
             }
             let times_s: Vec<f64> = film.frames().iter().map(|frame| frame.time_s).collect();
             assert!(

@@ -75,7 +75,7 @@ mod tests {
             curves.push(&Sample {
                 state: State::Rocking(sway),
                 rotations_rad: vec![rotation_rad],
-                ..Sample::at_rest(0.0)
+                ..Sample::default()
             });
             let drawn: Vec<(f64, f64)> = curves.rotation_rad.points().collect();
             assert_eq!(drawn, [(0.0, rotation_rad)]);

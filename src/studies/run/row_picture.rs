@@ -362,7 +362,8 @@ mod tests {
         }
         Sample {
             hinges,
-            ..Sample::at_rest(time_s)
+            time_s,
+            ..Sample::default()
         }
     }
 

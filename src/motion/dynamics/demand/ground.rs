@@ -125,13 +125,13 @@ pub struct GroundSpectrum {
     pub s: f64,
     /// Coefficient `C_C`.
     pub c_c: f64,
-    /// Where the branch of constant acceleration begins, in seconds.
+    /// Period at which the branch of constant acceleration begins, in seconds.
     pub t_b_s: f64,
-    /// Where that of constant velocity begins, in seconds.
+    /// Period at which the branch of constant velocity begins, in seconds.
     pub t_c_s: f64,
-    /// Where that of constant displacement begins, in seconds.
+    /// Period at which the branch of constant displacement begins, in seconds.
     pub t_d_s: f64,
-    /// Where that ends, in seconds.
+    /// Period at which the branch of constant displacement ends, in seconds.
     pub t_e_s: f64,
     /// Peak acceleration of the ground, `a_g S`, in g.
     pub peak_g: f64,
@@ -143,11 +143,7 @@ impl GroundSpectrum {
     /// # Errors
     /// When a parameter is out of the range of the code: `F_o` below 2.2, or corner periods out of order.
     pub fn new(hazard: Hazard, site: Site) -> Result<Self, ArgumentError> {
-        let Hazard {
-            ag_g,
-            f0,
-            tc_star_s,
-        } = hazard;
+        let (ag_g, f0, tc_star_s) = (hazard.ag_g, hazard.f0, hazard.tc_star_s);
         let t_e_s = site.soil.t_e_s();
         let refused = |argument, value, allowed| {
             Err(ArgumentError {

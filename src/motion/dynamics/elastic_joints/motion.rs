@@ -133,7 +133,7 @@ pub struct Step<const L: usize> {
 /// Movements of the ground in a step of any lane; those that are absent are not computed.
 #[derive(Clone, Copy, Default)]
 pub struct Happens {
-    /// It shakes.
+    /// The ground shakes.
     pub shakes: bool,
     /// The feet move differently.
     pub parts: bool,

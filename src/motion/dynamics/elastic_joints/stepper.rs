@@ -57,7 +57,7 @@ struct Lane<'a> {
     course: Course<'a>,
     until: Until,
     velocity: GroundVelocity<'a>,
-    /// Where the feet move differently: how far apart they go, and are.
+    /// Rate and size of the distance between feet that move differently.
     feet: Option<FeetApart<'a>>,
     apart_m: Vector2<f64>,
     quiet_s: f64,
@@ -557,7 +557,7 @@ impl<'a> ElasticStepper<'a> {
         self.group.lanes[0].as_mut().expect("it was begun")
     }
 
-    /// Where the bodies of a joint are.
+    /// Positions of the bodies of a joint.
     fn places(&self, joint: usize) -> [Place<Lanes<1>>; 2] {
         let structure = self.group.start.structure;
         let ground = structure.bodies.len();

@@ -140,7 +140,7 @@ pub struct LandingStepper<'a> {
     closed: Vec<Corners>,
     /// Whether it lies where it stood and stays there.
     stands: bool,
-    /// Where the joints were pressed in the step that ended at an impact.
+    /// Corners that were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
     start_energy: f64,
     friction_demand: f64,
@@ -157,12 +157,7 @@ impl<'a> LandingStepper<'a> {
         standing: &Stance,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let Task {
-            row,
-            ground,
-            gravity_m_s2: gravity,
-            ..
-        } = task;
+        let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
         let mut program = Program::new(row);
@@ -244,7 +239,7 @@ impl<'a> LandingStepper<'a> {
         Ok(stepper)
     }
 
-    /// Where the blocks are.
+    /// Positions of the blocks.
     pub fn into_placement(self) -> Placement {
         self.placement
     }

@@ -45,7 +45,7 @@ impl<'a> RightSupport<'a> {
         self.moves() && self.gone_m.norm() > least_m
     }
 
-    /// Where the supports are that stood there.
+    /// Positions of supports that stood there.
     pub fn poses(&self, stood: &[Pose; 2]) -> [Pose; 2] {
         let [left, mut right] = *stood;
         right.translation += self.gone_m;

@@ -58,7 +58,7 @@ pub struct SlidingStepper<'a> {
     course: Course<'a>,
     faces: Vec<Faces>,
     thinnest_m: f64,
-    /// Where the left and the right support are.
+    /// Positions of the left and the right support.
     supports: [Position; 2],
     positions: Vec<Position>,
     velocities: Vec<Vector3<f64>>,
@@ -105,12 +105,7 @@ impl<'a> SlidingStepper<'a> {
         coefficient: f64,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let Task {
-            row,
-            ground,
-            gravity_m_s2: gravity,
-            ..
-        } = task;
+        let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
         let faces = Faces::of_row(row);

@@ -20,7 +20,7 @@ struct Pulling<'a> {
 pub(super) struct Ties<'a> {
     row: &'a Row,
     ties: Vec<Pulling<'a>>,
-    /// Where the left and the right support are.
+    /// Positions of the left and the right support.
     supports: [Pose; 2],
     /// Elastic energy where the row stood.
     at_rest_j: f64,

@@ -90,14 +90,14 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Where the ground is at a time that is not before the last one.
+    /// Position of the ground at a time that is not before the last one.
     fn to(&mut self, time_s: f64) -> Vector2<f64> {
         (self.piece, self.at_m) = self.ahead(time_s);
         self.time_s = self.time_s.max(time_s);
         self.at_m
     }
 
-    /// Where the ground will be at a time, and the piece of that time.
+    /// Later position of the ground at a time, and the piece of that time.
     fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = &self.velocity.ground.pieces;
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);

@@ -10,7 +10,6 @@ use thiserror::Error;
 
 use super::integrator::{IntegratorError, State, Step, Task, integrate};
 use crate::dynamics::history::Cost;
-use crate::dynamics::model::SimulationError;
 
 /// Value of a guard, positive until the event, and its rate of change.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,12 +157,6 @@ pub enum EngineError {
         /// The largest number allowed.
         max_transitions: usize,
     },
-}
-
-impl From<EngineError> for SimulationError {
-    fn from(error: EngineError) -> Self {
-        Self::computation(error)
-    }
 }
 
 /// Runs `system` from time zero until it is over, until the end in the settings, or until `observer` breaks.

@@ -1,4 +1,4 @@
-//! Where the bodies of a mechanism are, in the frame of the ground.
+//! Positions of the bodies of a mechanism, in the frame of the ground.
 
 use super::rocking::{Mode, Moment, Phase, Rocking, RockingState, Swing};
 use crate::dynamics::history::State;

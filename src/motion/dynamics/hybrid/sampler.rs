@@ -15,7 +15,6 @@ use crate::dynamics::recorder::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::chain::{Mechanism, MechanismChain};
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::sway::Sway;
 
 /// Error of a step of a fall, which is only drawn, relative to the state.
 const FALL_TOLERANCE: f64 = 1e-6;
@@ -30,7 +29,7 @@ pub(super) struct Sampler<'r> {
     /// Reused, so that samples need no allocation.
     spare: Sample,
     /// Positions of the hinges, also reused.
-    positions: Vec<Vector2<f64>>,
+    hinges_m: Vec<Vector2<f64>>,
     pub(super) thrust: ThrustRecord,
     /// The record up to the last sample before the unstable equilibrium.
     pub(super) thrust_before_critical: ThrustRecord,
@@ -44,8 +43,8 @@ impl<'r> Sampler<'r> {
             next: 0,
             phase: 0,
             held: None,
-            spare: Sample::at_rest(0.0),
-            positions: Vec::new(),
+            spare: Sample::default(),
+            hinges_m: Vec::new(),
             thrust: ThrustRecord::default(),
             thrust_before_critical: ThrustRecord::default(),
             recorder,
@@ -69,7 +68,7 @@ impl<'r> Sampler<'r> {
     }
 
     fn sample<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, now: &Now<'_, C>) -> Sample {
-        let mut sample = mem::replace(&mut self.spare, Sample::at_rest(0.0));
+        let mut sample = mem::take(&mut self.spare);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
         sample.begin(now.time_s, ground_m_s2, self.phase);
         let (rotations, rates) = posture(rocking, now.mode, &now.state);
@@ -80,22 +79,12 @@ impl<'r> Sampler<'r> {
         let poses = &mut sample.poses;
         if let Some(swing) = now.mode.swing() {
             let (sway, link) = (swing.sway, swing.link);
-            let length_m = rocking.chain.length_m();
-            (link.mechanism).place(now.state[0], poses, &mut self.positions);
-            for pose in &mut *poses {
-                *pose = pose.scaled(length_m);
-            }
-            if sway == Sway::Left {
-                poses.reverse();
-                self.positions.reverse();
-                for pose in poses {
-                    *pose = pose.mirrored();
-                }
-            }
+            let (displaced, hinges_m) = ((now.state[0], sway), &mut self.hinges_m);
+            (rocking.chain).place_m(&link.mechanism, displaced, poses, hinges_m);
             let seen = rocking.chain.hinges(swing.impacts, sway).into_iter();
-            let open = seen.zip(&self.positions).map(|(hinge, at)| OpenHinge {
+            let open = seen.zip(hinges_m).map(|(hinge, at)| OpenHinge {
                 hinge,
-                position_m: Vector2::new(sway.sign() * at.x, at.y) * length_m,
+                position_m: *at,
             });
             sample.hinges.extend(open);
             // Adding zero makes a negative zero positive.

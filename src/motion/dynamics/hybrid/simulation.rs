@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use super::engine::{
     GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
 };
+use super::first_fall::overturns;
 use super::integrator::Step;
 use super::posture::{Now, Rotations, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
@@ -97,10 +98,8 @@ macro_rules! models {
                 request: &Request,
             ) -> Result<Option<Sway>, SimulationError> {
                 let rocking = checked(self, ground, request)?;
-                Ok(super::first_fall::overturns(
-                    &rocking,
-                    request.relative_tolerance,
-                )?)
+                let tolerance = request.relative_tolerance;
+                overturns(&rocking, tolerance).map_err(SimulationError::computation)
             }
         }
     )+};
@@ -132,7 +131,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
         tally: Tally::new(&rocking, mode, &state),
         sampler: recorder.map(|recorder| Sampler::new(request.output_step_s, recorder)),
     };
-    let finish = simulate(&rocking, mode, state, &settings, &mut watched)?;
+    let finish = simulate(&rocking, mode, state, &settings, &mut watched);
+    let finish = finish.map_err(SimulationError::computation)?;
     let Watched {
         mut tally,
         mut sampler,

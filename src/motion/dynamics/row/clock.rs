@@ -75,7 +75,7 @@ impl Marks {
         self.passed += 1.0;
     }
 
-    /// Where steps end next.
+    /// Time of the next end of a step.
     pub fn next_s(&self) -> f64 {
         self.mark_s().min(self.clock.end_s)
     }

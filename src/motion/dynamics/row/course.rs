@@ -209,7 +209,7 @@ impl<'a> Course<'a> {
             is_safe: false,
             stopped: false,
             falls: false,
-            sample: Sample::at_rest(0.0),
+            sample: Sample::default(),
             pieces: &task.ground.pieces,
             phase: 0,
             later: None,
@@ -533,7 +533,7 @@ impl<'a> Course<'a> {
 
     /// The sample to write to, complete except for blocks and joints, and whether it needs the line of thrust.
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
-        let mut sample = mem::replace(&mut self.sample, Sample::at_rest(0.0));
+        let mut sample = mem::take(&mut self.sample);
         while let [_, rest @ ..] = self.pieces
             && rest.first().is_some_and(|next| next.start_s <= self.time)
         {

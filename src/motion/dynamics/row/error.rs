@@ -22,19 +22,19 @@ pub enum RowModelError {
     /// An argument is not allowed.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// It slides apart under its own weight.
+    /// The row slides apart under its own weight.
     #[error(transparent)]
     Friction(#[from] FrictionError),
-    /// It does not rest on its elastic joints.
+    /// The row does not rest on its elastic joints.
     #[error(transparent)]
     Rest(#[from] RestError),
-    /// It falls when its supports have moved by this part of their way.
+    /// The row falls when its supports have moved by this part of their way.
     #[error("with rigid joints the structure falls when its supports have moved {:.2} % of the way", 1e2 * .0)]
     Falls(f64),
     /// A tie breaks, of this index, before its supports have moved all of their way.
     #[error("with rigid joints tie {} breaks before its supports have moved all of the way", .0 + 1)]
     TieBreaks(usize),
-    /// It cannot be followed as its supports move.
+    /// The row cannot be followed as its supports move.
     #[error(transparent)]
     Settling(#[from] SettlingError),
 }

@@ -25,7 +25,7 @@ use crate::mechanics::sway::Sway;
 pub struct RigidRow {
     /// Its blocks.
     pub row: Row,
-    /// Where it stands: undeformed, or on supports that have moved.
+    /// Its stance: undeformed, or on supports that have moved.
     pub standing: Stance,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
     incipient_g: [Option<f64>; 2],
@@ -85,12 +85,12 @@ impl RigidRow {
     /// The size of its samples, by whether joints slip, and whether pressures are reported.
     pub fn shape(&self, slips: bool, presses: bool) -> Shape {
         let joints = self.row.joints.len();
-        let where_it_is = |told: bool| if told { joints } else { 0 };
+        let joints_if = |reported: bool| if reported { joints } else { 0 };
         Shape {
             bodies: self.row.blocks.len(),
             joints,
-            slipping: where_it_is(slips),
-            pressing: where_it_is(presses),
+            slipping: joints_if(slips),
+            pressing: joints_if(presses),
             ties: self.row.ties.len(),
         }
     }
@@ -257,7 +257,7 @@ impl RigidRow {
     }
 }
 
-/// Where no barrier is known, that of an arch is taken as this fraction of its weight times its size.
+/// The energy barrier of an arch, if none is known, as a fraction of its weight times its size.
 const BARRIER_RATIO: f64 = 1e-3;
 
 /// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of

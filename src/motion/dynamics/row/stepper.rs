@@ -32,7 +32,7 @@ pub trait Stepper<'a>: Sized {
     fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
     /// Gaps of a joint at intrados and extrados.
     fn gaps(&self, joint: usize) -> [f64; 2];
-    /// Where a joint is pressed, or was last pressed, on the given edge.
+    /// The place at which a joint is pressed, or was last pressed, on the given edge.
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
     fn momentum(&self) -> Vector2<f64>;
     /// Whether a joint slips.

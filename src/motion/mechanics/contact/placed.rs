@@ -35,8 +35,8 @@ impl Placed {
                 .map(|b| (b.mass_kg, b.inertia_kg_m2))
                 .collect(),
             frames: Vec::with_capacity(joints),
-            own: vec![MassMoments::NONE; blocks],
-            moments: vec![MassMoments::NONE; blocks + 1],
+            own: vec![MassMoments::default(); blocks],
+            moments: vec![MassMoments::default(); blocks + 1],
             momenta: vec![Momentum::ZERO; blocks + 1],
             datum: vec![Twist::ZERO; blocks + 1],
         }
@@ -46,7 +46,7 @@ impl Placed {
     pub fn place(&mut self, placement: &Placement) {
         self.frames.clear();
         self.frames.extend_from_slice(&placement.frames);
-        let mut moments = MassMoments::NONE;
+        let mut moments = MassMoments::default();
         for (block, centre) in placement.centres_m.iter().enumerate() {
             let (mass, inertia) = self.masses[block];
             let own = MassMoments {

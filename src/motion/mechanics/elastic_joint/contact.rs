@@ -22,7 +22,7 @@ pub enum Contact {
 /// Cells of a joint that may crush, each with linear stress: they are narrower near the edges, where the stress is.
 const CELLS: usize = 12;
 
-/// Where along a joint its stress is known.
+/// Places along a joint at which its stress is known.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Section {
     /// At the edges, and so everywhere.
@@ -413,7 +413,7 @@ fn in_cells<R: Real>(
     sums
 }
 
-/// Where a function that is linear between two ends is positive, as fractions of the length; an empty interval if nowhere.
+/// The interval in which a function that is linear between two ends is positive, as fractions of the length; an empty interval if nowhere.
 #[inline(always)]
 fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     let (zero, one) = (R::of(0.0), R::of(1.0));

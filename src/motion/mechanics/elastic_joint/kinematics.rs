@@ -2,7 +2,7 @@
 
 use crate::mechanics::lanes::{Real, both};
 
-/// Where a body is: how far its centre has moved, and how it has turned.
+/// Position of a body: how far its centre has moved, and how it has turned.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<R> {
     /// Displacement of the centre, in m.

@@ -34,23 +34,23 @@ pub struct Rest {
 /// Why a structure does not rest.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RestError {
-    /// It would if nothing slipped.
+    /// It would rest if nothing slipped.
     #[error(
         "the joints slip under the weight of the structure: it needs a larger friction_coefficient"
     )]
     Friction,
-    /// It would if nothing crushed.
+    /// It would rest if nothing crushed.
     #[error(
         "the joints crush under the weight of the structure: it needs a larger compressive_strength_mpa"
     )]
     Strength,
-    /// It would with continuous contact.
+    /// It would rest with continuous contact.
     #[error(
         "with so few contact points the structure is a mechanism: between two points the thrust bends no joint; give more \
          contact_points, or contact = \"continuous\""
     )]
     Points,
-    /// It would with stiffer joints.
+    /// It would rest with stiffer joints.
     #[error(
         "with joints as soft as these the structure bends so far under its weight that it falls: it needs a larger stiffness, \
          or a greater thickness"
@@ -159,7 +159,7 @@ impl ElasticStructure {
         Err(RestError::NotFound)
     }
 
-    /// Where it rests once its supports have moved slowly, from where it rested before: steps of the movement, each from the equilibrium
+    /// Its rest once its supports have moved slowly, from the rest before: steps of the movement, each from the equilibrium
     /// that the last two let expect. Joints slip by what they have slipped in all; ties that have yielded on the way are longer from then
     /// on.
     fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
@@ -506,12 +506,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Where a body or a support is.
+    /// Position of a body or a support.
     fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<Alone> {
         Place::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
-    /// Where the first or the second of two bodies is, with the derivatives by the coordinates of both.
+    /// Position of the first or the second of two bodies, with the derivatives by the coordinates of both.
     fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> Place<Dual<6>> {
         let Some(at) = moved.get(body) else {
             return Place::at(self.structure.support(body));

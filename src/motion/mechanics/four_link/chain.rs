@@ -55,7 +55,7 @@ impl ArchLink {
 pub struct Chain {
     /// The profile in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
     profiles: [Arc<dyn Profile>; 2],
-    /// Where hinges may form.
+    /// Sections at which hinges may form.
     pub sites: HingeSites,
     law: ImpactLaw,
     /// Onset of rocking; its mechanism is link 0.

@@ -26,7 +26,7 @@ impl JointedProfile {
             return None;
         }
         let (per_m, per_kg) = (row.size_m.recip(), row.mass_kg().recip());
-        let mut before = MassMoments::NONE;
+        let mut before = MassMoments::default();
         let mut moments = vec![before];
         for block in &row.blocks {
             let own = block.moments_at(block.centre_m);

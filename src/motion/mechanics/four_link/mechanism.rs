@@ -124,7 +124,7 @@ impl FourLink {
     }
 }
 
-/// Where hinges may form.
+/// Sections at which hinges may form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HingeSites {
     /// At any section.

@@ -316,7 +316,7 @@ impl<O: Objective> Climber<'_, O> {
         self.objective.evaluate(mechanism, above)
     }
 
-    /// Where a hinge may move while the others stay: in its cell, and on its side of its neighbours.
+    /// The interval in which a hinge may move while the others stay: in its cell, and on its side of its neighbours.
     fn range(&self, angles: &[f64; 4], i: usize) -> (f64, f64) {
         let cell = self.cells[i];
         let before = i

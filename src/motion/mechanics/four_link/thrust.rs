@@ -33,12 +33,6 @@ const TOP_ACCURACY_RAD: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 
 impl Demand {
-    /// No excess, no friction.
-    pub const NONE: Self = Self {
-        excess_ratio: 0.0,
-        friction: 0.0,
-    };
-
     /// Measures resultants against their sections; `weight` is that of the whole
     /// structure, in the unit of the resultants.
     ///
@@ -48,7 +42,7 @@ impl Demand {
     /// tension; no friction is needed there.
     #[must_use]
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
-        sections.fold(Self::NONE, |demand, section| {
+        sections.fold(Self::default(), |demand, section| {
             demand.max(Self::of_section(&section, weight))
         })
     }
@@ -257,7 +251,7 @@ impl ThrustLine {
                 starts
                     .zip(&self.parts)
                     .filter(|(start, part)| *start < part.end_rad)
-                    .fold(Demand::NONE, |demand, (start, part)| {
+                    .fold(Demand::default(), |demand, (start, part)| {
                         let at = |angle_rad: f64| {
                             let resultant = part.at(&*self.profile, angle_rad);
                             let section =

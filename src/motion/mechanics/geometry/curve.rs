@@ -30,9 +30,9 @@ const GAUSS: [(f64, f64); 4] = [
 pub enum Curve {
     /// A straight line.
     Line {
-        /// Where it starts.
+        /// Its start.
         from: Vector2<f64>,
-        /// Where it ends.
+        /// Its end.
         to: Vector2<f64>,
     },
     /// An arc of a circle.

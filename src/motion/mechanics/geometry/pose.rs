@@ -1,4 +1,4 @@
-//! Where a rigid body is.
+//! The pose of a rigid body.
 
 use nalgebra::Vector2;
 
@@ -50,13 +50,13 @@ impl Pose {
         self.rotation_rad
     }
 
-    /// Where a point of the undeformed body is now.
+    /// Present position of a point of the undeformed body.
     #[must_use]
     pub fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.turned(point) + self.translation
     }
 
-    /// Where a vector of the undeformed body points now.
+    /// Present direction of a vector of the undeformed body.
     #[must_use]
     pub fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(self.turn, vector)

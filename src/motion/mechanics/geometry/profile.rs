@@ -47,7 +47,7 @@ pub trait Profile: Debug + Send + Sync {
 
     /// Mass moments per unit of the section's number; none where hinges can sit at joints only.
     fn slice(&self, _section: f64) -> MassMoments {
-        MassMoments::NONE
+        MassMoments::default()
     }
 
     /// Derivative of the point on an edge with respect to the section's number; zero where hinges can sit at joints only.

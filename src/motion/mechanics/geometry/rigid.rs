@@ -142,7 +142,7 @@ impl Momentum {
 linear!(Momentum { linear, angular });
 
 /// Mass, first moment and polar moment about the centre of the ring.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MassMoments {
     /// Mass.
     pub mass: f64,
@@ -153,13 +153,6 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
-    /// The moments of nothing.
-    pub const NONE: Self = Self {
-        mass: 0.0,
-        first: Vector2::new(0.0, 0.0),
-        polar: 0.0,
-    };
-
     /// Centre of gravity.
     #[must_use]
     pub fn centroid(&self) -> Vector2<f64> {

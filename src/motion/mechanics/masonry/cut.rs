@@ -101,7 +101,7 @@ impl CutArch {
     }
 }
 
-/// Where a piece of an extrados is highest: at one of its ends, or where it turns.
+/// The highest point of a piece of an extrados: at one of its ends, or where it turns.
 pub(super) fn top(piece: &Curve) -> f64 {
     let falls = |part: f64| piece.at(part).1.y <= 0.0;
     match (falls(0.0), falls(1.0)) {

@@ -204,7 +204,7 @@ pub struct Masonry {
 pub struct Carried {
     /// Corners of what of the fill is above a block, in metres.
     pub fill_m: Vec<FillColumn>,
-    /// Where the middle of each load stands, in metres.
+    /// Block of each load, and the position of its middle, in metres.
     pub loads_m: Vec<(usize, Vector2<f64>)>,
 }
 

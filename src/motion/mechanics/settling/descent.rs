@@ -1,4 +1,4 @@
-//! Where a row goes that gives way slowly: down the steepest way of its potential energy.
+//! The way of a row that gives way slowly: down the steepest descent of its potential energy.
 //!
 //! The blocks move as in a viscous fluid that resists as their masses do. Their velocities are then those nearest to the load,
 //! of all that the joints allow: the program of a step of a motion ([`crate::mechanics::contact`]). Descents that weighted
@@ -8,7 +8,7 @@
 //! velocities that depend on it. These are linear in the forces of the ties as long as the same corners press, and a step has an energy that is convex
 //! in them: Newton's method, which goes as far as that energy falls, finds the forces of all ties at once.
 //!
-//! What a tie lacks is measured as a length and not as a force, since a stiff one multiplies the last digit of its force by more than a million.
+//! The error of the force of a tie is measured as a length and not as a force, since a stiff one multiplies the last digit of its force by more than a million.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -48,7 +48,7 @@ const MOST_TRIALS: usize = 20;
 const FLAT: f64 = 0.1;
 /// A response to ties is rounding below this part of what they would do to free blocks.
 const NO_MOTION: f64 = 1e-9;
-/// Where the forces of ties are not found a step is shortened, at most to this part.
+/// A step in which the forces of ties are not found is shortened, at most to this part.
 const SHORTEST: f64 = 1e-6;
 /// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
 const LONGEST: f64 = 1e3;
@@ -656,13 +656,13 @@ mod tests {
         descent.balance_ties(&mut step).unwrap();
         let lengthen = descent.lengthen(&step);
         assert!((1..=5).contains(&lengthen.ncols()), "{}", lengthen.ncols());
-        let told = &lengthen * lengthen.transpose();
+        let found = &lengthen * lengthen.transpose();
         for pulling in 0..4 {
             descent.respond(&step, |tie| f64::from(u8::from(tie == pulling)));
             for (lacking, line) in step.lines.iter().enumerate() {
                 let due = -line.lengthening(&descent.program.velocities);
-                let off = (told[(lacking, pulling)] - due).abs();
-                assert!(off < 1e-9 * told.amax(), "{lacking} {pulling}: {off:e}");
+                let off = (found[(lacking, pulling)] - due).abs();
+                assert!(off < 1e-9 * found.amax(), "{lacking} {pulling}: {off:e}");
             }
         }
     }

@@ -26,7 +26,7 @@ const STEP_RAD: f64 = 1e-3;
 /// Why a row is not held along a mechanism.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum HeldError {
-    /// It does not stand, or what moves it was not found.
+    /// The row does not stand, or its mechanism was not found.
     #[error(transparent)]
     Stability(#[from] StabilityError),
     /// No push moves it.
@@ -63,7 +63,7 @@ pub struct Held<'a> {
     pins: Pins,
     /// 1 where the first body turns anticlockwise, or -1.
     sense: f64,
-    /// Where it has lost its strength.
+    /// Rotation at which it has lost its strength.
     end_rad: f64,
     /// Memory of its ties, step by step.
     ties: Vec<Vec<TieMemory<Lanes<1>>>>,
@@ -121,7 +121,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// It displaced by this part of its way.
+    /// The mechanism displaced by this part of its way.
     ///
     /// # Panics
     /// Never: its bodies meet on all of its way.
@@ -144,7 +144,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Where on its way each tie gives way. One that has broken yields no more.
+    /// The parts of its way at which each tie yields and breaks. A broken tie yields no more.
     #[must_use]
     pub fn ties_give_way(&self) -> Vec<GivesWay> {
         let ties = self.row.ties.iter().enumerate();

@@ -87,7 +87,7 @@ impl State {
         self.margin() >= -slack
     }
 
-    /// Where it has less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
+    /// Hinges with less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
     #[must_use]
     pub fn beyond(&self, margin: f64) -> Vec<Pin> {
         let pull = self.pressing().filter(|(_, force)| *force < margin);
@@ -158,7 +158,7 @@ impl Pins {
         (hinges.len() >= 3 && apart).then(|| Self::new(row, hinges))
     }
 
-    /// Where the bodies between the pins are, of a row that stood so before; `None` where the pins do not meet, or nothing holds the bodies.
+    /// Positions of the bodies between the pins, of a row that stood so before; `None` where the pins do not meet, or nothing holds the bodies.
     fn bodies(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<Vec<Pose>> {
         match self.pins_m[..] {
             // A snap may have taken the middle pin to the other side of the outer ones than that on which it was built.
@@ -170,7 +170,7 @@ impl Pins {
         }
     }
 
-    /// Where the pins are in a row that stands so.
+    /// Positions of the pins in a row that stands so.
     fn pins_in(&self, stance: &Stance) -> Vec<Vector2<f64>> {
         let placement = &stance.placement;
         let last = &placement.support_poses[1];
@@ -189,7 +189,7 @@ impl Pins {
         self.state_at(row, condition, &poses, &before.ties)
     }
 
-    /// Where the pins are, with the parts between them at these poses.
+    /// Positions of the pins, with the parts between them at these poses.
     pub(super) fn at_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
         let pins = self.pins_m.iter().zip(&poses[1..]);
         pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
@@ -338,7 +338,7 @@ pub(super) fn side(pins_m: &[Vector2<f64>]) -> f64 {
     (right - left).perp(&(middle - left)).signum()
 }
 
-/// Where two bodies between three pins are, the middle pin on this side of the outer ones; `None` where these are too far apart.
+/// Positions of two bodies between three pins, the middle pin on this side of the outer ones; `None` where these are too far apart.
 pub(super) fn two_bodies(
     [left, middle, right]: [Vector2<f64>; 3],
     supports: &[Pose; 2],
@@ -384,13 +384,13 @@ struct Chain<'a> {
 struct Bar {
     /// How many hinges are before each of its ends.
     parts: [usize; 2],
-    /// Where they are in the undeformed row, how far apart, and their distance.
+    /// Its ends in the undeformed row, the vector between them, and their distance.
     ends_m: [Vector2<f64>; 2],
     apart_m: Vector2<f64>,
     length_m: f64,
     /// Its stretch there beyond its earlier yielding.
     stretch_m: f64,
-    /// It has broken beyond this, counted likewise.
+    /// The stretch beyond which it has broken, counted likewise.
     breaks_m: f64,
     stiffness_m: f64,
     most: f64,
@@ -549,7 +549,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Where the bodies are.
+    /// Positions of the bodies.
     fn poses(&self) -> Vec<Pose> {
         let mut at = self.condition.supports[0].of(self.pins.pins_m[0]);
         let bodies = self.rotations_rad.iter().enumerate();
@@ -591,7 +591,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Adds what ties do. Each acts on the two bodies at its ends alone while these are described by the places of their first pins and
-    /// their rotations; what all of them do to these is then told by the rotations.
+    /// their rotations; their effect on these then follows from the rotations.
     fn add_ties(&self, poses: &[Pose], slopes: &mut DVector<f64>, curvature: &mut DMatrix<f64>) {
         let count = poses.len();
         let supports = &self.condition.supports;
@@ -746,7 +746,7 @@ mod tests {
         let mut chain = Chain::new(&pins, &row, &condition, &before);
         chain.rotations_rad = vec![0.02, -0.03, 0.01, 0.04];
         let reaction = Vector2::new(-0.2, 0.5);
-        let told = chain.unbalanced().held_by(reaction).curvature;
+        let found = chain.unbalanced().held_by(reaction).curvature;
         let step = 1e-5;
         for body in 0..4 {
             let mut slopes_at = |by: f64| {
@@ -758,8 +758,8 @@ mod tests {
             };
             let due = (slopes_at(step) - slopes_at(-step)) / (2.0 * step);
             // Squares of the step, and rounding over it.
-            let off = (told.column(body) - due).amax();
-            assert!(off < 1e-8 * told.amax(), "{body}: {off:e}");
+            let off = (found.column(body) - due).amax();
+            assert!(off < 1e-8 * found.amax(), "{body}: {off:e}");
         }
     }
 }

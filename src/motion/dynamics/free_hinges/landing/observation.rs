@@ -184,7 +184,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         &mut self.course
     }
 
-    /// It ends at its landing, if there is one.
+    /// Takes a step, which ends at its landing if there is one.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.course.longest_step_s);

@@ -136,10 +136,7 @@ impl SlidingStepper<'_> {
         };
         self.course.took_late(late.total_j);
         landing.taken.add(late);
-        let Taken {
-            total_j,
-            friction_j,
-        } = landing.taken;
+        let (total_j, friction_j) = (landing.taken.total_j, landing.taken.friction_j);
         self.course.of_row.energy_taken_j += total_j - friction_j;
         if !self.course.is_followed() {
             return;
