@@ -60,7 +60,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
     if !scenario.structure().thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
-        let answer = chain_answer(&scenario, &*model, first, count);
+        let answer = chain_answer(&scenario, &*model, first, count)?;
         return commands::answer(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
@@ -114,8 +114,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         certificate: arguments.certificate,
         joints: arguments.joints.map(usize::from),
     };
-    let answer = four_links_answer(&scenario, &impact, &question);
-    let answer = answer.map_err(|error| Failure::Work(error.to_string()))?;
+    let answer = four_links_answer(&scenario, &impact, &question)?;
     commands::answer(&answer, arguments.format)
 }
 

@@ -52,6 +52,13 @@ pub(crate) mod filters {
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
+    /// With this many decimals and a power of ten.
+    #[filter_fn]
+    pub fn scientific(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
+        let text = |number: f64| format!("{number:.decimals$e}");
+        Ok(number.value().map_or_else(|| "-".to_owned(), text))
+    }
+
     /// With this many decimals on a page, in an element that holds the full value.
     #[filter_fn]
     pub fn data(number: impl Number, _: &dyn Values, decimals: usize) -> Result<Safe<String>> {
@@ -93,12 +100,6 @@ pub(crate) mod filters {
             }
         }
         Ok(Safe(set))
-    }
-
-    /// In scientific notation with two digits.
-    #[filter_fn]
-    pub fn scientific(number: &f64, _: &dyn Values) -> Result<String> {
-        Ok(format!("{number:.1e}"))
     }
 
     /// A fraction in percent, rounded down, so that a limit that was not reached does not read as reached.

@@ -1,12 +1,9 @@
 //! Impacts of the structure of a scenario: the chain of mechanisms through which they lead, and one impact in detail.
 
-mod told;
-mod words;
+mod report;
 
-use serde_json::{Value, json};
-
-pub use self::told::chain;
-use super::results::Answer;
+use self::report::{ByModel, Certificate, Summary, chain, chain_of_four_links};
+use super::results::{Answer, StudyError};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
@@ -86,7 +83,7 @@ impl<'a> LinkImpact<'a> {
     /// When a value is not finite.
     pub fn line_table(&self) -> Option<Result<Vec<u8>, OutputError>> {
         let line = self.line()?;
-        Some(told::line_table(self, &self.after()?.mechanism, line))
+        Some(report::line_table(self, &self.after()?.mechanism, line))
     }
 
     /// The same impact by the models that obey the momentum theorems, and by the model of the scenario.
@@ -134,55 +131,49 @@ pub struct Question {
 }
 
 /// The chain of mechanisms of any structure after a first sway to this side.
-#[must_use]
+///
+/// # Errors
+/// When a number is not finite.
 pub fn chain_answer(
     scenario: &Scenario,
     model: &dyn MechanismModel,
     first: Sway,
     count: usize,
-) -> Answer {
-    Answer {
-        json: json!({ "impacts": chain(model, first, count) }),
-        text: words::chain_text(scenario, model, first, count),
-    }
+) -> Result<Answer, StudyError> {
+    let impacts = |side| chain(model, side, count);
+    let summary = Summary::new(scenario, model, (&[first], count), impacts);
+    Ok(summary.answer()?)
 }
 
-/// The chain of four links with its impulses, and the details that are asked for about one impact.
+/// The chain of four links with its impulses, and the requested details of one impact.
 ///
 /// # Errors
-/// When no certificate is found.
+/// When no certificate is found, or a number is not finite.
 pub fn four_links_answer(
     scenario: &Scenario,
     impact: &LinkImpact<'_>,
     question: &Question,
-) -> Result<Answer, ProjectionError> {
+) -> Result<Answer, StudyError> {
     let (model, count) = (impact.model, question.count);
     // An arch of equal voussoirs, or of none, is symmetric, so both chains are mirror images.
     let sides = match scenario.structure().is_symmetric() {
-        true => vec![impact.first],
-        false => vec![Sway::Right, Sway::Left],
+        true => &[impact.first][..],
+        false => Sway::ALL,
     };
-    let keys = ["impacts", "impacts_after_left"].into_iter();
-    let mut json: Value = keys
-        .zip(&sides)
-        .map(|(key, side)| (key.to_owned(), told::impacts(model, *side, count)))
-        .collect();
-    let chains = sides.iter().map(|side| {
-        words::chain_text(scenario, model, *side, count)
-            + &words::impulses_text(model, *side, count)
-    });
-    let mut text = chains.collect::<Vec<_>>().join("\n");
+    let impacts = |side| chain_of_four_links(model, side, count);
+    let mut summary = Summary::new(scenario, model, (sides, count), impacts);
+    summary.chosen = format!("impact {}{}", impact.index, impact.after_first());
     if let Some(before) = impact.before().map(|link| &link.mechanism) {
         if question.models {
-            let models = impact.by_models(before, scenario.motion().impact().model);
-            json["models"] = told::models(impact, &models);
-            text += &words::models_text(impact, &models);
+            let models = impact.by_models(before, summary.model).into_iter();
+            let models = models.map(|(model, found)| ByModel::of(impact, model, found.as_ref()));
+            summary.models = Some(models.collect());
         }
         if question.certificate {
-            let projection = impact.certified(before, question.joints)?;
-            json["certificate"] = told::certificate(impact, &projection);
-            text += &words::certificate_text(scenario, impact, &projection);
+            let projection = impact.certified(before, question.joints);
+            let projection = projection.map_err(StudyError::failed)?;
+            summary.certificate = Some(Certificate::of(impact, &projection));
         }
     }
-    Ok(Answer { json, text })
+    Ok(summary.answer()?)
 }

@@ -189,45 +189,12 @@ pub(super) fn histories(
         return Err(failed(why));
     }
     let participating_kg = mechanisms.map(|one| one.m_star_kg);
-    let found: Result<Vec<(RecordPeaks, &Series)>, SimulationError> = records
+    let found: Result<Vec<RecordPeaks>, SimulationError> = records
         .into_par_iter()
-        .map(|series| {
-            let both = [1.0, -1.0].into_par_iter().map(|sign| {
-                let ground = scenario.shaken_by(series, sign);
-                let request = scenario.request_on(&ground, scenario.structure());
-                let request = Request {
-                    end_s: request.end_s.max(ground.end_s() + AFTER_S),
-                    output_step_s: STEP_S,
-                    ..request
-                };
-                peaks(&*model, &ground, &request, participating_kg)
-            });
-            let both = both.collect::<Result<Vec<Sides<Peak>>, _>>()?;
-            let larger = |sway| {
-                let (one, other) = (both[0].to(sway), both[1].to(sway));
-                let overturned = one.overturned || other.overturned;
-                let incomplete = one.incomplete || other.incomplete;
-                let displacement_m = one.displacement_m.max(other.displacement_m);
-                Peak {
-                    peak_m: (!overturned && !incomplete).then_some(displacement_m),
-                    overturned,
-                    incomplete,
-                    displacement_m,
-                }
-            };
-            let peaks = RecordPeaks {
-                file: series.file.clone(),
-                crc32: format!("{:08x}", series.checksum()),
-                peak_g: series.peak_g(gravity_m_s2),
-                peaks: Sides::of(larger),
-            };
-            Ok((peaks, series))
-        })
+        .map(|series| record_peaks(basis, &*model, series, participating_kg))
         .collect();
-    let (records, series): (Vec<RecordPeaks>, Vec<&Series>) = found
-        .map_err(|error| failed(error.to_string()))?
-        .into_iter()
-        .unzip();
+    let series = records;
+    let records = found.map_err(|error| failed(error.to_string()))?;
     let results = Sides::of(|sway| {
         let peaks: Vec<Peak> = records.iter().map(|one| *one.peaks.to(sway)).collect();
         let d0_m = mechanisms.to(sway).d0_m.unwrap_or_default();
@@ -273,6 +240,45 @@ pub(super) fn histories(
         },
         sides: results,
     }))
+}
+
+/// The larger peaks to the right and to the left of a record that acts in either direction.
+fn record_peaks(
+    basis: &Basis<'_>,
+    model: &dyn MechanismModel,
+    series: &Series,
+    participating_kg: Sides<f64>,
+) -> Result<RecordPeaks, SimulationError> {
+    let scenario = basis.scenario;
+    let both = [1.0, -1.0].into_par_iter().map(|sign| {
+        let ground = scenario.shaken_by(series, sign);
+        let request = scenario.request_on(&ground, scenario.structure());
+        let request = Request {
+            end_s: request.end_s.max(ground.end_s() + AFTER_S),
+            output_step_s: STEP_S,
+            ..request
+        };
+        peaks(model, &ground, &request, participating_kg)
+    });
+    let both = both.collect::<Result<Vec<Sides<Peak>>, _>>()?;
+    let larger = |sway| {
+        let (one, other) = (both[0].to(sway), both[1].to(sway));
+        let overturned = one.overturned || other.overturned;
+        let incomplete = one.incomplete || other.incomplete;
+        let displacement_m = one.displacement_m.max(other.displacement_m);
+        Peak {
+            peak_m: (!overturned && !incomplete).then_some(displacement_m),
+            overturned,
+            incomplete,
+            displacement_m,
+        }
+    };
+    Ok(RecordPeaks {
+        file: series.file.clone(),
+        crc32: format!("{:08x}", series.checksum()),
+        peak_g: series.peak_g(basis.gravity_m_s2),
+        peaks: Sides::of(larger),
+    })
 }
 
 fn history_side(

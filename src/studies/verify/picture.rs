@@ -146,21 +146,22 @@ pub(super) fn capacity(
     sway: Sway,
     mechanism: &Mechanism,
 ) -> Option<String> {
-    let way = mechanism.way.as_ref()?;
-    let divided = check.confidence_factor;
+    let (curve, end_m) = (mechanism.curve_m_g.as_ref()?, mechanism.d0_m?);
+    let curve = curve
+        .iter()
+        .map(|[d_m, a_g]| (*d_m, a_g / check.confidence_factor));
+    let curve: Vec<(f64, f64)> = curve.collect();
     let sides = check.states.iter().filter_map(|(state, one)| {
         let side = one.sides.get(&sway)?;
         Some(((state, one), side.displacement?, one.rule?))
     });
     let sides: Vec<_> = sides.zip(&CURVES[1..]).collect();
-    let end_m = way.centre.end().oscillator_displacement_m;
     let farthest_m = sides.iter().map(|((_, side, _), _)| 1.15 * side.demand_m);
     let farthest_m = farthest_m.fold(1.05 * end_m, f64::max);
-    let start_g = way.centre.start().oscillator_acceleration_g / divided;
     let highest_g = sides
         .iter()
         .map(|((_, side, _), _)| 1.3 * side.demand_acceleration_g);
-    let highest_g = highest_g.fold(1.6 * start_g, f64::max);
+    let highest_g = highest_g.fold(1.6 * curve[0].1, f64::max);
     let x = Scale::around([0.0, farthest_m], figure.ticks(8));
     let y = Scale::around([0.0, highest_g], 5);
     let mut keys = vec![Key::line("capacity, a/FC", CURVES[0])];
@@ -189,35 +190,18 @@ pub(super) fn capacity(
         let faint = Stroke::new(stroke.color, 0.9, "1 3");
         let ends = [(0.0, 0.0), (d_m, d_m * g_per_m)];
         below.push(Mark::curve(format!("period {name}"), faint, ends));
-        let reached_m = rule.part_of_d0 * end_m;
-        let reached = (reached_m, side.acceleration_g);
+        let reached = (side.reached_m, side.acceleration_g);
         let grey = Stroke::new(color::GREY, 0.9, "3 2");
-        above.push(Mark::curve(
-            format!("limit {name}"),
-            grey,
-            [(reached_m, 0.0), reached],
-        ));
+        let limit = [(side.reached_m, 0.0), reached];
+        above.push(Mark::curve(format!("limit {name}"), grey, limit));
         let own = Stroke::new(stroke.color, 1.6, "");
         let demanded = (side.demand_m, side.demand_acceleration_g);
-        above.push(Mark::new(
-            format!("reached {name}"),
-            own,
-            Shape::Circle(reached, 3.0),
-        ));
-        above.push(Mark::new(
-            format!("demanded {name}"),
-            own,
-            Shape::Circle(demanded, 3.0),
-        ));
+        for (what, at) in [("reached", reached), ("demanded", demanded)] {
+            let circle = Shape::Circle(at, 3.0);
+            above.push(Mark::new(format!("{what} {name}"), own, circle));
+        }
     }
-    let points = way.centre.curve.iter();
-    let points = points.map(|point| {
-        (
-            point.oscillator_displacement_m,
-            point.oscillator_acceleration_g / divided,
-        )
-    });
-    below.push(Mark::curve("capacity", CURVES[0], points));
+    below.push(Mark::curve("capacity", CURVES[0], curve));
     below.extend(above);
     let axes = [
         ("spectral displacement (m)", x),

@@ -1,0 +1,553 @@
+//! The report of impacts: the chain, its impulses and their certificate as the summary from which words follow, and the impulse line as
+//! a table.
+//!
+//! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
+
+use askama::Template;
+use serde::Serialize;
+
+use super::LinkImpact;
+use crate::argument::fixed;
+use crate::dynamics::model::MechanismModel;
+use crate::mechanics::chain::Hinge;
+use crate::mechanics::four_link::certificate::Projection;
+use crate::mechanics::four_link::impact::{Impact, ImpactModel};
+use crate::mechanics::four_link::impulse_line::ImpulseLine;
+use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use crate::mechanics::four_links::FourLinks;
+use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::sway::Sway;
+use crate::output::OutputError;
+use crate::output::mechanisms::{HINGES, degrees};
+use crate::output::summary::summary_of;
+use crate::output::table::{Cell, column, csv};
+use crate::output::template::{filters, render};
+use crate::scenario::Scenario;
+use crate::studies::results::Answer;
+
+/// Impacts of the structure of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[template(path = "studies/impact/words.txt")]
+pub struct Summary {
+    /// The impacts after a first sway to the right, or to the side of a symmetric structure that was chosen.
+    pub impacts: Vec<ChainImpact>,
+    /// The impacts after a first sway to the left, for an arch of four links that is not symmetric.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub impacts_after_left: Option<Vec<ChainImpact>>,
+    /// One impact by all impact models.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub models: Option<Vec<ByModel>>,
+    /// The largest restitution of any admissible motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// The mechanism before the first impact of each chain.
+    #[serde(skip)]
+    pub(super) starts: Vec<Stance>,
+    /// The requested number of impacts.
+    #[serde(skip)]
+    pub(super) count: usize,
+    /// The impact that `models` and `certificate` are about, in words.
+    #[serde(skip)]
+    pub(super) chosen: String,
+    /// The impact model of the scenario.
+    #[serde(skip)]
+    pub(super) model: ImpactModel,
+    #[serde(skip)]
+    pub(super) restitution_factor: f64,
+}
+
+/// An impact of a chain.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChainImpact {
+    /// Its number, from 1.
+    pub index: usize,
+    /// Kinetic energy after it over that before.
+    pub restitution: f64,
+    /// The mechanism that closes.
+    pub before: Stance,
+    /// The mechanism that follows.
+    pub after: Stance,
+    /// Present for four links.
+    #[serde(flatten)]
+    pub impulses: Option<Impulses>,
+}
+
+/// The impulses of an impact; null without an impulse line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Impulses {
+    /// The impulse at each hinge, on the part towards the crown.
+    pub impulses: Option<Vec<HingeImpulse>>,
+    /// Extremes of the impulse line.
+    pub impulse_line: Option<LineExtremes>,
+}
+
+/// A mechanism by its sway and hinges.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Stance {
+    /// The side to which it sways.
+    pub sway: Sway,
+    /// Its hinges from left to right.
+    pub hinges: Vec<Hinge>,
+}
+
+/// The impulse at a hinge, per metre of depth.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HingeImpulse {
+    /// The hinge, from `a` on the left.
+    pub hinge: &'static str,
+    /// To the right, in N s per metre.
+    pub x_n_s_per_m: f64,
+    /// Upwards, in N s per metre.
+    pub y_n_s_per_m: f64,
+}
+
+/// The place of a section, counted from the left.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Place {
+    /// The joint of a row.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<usize>,
+    /// The angle of a ring, in degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub angle_deg: Option<f64>,
+}
+
+/// Extremes of an impulse line; infinite ones, which mean tension, are null.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LineExtremes {
+    /// Whether the line is compressive and stays inside the structure.
+    pub admissible: bool,
+    /// The largest eccentricity over the thickness: 0.5 at the edges.
+    pub largest_eccentricity_ratio: Option<f64>,
+    /// The joint of a row where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_eccentricity_joint: Option<usize>,
+    /// The angle of a ring where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_eccentricity_angle_deg: Option<f64>,
+    /// The least normal impulse, in N s per metre.
+    pub least_normal_n_s_per_m: Option<f64>,
+    /// The joint of a row where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_normal_joint: Option<usize>,
+    /// The angle of a ring where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_normal_angle_deg: Option<f64>,
+    /// The largest ratio of the tangential to the normal impulse.
+    pub largest_tangential_ratio: Option<f64>,
+    /// The joint of a row where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_tangential_joint: Option<usize>,
+    /// The angle of a ring where it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_tangential_angle_deg: Option<f64>,
+}
+
+/// An impact by an impact model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ByModel {
+    /// The model.
+    pub model: &'static str,
+    /// The impact; null if no mechanism can follow by this model.
+    pub impact: Option<ModelImpact>,
+}
+
+/// The result of an impact model.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModelImpact {
+    /// Kinetic energy after the impact over that before.
+    pub restitution: f64,
+    /// The mechanism that follows.
+    pub after: Stance,
+    /// The impulses.
+    #[serde(flatten)]
+    pub impulses: Impulses,
+}
+
+/// The largest restitution of any admissible motion, compared with the link that the chain takes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Number of the impact.
+    pub index: usize,
+    /// Number of joints that may open.
+    pub joints: usize,
+    /// Restitution of the four hinges; zero if no mechanism can follow.
+    pub restitution_four_link: f64,
+    /// The largest restitution of any admissible motion.
+    pub restitution_all_fields: f64,
+    /// The second less the first.
+    pub gap: f64,
+    /// Whether the impulse line of the four hinges is admissible; null without one.
+    pub impulse_line_admissible: Option<bool>,
+    /// Joints that open in the motion that keeps the most energy.
+    pub opened_joints: Vec<OpenedJoint>,
+    /// The impulse line of the four hinges.
+    #[serde(skip)]
+    line: Option<LineExtremes>,
+    /// Neighbouring joints that open, from the left springing.
+    #[serde(skip)]
+    zones: Vec<Zone>,
+    #[serde(skip)]
+    is_row: bool,
+}
+
+/// A joint that opens.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct OpenedJoint {
+    /// Its place.
+    #[serde(flatten)]
+    pub place: Place,
+    /// The edge about which it opens.
+    pub edge: Edge,
+    /// Its rotation rate over the closing rate.
+    pub opening_rate_ratio: f64,
+}
+
+/// Neighbouring joints of a continuous ring that open about the same edge, or one joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Zone {
+    edge: Edge,
+    from: f64,
+    to: f64,
+    /// Sum of their rotation rates.
+    rate: f64,
+    /// The last of these joints.
+    joint: usize,
+}
+
+impl Stance {
+    fn of(model: &dyn MechanismModel, first: Sway, index: usize) -> Self {
+        let sway = first.before(index);
+        let hinges = model.hinges_after(index, sway);
+        Self { sway, hinges }
+    }
+}
+
+/// The first `count` impacts after a first sway to this side; fewer if one stops the structure.
+pub(super) fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<ChainImpact> {
+    let impacts = (1..=count).map_while(|index| {
+        Some(ChainImpact {
+            index,
+            restitution: model.restitution_from(first, index)?,
+            before: Stance::of(model, first, index - 1),
+            after: Stance::of(model, first, index),
+            impulses: None,
+        })
+    });
+    impacts.collect()
+}
+
+/// Those of four links, with their impulses.
+pub(super) fn chain_of_four_links(
+    model: &FourLinks,
+    first: Sway,
+    count: usize,
+) -> Vec<ChainImpact> {
+    let mut impacts = chain(model, first, count);
+    for (index, impact) in (1..).zip(&mut impacts) {
+        let link = LinkImpact {
+            model,
+            first,
+            index,
+        };
+        impact.impulses = Some(Impulses::of(&link, link.line()));
+    }
+    impacts
+}
+
+impl Impulses {
+    pub(super) fn of(impact: &LinkImpact<'_>, line: Option<&ImpulseLine>) -> Self {
+        let unit = impact.model.impulse_unit_n_s_per_m();
+        let at_hinges = |line: &ImpulseLine| {
+            let impulses = line.hinge_impulses_from_left(impact.sway());
+            let names = ["a", "b", "c", "d"].into_iter();
+            let hinges = names.zip(impulses).map(|(hinge, impulse)| HingeImpulse {
+                hinge,
+                x_n_s_per_m: impulse.x * unit,
+                y_n_s_per_m: impulse.y * unit,
+            });
+            hinges.collect()
+        };
+        Self {
+            impulses: line.map(at_hinges),
+            impulse_line: line.map(|line| LineExtremes::of(impact, line)),
+        }
+    }
+}
+
+impl Place {
+    fn of(profile: &dyn Profile, section: f64) -> Self {
+        let joint = profile.joint(section);
+        Self {
+            joint,
+            angle_deg: joint.is_none().then(|| section.to_degrees()),
+        }
+    }
+}
+
+/// A section in tables: its angle in degrees, or the number of its joint.
+fn cell(joint: &Option<usize>, angle_deg: &Option<f64>) -> String {
+    match (joint, angle_deg) {
+        (Some(joint), _) => joint.to_string(),
+        (None, angle_deg) => fixed(angle_deg.unwrap_or_default(), 3),
+    }
+}
+
+impl LineExtremes {
+    fn of(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Self {
+        let extremes = line.extremes_from_left(impact.chain().sites, impact.sway());
+        let at = |section: f64| Place::of(impact.profile(), section);
+        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
+        let (eccentricity, normal) = (extremes.eccentricity_ratio, extremes.normal);
+        let friction = extremes.friction_ratio;
+        let unit = impact.model.impulse_unit_n_s_per_m();
+        Self {
+            admissible: extremes.is_admissible(),
+            largest_eccentricity_ratio: finite(eccentricity.value),
+            largest_eccentricity_joint: at(eccentricity.angle_rad).joint,
+            largest_eccentricity_angle_deg: at(eccentricity.angle_rad).angle_deg,
+            least_normal_n_s_per_m: finite(normal.value * unit),
+            least_normal_joint: at(normal.angle_rad).joint,
+            least_normal_angle_deg: at(normal.angle_rad).angle_deg,
+            largest_tangential_ratio: finite(friction.value),
+            largest_tangential_joint: at(friction.angle_rad).joint,
+            largest_tangential_angle_deg: at(friction.angle_rad).angle_deg,
+        }
+    }
+
+    /// Whether some normal impulse is not compressive.
+    fn is_in_tension(&self) -> bool {
+        self.least_normal_n_s_per_m.is_none_or(|least| least <= 0.0)
+    }
+
+    const fn whole(&self) -> &'static str {
+        match self.least_normal_joint {
+            Some(_) => "row",
+            None => "ring",
+        }
+    }
+
+    fn verdict(&self) -> String {
+        if self.admissible {
+            "admissible".to_owned()
+        } else if self.is_in_tension() {
+            "in tension".to_owned()
+        } else {
+            format!("leaves the {}", self.whole())
+        }
+    }
+}
+
+impl ByModel {
+    pub(super) fn of(impact: &LinkImpact<'_>, model: ImpactModel, found: Option<&Impact>) -> Self {
+        let sway = impact.sway();
+        let found = found.map(|found| {
+            let hinges = found
+                .mechanism
+                .named_hinges_from_left(impact.profile(), sway);
+            ModelImpact {
+                restitution: found.restitution,
+                after: Stance {
+                    sway,
+                    hinges: hinges.to_vec(),
+                },
+                impulses: Impulses::of(impact, found.impulse_line.as_ref()),
+            }
+        });
+        Self {
+            model: model.name(),
+            impact: found,
+        }
+    }
+}
+
+impl Certificate {
+    pub(super) fn of(impact: &LinkImpact<'_>, projection: &Projection) -> Self {
+        let (sway, profile) = (impact.sway(), impact.profile());
+        let from_left = |joint: usize| sway.from_left(profile, projection.joints[joint].angle_rad);
+        let opened = projection.opened().map(|(joint, edge, rate)| OpenedJoint {
+            place: Place::of(profile, from_left(joint)),
+            edge,
+            opening_rate_ratio: rate,
+        });
+        let mut opened_joints: Vec<OpenedJoint> = opened.collect();
+        if sway == Sway::Left {
+            opened_joints.reverse();
+        }
+        let mut zones: Vec<Zone> = Vec::new();
+        for (joint, edge, rate) in projection.opened() {
+            let section = from_left(joint);
+            let continues = |zone: &&mut Zone| {
+                impact.chain().sites == HingeSites::Anywhere
+                    && zone.edge == edge
+                    && zone.joint + 1 == joint
+            };
+            match zones.iter_mut().find(continues) {
+                Some(zone) => {
+                    zone.from = zone.from.min(section);
+                    zone.to = zone.to.max(section);
+                    zone.rate += rate;
+                    zone.joint = joint;
+                }
+                None => zones.push(Zone {
+                    edge,
+                    from: section,
+                    to: section,
+                    rate,
+                    joint,
+                }),
+            }
+        }
+        zones.sort_by(|a, b| a.from.total_cmp(&b.from));
+        let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
+        let line = impact.line().map(|line| LineExtremes::of(impact, line));
+        Self {
+            index: impact.index,
+            joints: projection.joints.len(),
+            restitution_four_link: four_link,
+            restitution_all_fields: projection.restitution,
+            gap: projection.restitution - four_link,
+            impulse_line_admissible: line.map(|line| line.admissible),
+            opened_joints,
+            line,
+            zones,
+            is_row: profile.joint(0.0).is_some(),
+        }
+    }
+
+    /// The sections of a zone.
+    fn sections(&self, zone: &Zone) -> String {
+        let section = |section: f64| match self.is_row {
+            true => format!("{section}"),
+            false => fixed(section.to_degrees(), 3),
+        };
+        if zone.from == zone.to {
+            section(zone.from)
+        } else {
+            format!("{} to {}", section(zone.from), section(zone.to))
+        }
+    }
+}
+
+impl Summary {
+    pub(super) fn new(
+        scenario: &Scenario,
+        model: &dyn MechanismModel,
+        (sides, count): (&[Sway], usize),
+        chain: impl Fn(Sway) -> Vec<ChainImpact>,
+    ) -> Self {
+        let impact = scenario.motion().impact();
+        let starts = sides.iter().map(|side| Stance::of(model, *side, 0));
+        Self {
+            impacts: chain(sides[0]),
+            impacts_after_left: sides.get(1).map(|side| chain(*side)),
+            models: None,
+            certificate: None,
+            starts: starts.collect(),
+            count,
+            chosen: String::new(),
+            model: impact.model,
+            restitution_factor: impact.restitution_factor,
+        }
+    }
+
+    /// JSON and words.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub(super) fn answer(&self) -> Result<Answer, OutputError> {
+        Ok(Answer {
+            json: summary_of(self)?,
+            text: render(self),
+        })
+    }
+
+    /// One or two chains, with the mechanisms before them.
+    fn chains(&self) -> impl Iterator<Item = (&Stance, &[ChainImpact])> {
+        let left = self.impacts_after_left.as_deref();
+        let chains = [Some(&*self.impacts), left].into_iter().flatten();
+        self.starts.iter().zip(chains)
+    }
+
+    /// Impacts with an impulse line, and that line with its impulses.
+    fn lines<'a>(
+        &self,
+        chain: &'a [ChainImpact],
+    ) -> Vec<(usize, &'a [HingeImpulse], &'a LineExtremes)> {
+        let lines = chain.iter().map_while(|impact| {
+            let all = impact.impulses.as_ref()?;
+            let impulses = all.impulses.as_deref()?;
+            Some((impact.index, impulses, all.impulse_line.as_ref()?))
+        });
+        lines.collect()
+    }
+
+    fn initial(&self, edge: &Edge) -> &'static str {
+        match edge {
+            Edge::Intrados => "I",
+            Edge::Extrados => "E",
+        }
+    }
+
+    /// How far a line leaves the structure, in per cent of the thickness.
+    fn beyond_percent(&self, eccentricity_ratio: &f64) -> f64 {
+        100.0 * (eccentricity_ratio - 0.5)
+    }
+
+    /// A hinge in a column of a table.
+    fn hinge(&self, hinge: &Hinge) -> String {
+        match hinge {
+            Hinge::Section { angle_rad, edge } => {
+                format!("{:>10.5} {}", degrees(*angle_rad), self.initial(edge))
+            }
+            Hinge::Toe(side) => format!("{:>12}", format!("{} toe", side.name())),
+            Hinge::Joint { joint, edge } => {
+                let edge = edge.map_or("", |edge| self.initial(&edge));
+                format!("{:>12}", format!("joint {joint} {edge}"))
+            }
+        }
+    }
+}
+/// Smallest number of parts of a ring between the rows of an impulse line.
+const LINE_PARTS: usize = 720;
+
+/// The impulse line of an impact as CSV, from the left springing. A ring has a row at each section of a fine division, at every
+/// joint of voussoirs and at every hinge; a row of blocks has one at every joint. The eccentricity is empty if no impulse crosses the section.
+pub(super) fn line_table(
+    impact: &LinkImpact<'_>,
+    mechanism: &FourLink,
+    line: &ImpulseLine,
+) -> Result<Vec<u8>, OutputError> {
+    let unit = impact.model.impulse_unit_n_s_per_m();
+    let (profile, sway) = (impact.profile(), impact.sway());
+    let mut sections = profile.sections(match impact.chain().sites {
+        HingeSites::Anywhere => LINE_PARTS,
+        HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
+    });
+    let hinges = mechanism.hinges_from_left(profile, sway);
+    sections.extend(hinges.map(|(section, _)| section));
+    sections.sort_by(f64::total_cmp);
+    sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+    let at = |section: &f64| line.section_from_left(*section, sway);
+    let columns = [
+        column(
+            match profile.joint(0.0) {
+                Some(_) => "joint",
+                None => "angle_deg",
+            },
+            |section: &f64| match Place::of(profile, *section) {
+                Place {
+                    joint: Some(joint), ..
+                } => Cell::from(joint),
+                place => Cell::from(place.angle_deg),
+            },
+        ),
+        column("eccentricity_ratio", |place| {
+            Some(at(place).eccentricity_ratio).filter(|ratio| ratio.is_finite())
+        }),
+        column("normal_n_s_per_m", |place| at(place).normal * unit),
+        column("tangential_n_s_per_m", |place| at(place).tangential * unit),
+    ];
+    csv(columns, &sections)
+}
