@@ -44,13 +44,6 @@ pub(super) struct Circular {
     pub(super) measured_at: Option<MeasuredAt>,
 }
 
-/// The thickness of the arch.
-#[derive(Clone, Copy)]
-enum Thickness {
-    Ratio(f64),
-    Metres(f64),
-}
-
 impl Circular {
     /// Reads the keys of `[arch]` that give the shape.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
@@ -85,38 +78,53 @@ impl Circular {
             (Some(span_m), Some(rise_m), _) => checked_embrace_deg(table, span_m, rise_m)?,
             (_, _, embrace_deg) => embrace_deg.ok_or(Reported)?,
         };
-        let thickness = match (ratio, thickness_m) {
-            (Some(ratio), _) => Thickness::Ratio(ratio),
-            (None, thickness_m) => Thickness::Metres(thickness_m.ok_or(Reported)?),
-        };
         let radius_m = match (span_m, mean_radius_m) {
             (Some(span_m), _) => 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin(),
             (None, radius_m) => radius_m.ok_or(Reported)?,
         };
-        let line = measured_at.unwrap_or(MeasuredAt::Mean);
-        let shape = Self::around(table, radius_m, line, thickness, embrace_deg)?;
+        let to_mean = measured_at.unwrap_or(MeasuredAt::Mean).to_mean();
+        let (mean_radius_m, thickness_ratio) = match (ratio, thickness_m) {
+            (Some(ratio), _) => (radius_m / (1.0 - to_mean * ratio), ratio),
+            (None, thickness_m) => {
+                let thickness_m = thickness_m.ok_or(Reported)?;
+                let mean_radius_m = radius_m + to_mean * thickness_m;
+                (mean_radius_m, thickness_m / mean_radius_m)
+            }
+        };
+        let [ratio, radius] = [thickness_ratio, mean_radius_m].map(plain);
+        // An extrados radius of less than half the thickness gives a mean radius of the wrong sign.
+        if !THICKNESS_RATIO.contains(thickness_ratio) {
+            let wrong = format!(
+                "is out of range: {ratio} mean radii of {radius} m; must be at least a millionth of the mean radius and \
+                 below twice that"
+            );
+            return Err(table.wrong("thickness_m", wrong));
+        }
+        if !MAGNITUDE.contains(mean_radius_m) {
+            let allowed = MAGNITUDE.allowed();
+            let wrong = format!("makes a mean radius of {radius} m; that must be {allowed}");
+            return Err(table.wrong("span_m", wrong));
+        }
         Ok(Self {
+            mean_radius_m,
+            thickness_ratio,
+            embrace_deg,
             measured_at,
-            ..shape
         })
     }
 
     /// The keys of the shape as the file gives them, if it gives the span.
     pub(super) fn given(table: &Table<'_>) -> Map<String, Value> {
-        let Some(Value::Object(mut given)) = table.as_given("arch") else {
-            return Map::new();
-        };
-        if !given.contains_key("span_m") {
-            return Map::new();
-        }
-        given.retain(|key, _| GIVEN.contains(&key.as_str()));
-        for value in given.values_mut() {
-            // A length may be written without a point.
-            if let Some(number) = value.as_f64() {
-                *value = Value::from(number);
-            }
-        }
+        let arch = table.as_given("arch");
+        let arch = arch.as_ref().and_then(Value::as_object);
+        let given = arch.filter(|arch| arch.contains_key("span_m"));
+        let given = given.into_iter().flatten();
+        // A length may be written without a point.
+        let length = |value: &Value| value.as_f64().map_or_else(|| value.clone(), Value::from);
         given
+            .filter(|(key, _)| GIVEN.contains(&key.as_str()))
+            .map(|(key, value)| (key.clone(), length(value)))
+            .collect()
     }
 
     /// Puts the given keys of the shape in the place of the resolved ones.
@@ -128,47 +136,6 @@ impl Circular {
             let others = others.filter(|(key, _)| !RESOLVED.contains(&key.as_str()));
             *resolved = given.clone().into_iter().chain(others).collect();
         }
-    }
-
-    /// The ring of which this line has this radius.
-    fn around(
-        table: &mut Table<'_>,
-        radius_m: f64,
-        line: MeasuredAt,
-        thickness: Thickness,
-        embrace_deg: f64,
-    ) -> Reading<Self> {
-        let (mean_radius_m, thickness_ratio) = match thickness {
-            Thickness::Ratio(ratio) => (radius_m / (1.0 - line.to_mean() * ratio), ratio),
-            Thickness::Metres(thickness_m) => {
-                let mean_radius_m = radius_m + line.to_mean() * thickness_m;
-                (mean_radius_m, thickness_m / mean_radius_m)
-            }
-        };
-        // An extrados radius of less than half the thickness gives a mean radius of the wrong sign.
-        if !THICKNESS_RATIO.contains(thickness_ratio) {
-            let wrong = format!(
-                "is out of range: {} mean radii of {} m; must be at least a millionth of the mean radius and below \
-                 twice that",
-                plain(thickness_ratio),
-                plain(mean_radius_m)
-            );
-            return Err(table.wrong("thickness_m", wrong));
-        }
-        if !MAGNITUDE.contains(mean_radius_m) {
-            let wrong = format!(
-                "makes a mean radius of {} m; that must be {}",
-                plain(mean_radius_m),
-                MAGNITUDE.allowed()
-            );
-            return Err(table.wrong("span_m", wrong));
-        }
-        Ok(Self {
-            mean_radius_m,
-            thickness_ratio,
-            embrace_deg,
-            measured_at: None,
-        })
     }
 }
 
