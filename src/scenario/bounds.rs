@@ -2,12 +2,12 @@
 
 use std::ops::Bound::{Excluded, Included};
 
-use super::rule::{Count, Number, within};
+use super::rule::{Count, Number, between, within};
 use crate::mechanics::arch;
 
 /// Range of lengths and densities.
 pub(super) const MAGNITUDE: Number = within(&arch::MAGNITUDE);
-pub(super) const THICKNESS_RATIO: Number = Number(
+pub(super) const THICKNESS_RATIO: Number = between(
     Included(arch::MIN_THICKNESS_RATIO),
     Excluded(arch::THICKNESS_RATIO_BOUND),
 );

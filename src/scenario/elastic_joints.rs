@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 
 use super::relation::Relation::{self, AtMostOne, Excludes, OneOf, Requires, Together};
-use super::rule::{Because, Count, Number, one_of, within};
+use super::rule::{Count, Number, one_of, within};
 use super::structure::{ModelError, Structure};
 use super::table::{Reading, Table};
 use crate::argument::short;
@@ -73,10 +73,7 @@ impl ElasticTable {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
         let softest_gpa_m = *ElasticProperties::NORMAL_STIFFNESS_PA_M.start() / GPA;
-        let stiffness = Because(
-            within(&(softest_gpa_m..=STIFFEST_GPA_M)),
-            "stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints",
-        );
+        let stiffness = within(&(softest_gpa_m..=STIFFEST_GPA_M)).because("stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints");
         let mortar_m = within(&ElasticProperties::MORTAR_M);
         let friction = within(&ElasticProperties::FRICTION_COEFFICIENT);
         let read = Self {

@@ -4,14 +4,14 @@ use std::f64::consts::PI;
 use std::ops::Bound::{Excluded, Included};
 
 use super::hinges::Hinges;
-use super::rule::{Number, one_of};
+use super::rule::{Number, between, one_of};
 use super::structure::Structure;
 use super::table::{Reading, Table};
 use crate::argument::{rounded_down, short};
 use crate::dynamics::model::Initial;
 use crate::mechanics::sway::Sway;
 
-const ROTATION_RAD: Number = Number(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
+const ROTATION_RAD: Number = between(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
 /// Reads `[initial]` for a structure that is moved by a model with such hinges.
 pub(super) fn read(

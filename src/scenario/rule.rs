@@ -21,15 +21,20 @@ pub(super) trait Rule {
     fn schema(&self) -> Value;
 }
 
-/// A finite number between two bounds. Whole numbers need no decimal point.
-pub(super) struct Number(pub(super) Bound<f64>, pub(super) Bound<f64>);
+/// A finite number between two bounds, perhaps with the reason for them. Whole numbers need no decimal point.
+pub(super) struct Number(Bound<f64>, Bound<f64>, Option<&'static str>);
 
 /// Any finite number.
-pub(super) const ANY_NUMBER: Number = Number(Bound::Unbounded, Bound::Unbounded);
+pub(super) const ANY_NUMBER: Number = between(Bound::Unbounded, Bound::Unbounded);
+
+/// A number between two bounds.
+pub(super) const fn between(low: Bound<f64>, high: Bound<f64>) -> Number {
+    Number(low, high, None)
+}
 
 /// A number in a range.
 pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
-    Number(
+    between(
         Bound::Included(*range.start()),
         Bound::Included(*range.end()),
     )
@@ -37,10 +42,15 @@ pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
 
 /// A number above the first bound and up to the second.
 pub(super) const fn above(low: f64, high: f64) -> Number {
-    Number(Bound::Excluded(low), Bound::Included(high))
+    between(Bound::Excluded(low), Bound::Included(high))
 }
 
 impl Number {
+    /// The rule with the reason for its bounds.
+    pub(super) const fn because(self, why: &'static str) -> Self {
+        Self(self.0, self.1, Some(why))
+    }
+
     pub(super) fn contains(&self, x: f64) -> bool {
         (self.0, self.1).contains(&x)
     }
@@ -50,8 +60,9 @@ impl Rule for Number {
     type Read = f64;
 
     fn allowed(&self) -> String {
+        let why = self.2.map_or_else(String::new, |why| format!(" ({why})"));
         if let (Bound::Included(low), Bound::Included(high)) = (self.0, self.1) {
-            return format!("a number from {} to {}", short(low), short(high));
+            return format!("a number from {} to {}{why}", short(low), short(high));
         }
         let bounds = [
             match self.0 {
@@ -66,7 +77,7 @@ impl Rule for Number {
             },
         ];
         let bounds: Vec<_> = bounds.into_iter().flatten().collect();
-        format!("a number {}", bounds.join(" and "))
+        format!("a number {}{why}", bounds.join(" and "))
     }
 
     fn read(&self, value: &Value) -> Result<f64, String> {
@@ -253,25 +264,6 @@ impl<T: Copy + Serialize> Rule for OneOf<T> {
 
     fn schema(&self) -> Value {
         json!({ "enum": self.names() })
-    }
-}
-
-/// A number in a range, and the reason for its bounds.
-pub(super) struct Because(pub(super) Number, pub(super) &'static str);
-
-impl Rule for Because {
-    type Read = f64;
-
-    fn allowed(&self) -> String {
-        format!("{} ({})", self.0.allowed(), self.1)
-    }
-
-    fn read(&self, value: &Value) -> Result<f64, String> {
-        self.0.read(value)
-    }
-
-    fn schema(&self) -> Value {
-        self.0.schema()
     }
 }
 

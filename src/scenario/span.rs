@@ -15,7 +15,7 @@ use serde_json::{Map, Value};
 
 use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::relation::Relation::{OneOf, Requires};
-use super::rule::{Number, Rule as _, one_of, within};
+use super::rule::{Number, Rule as _, between, one_of, within};
 use super::table::{Reading, Reported, Table};
 use crate::argument::plain;
 use crate::mechanics::arch::MeasuredAt;
@@ -31,7 +31,7 @@ const GIVEN: [&str; 6] = [
     "thickness_m",
     "thickness_ratio",
 ];
-const POSITIVE: Number = Number(Excluded(0.0), Unbounded);
+const POSITIVE: Number = between(Excluded(0.0), Unbounded);
 /// Spans and rises may be smaller than any radius.
 const LENGTH: Number = within(&(1e-6..=1e6));
 

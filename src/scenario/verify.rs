@@ -38,7 +38,7 @@ use super::bounds::MAGNITUDE;
 use super::listing::{Listing, layout_keys};
 use super::record::{Format, LineFault, Series, faulty, read_numbers};
 use super::relation::Relation::{OneOf, Together};
-use super::rule::{Because, Number, OneOrMore, Text, above, one_of, within};
+use super::rule::{Number, OneOrMore, Text, above, between, one_of, within};
 use super::table::{Reading, Reported, Table};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
@@ -215,14 +215,10 @@ pub const CONFIDENCE_FACTOR: f64 = 1.35;
 /// q if nothing better is known (C8.7.1.2.1.7).
 pub const BEHAVIOUR_FACTOR: f64 = 2.0;
 
-const CONFIDENCE: Because = Because(
-    within(&(1.0..=2.0)),
-    "Circolare 7/2019, Tab. C8.5.IV has 1.00 to 1.35",
-);
-const BEHAVIOUR: Because = Because(
-    within(&(1.0..=5.0)),
-    "Circolare 7/2019, C8.7.1.2.1.7 has 2 without better knowledge",
-);
+const CONFIDENCE: Number =
+    within(&(1.0..=2.0)).because("Circolare 7/2019, Tab. C8.5.IV has 1.00 to 1.35");
+const BEHAVIOUR: Number =
+    within(&(1.0..=5.0)).because("Circolare 7/2019, C8.7.1.2.1.7 has 2 without better knowledge");
 const PERIOD_S: Number = above(0.0, 10.0);
 
 impl Default for Verify {
@@ -472,9 +468,9 @@ impl StateRule {
 }
 
 /// The code's own ranges depend on the soil; [`GroundSpectrum::new`] checks them.
-const HAZARD: Because = Because(Number(Excluded(0.0), Unbounded), "NTC 2018, § 3.2");
-const TOPOGRAPHIC_FACTOR: Because =
-    Because(within(&(1.0..=2.0)), "NTC 2018, Tab. 3.2.V has 1.0 to 1.4");
+const HAZARD: Number = between(Excluded(0.0), Unbounded).because("NTC 2018, § 3.2");
+const TOPOGRAPHIC_FACTOR: Number =
+    within(&(1.0..=2.0)).because("NTC 2018, Tab. 3.2.V has 1.0 to 1.4");
 /// At more damping than this the spectrum of a floor is no longer larger than its peak.
 const DAMPING_PERCENT: Number = above(0.0, 30.0);
 const DIVIDE: Number = within(&(1.0..=10.0));
@@ -652,7 +648,7 @@ impl PointDemand {
 impl StateRule {
     fn read(table: &mut Table<'_>, default: Self) -> Reading<Self> {
         let mut or = |key, rule: &Number, default| table.or(key, rule, default);
-        let part = Number(Excluded(0.0), Excluded(1.0));
+        let part = between(Excluded(0.0), Excluded(1.0));
         Ok(Self {
             part_of_d0: or("part_of_d0", &part, default.part_of_d0),
             period_factor: or("period_factor", &above(0.0, 10.0), default.period_factor),
