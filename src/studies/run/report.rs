@@ -5,12 +5,12 @@
 
 mod packed;
 
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
+use nalgebra::Vector2;
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use self::packed::{
-    MOST, body_number, curve, eighth, encoded, floats, layouts, motion, piece as drawn_piece,
+    MOST, body_number, curve, eighth, encoded, floats, layouts, piece as drawn_piece, whole,
 };
 use super::film::Film;
 use super::picture::LARGEST_EXCESS;
@@ -20,6 +20,7 @@ use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State, Summary};
 use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
@@ -152,6 +153,7 @@ impl Report {
                 ("SCENARIO", &escaped(&scenario.to_toml())),
                 ("FRAMES", &frames.len().to_string()),
                 ("STYLE", include_str!("report/page.css")),
+                ("STAGE", include_str!("report/stage.js")),
                 ("SCRIPT", include_str!("report/page.js")),
                 (
                     "PLOT_STYLE",
@@ -184,59 +186,39 @@ impl Report {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
         let (hinges, layout_of) = layouts(&self.scene, frames);
-        let written: Vec<Value> = hinges
-            .iter()
-            .map(|open| self.layout(open, unit_m))
-            .collect();
         let joint = |joint: usize| {
             let [intrados, extrados] = self.scene.joint(joint)?;
-            let Mark { body, at_m } = intrados;
-            let other_m = extrados.at_m;
-            Some(json!([
-                body_number(body),
-                at_m.x,
-                at_m.y,
-                other_m.x,
-                other_m.y
-            ]))
+            let (body, x_m, y_m) = point(intrados);
+            Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
         };
-        let joints: Vec<Value> = (0..).map_while(joint).collect();
-        let sections = self.scene.sections.iter().map(|section| {
-            let (middle, across) = (section.middle_m, section.across_m);
-            json!([middle.x, middle.y, across.x, across.y])
-        });
+        let joints: Vec<_> = (0..).map_while(joint).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
-        let across = across.map(|across| json!([across.x, across.y]));
+        let sections = self.scene.sections.iter();
         // As built, and where they have moved.
         let supports = [0.0, 1.0].map(|exaggeration| {
             let faces = self.scene.supports_m(exaggeration).into_iter();
-            let faces = faces.map(|[a, b]| [a.x, a.y, b.x, b.y]);
-            faces.collect::<Vec<_>>()
+            list(faces.map(flat))
         });
-        let [frame_low_m, frame_high_m] = self.scene.frame_m();
         let dimensions = self.scene.dimensions.iter().map(|dimension| {
-            let [from, to] = dimension.ends_m;
             let side = match dimension.side {
                 DimensionSide::Below => "below",
                 DimensionSide::Left => "left",
                 DimensionSide::Right => "right",
             };
-            json!({ "ends_m": [from.x, from.y, to.x, to.y], "side": side, "text": dimension.text })
+            json!({ "ends_m": flat(dimension.ends_m), "side": side, "text": dimension.text })
         });
         let opens_s = strongest_s(&frames[..fall_from], history);
-        let ties = self.scene.ties(&[]).into_iter().map(|ends| {
-            let end = |mark: Mark| json!([body_number(mark.body), mark.at_m.x, mark.at_m.y]);
-            json!(ends.map(end))
-        });
+        let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
-        let energy_label = if self.in_barriers {
-            match history.row() {
-                None => "Kinetic and potential energy over the barrier of the mechanism that moves",
-                Some(_) => "Kinetic and potential energy over the barrier of the first mechanism",
+        let energy_label = match (self.in_barriers, history.row()) {
+            (false, _) => "Energy (J)",
+            (true, None) => {
+                "Kinetic and potential energy over the barrier of the mechanism that moves"
             }
-        } else {
-            "Energy (J)"
+            (true, Some(_)) => {
+                "Kinetic and potential energy over the barrier of the first mechanism"
+            }
         };
         let excess = self
             .leaves
@@ -248,19 +230,19 @@ impl Report {
             "bodies": self.bodies,
             "largest_body": history.largest_body(),
             "unit_m": unit_m,
-            "bounds_m": [[low_m.x, low_m.y], [high_m.x, high_m.y]],
-            "frame_m": [[frame_low_m.x, frame_low_m.y], [frame_high_m.x, frame_high_m.y]],
-            "dimensions": dimensions.collect::<Vec<_>>(),
+            "bounds_m": [low_m, high_m],
+            "frame_m": self.scene.frame_m(),
+            "dimensions": list(dimensions),
             "opens_s": opens_s,
             "end_s": end_s,
             "fall_end": self.fall_end.as_ref().map(FallEnd::to_string),
             "supports": supports,
-            "ties": ties.collect::<Vec<_>>(),
-            "ties_broken_s": broken_s.collect::<Vec<_>>(),
-            "sections": sections.collect::<Vec<_>>(),
+            "ties": list(ties.map(|ends| ends.map(point))),
+            "ties_broken_s": list(broken_s),
+            "sections": list(sections.map(|one| flat([one.middle_m, one.across_m]))),
             "joints": joints,
-            "across": across.collect::<Vec<_>>(),
-            "layouts": written,
+            "across": list(across),
+            "layouts": list(hinges.iter().map(|open| self.layout(open, unit_m))),
             "frames": self.frames(ground, frames, layout_of, joints.len()),
             "points": self.points.as_ref().map(|points| points.on_page(curve)),
             "energy_label": energy_label,
@@ -275,42 +257,30 @@ impl Report {
     /// The outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
-        let pieces = self.scene.pieces(hinges).into_iter().map(drawn);
-        let fill = self.scene.fill(hinges).into_iter().map(drawn);
         let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
-            let text = format!("{} kg", metres(load.mass_kg));
-            json!([
-                body_number(mark.body),
-                mark.at_m.x,
-                mark.at_m.y,
-                load.width_m,
-                text
-            ])
+            let ((body, x_m, y_m), text) = (point(mark), format!("{} kg", metres(load.mass_kg)));
+            (body, x_m, y_m, load.width_m, text)
         });
-        let marks = self
-            .scene
-            .hinges(hinges)
-            .into_iter()
-            .zip(hinges)
-            .map(|(mark, open)| {
-                let code = match open.hinge {
-                    Hinge::Section { edge, .. } => edge_code(Some(edge)),
-                    Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
-                    Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
-                    Hinge::Joint { edge, .. } => edge_code(edge),
-                };
-                json!([body_number(mark.body), mark.at_m.x, mark.at_m.y, code])
-            });
+        let marks = self.scene.hinges(hinges).into_iter().zip(hinges);
+        let marks = marks.map(|(mark, open)| {
+            let code = match open.hinge {
+                Hinge::Section { edge, .. } => edge_code(Some(edge)),
+                Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
+                Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
+                Hinge::Joint { edge, .. } => edge_code(edge),
+            };
+            let (body, x_m, y_m) = point(mark);
+            (body, x_m, y_m, code)
+        });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
+        let points = self.points.iter().flat_map(|points| points.bodies(hinges));
         json!({
-            "pieces": pieces.collect::<Vec<_>>(),
-            "fill": fill.collect::<Vec<_>>(),
-            "loads": loads.collect::<Vec<_>>(),
-            "hinges": marks.collect::<Vec<_>>(),
-            "section_bodies": bodies.map(body_number).collect::<Vec<_>>(),
-            "point_bodies": self.points.as_ref().map_or_else(Vec::new, |points| {
-                points.bodies(hinges).into_iter().map(body_number).collect()
-            }),
+            "pieces": list(self.scene.pieces(hinges).into_iter().map(drawn)),
+            "fill": list(self.scene.fill(hinges).into_iter().map(drawn)),
+            "loads": list(loads),
+            "hinges": list(marks),
+            "section_bodies": list(bodies.map(body_number)),
+            "point_bodies": list(points.map(body_number)),
         })
     }
 
@@ -319,26 +289,27 @@ impl Report {
         &self,
         ground: &GroundMotion,
         frames: &[&Sample],
-        layout_of: Vec<u16>,
+        layouts: Vec<u16>,
         joints: usize,
-    ) -> Value {
+    ) -> Frames {
         let times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
-        let displacements_m = GroundVelocity::new(ground).displacements_m(&times_s);
+        let poses = || frames.iter().flat_map(|frame| &frame.poses);
+        let shifts = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
+        let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
+        let (shifts, shift_unit_m) = whole(shifts);
+        let ground_m = GroundVelocity::new(ground).displacements_m(&times_s);
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_acceleration_m_s2 / self.gravity_m_s2);
-        let parts = ground.right_foot().is_some();
         let apart_m = frames.iter();
         let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
         let thrust_unit = FARTHEST / MOST;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
-        let thrust: Vec<i16> = ratios
-            .map(|ratio| {
-                ratio.map_or(NO_THRUST, |ratio| {
-                    (ratio.clamp(-FARTHEST, FARTHEST) / thrust_unit).round() as i16
-                })
-            })
-            .collect();
+        let thrust = ratios.map(|ratio| match ratio {
+            Some(ratio) => (ratio.clamp(-FARTHEST, FARTHEST) / thrust_unit).round() as i16,
+            None => NO_THRUST,
+        });
+        let has_thrust = frames.iter().any(|one| !one.eccentricity_ratios.is_empty());
         let codes = frames.iter().flat_map(|frame| {
             let mut codes = vec![0; joints];
             for open in &frame.hinges {
@@ -352,12 +323,11 @@ impl Report {
             codes
         });
         let pressures = || frames.iter().flat_map(|frame| &frame.pressures);
-        let stresses_pa = || pressures().flat_map(|pressure| pressure.edge_stresses_pa);
-        let largest_pa = stresses_pa().fold(0.0, f64::max);
+        let stresses_pa = pressures().flat_map(|pressure| pressure.edge_stresses_pa);
+        let largest_pa = stresses_pa.fold(0.0, f64::max);
         let pressed = pressures().flat_map(|pressure| {
-            let [intrados_pa, extrados_pa] = pressure.edge_stresses_pa;
-            let stresses = [intrados_pa, extrados_pa].map(|pa| eighth(pa / largest_pa));
-            [stresses[0], stresses[1], eighth(pressure.contact_ratio)]
+            let [intrados, extrados] = pressure.edge_stresses_pa.map(|pa| pa / largest_pa);
+            [intrados, extrados, pressure.contact_ratio].map(eighth)
         });
         let states = frames.iter().map(|frame| match frame.state {
             State::Rest => 0,
@@ -365,44 +335,57 @@ impl Report {
             State::Rocking(Sway::Left) => 2,
             State::Overturned(_) => 3,
         });
-        let mut all = motion(frames, layout_of);
-        let others = [
-            (
-                "ground_m",
-                json!(floats(
-                    displacements_m.iter().flat_map(|at_m| [at_m.x, at_m.y])
-                )),
-            ),
-            ("ground_g", json!(floats(ground_g))),
-            ("right_foot_m", json!(parts.then(|| floats(apart_m)))),
-            (
-                "thrust_unit",
-                json!((!thrust.is_empty()).then_some(thrust_unit)),
-            ),
-            (
-                "thrust",
-                json!(encoded(thrust.into_iter().map(i16::to_le_bytes))),
-            ),
-            (
-                "largest_stress_pa",
-                json!((largest_pa > 0.0).then_some(largest_pa)),
-            ),
-            (
-                "pressed",
-                json!(BASE64_STANDARD.encode(pressed.collect::<Vec<u8>>())),
-            ),
-            (
-                "joints",
-                json!(BASE64_STANDARD.encode(codes.collect::<Vec<u8>>())),
-            ),
-            (
-                "states",
-                json!(BASE64_STANDARD.encode(states.collect::<Vec<u8>>())),
-            ),
-        ];
-        all.extend(others.map(|(name, value)| (name.to_owned(), value)));
-        Value::Object(all)
+        Frames {
+            times_s: encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
+            rotations,
+            rotation_unit_rad,
+            shifts,
+            shift_unit_m,
+            layouts: encoded(layouts.into_iter().map(u16::to_le_bytes)),
+            ground_m: floats(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
+            ground_g: floats(ground_g),
+            right_foot_m: ground.right_foot().map(|_| floats(apart_m)),
+            thrust_unit: has_thrust.then_some(thrust_unit),
+            thrust: encoded(thrust.map(i16::to_le_bytes)),
+            largest_stress_pa: (largest_pa > 0.0).then_some(largest_pa),
+            pressed: encoded(pressed.map(u8::to_le_bytes)),
+            joints: encoded(codes.map(u8::to_le_bytes)),
+            states: encoded(states.map(u8::to_le_bytes)),
+        }
     }
+}
+
+/// Numbers of a page that change from frame to frame: in base 64, multiples of a unit where there is one.
+#[derive(Serialize)]
+struct Frames {
+    times_s: String,
+    rotations: String,
+    rotation_unit_rad: f64,
+    shifts: String,
+    shift_unit_m: f64,
+    layouts: String,
+    ground_m: String,
+    ground_g: String,
+    right_foot_m: Option<String>,
+    thrust_unit: Option<f64>,
+    thrust: String,
+    largest_stress_pa: Option<f64>,
+    pressed: String,
+    joints: String,
+    states: String,
+}
+
+fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
+    items.map(|item| json!(item)).collect()
+}
+
+/// The number of the body of a point, and its place.
+fn point(mark: Mark) -> (i64, f64, f64) {
+    (body_number(mark.body), mark.at_m.x, mark.at_m.y)
+}
+
+fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
+    [a.x, a.y, b.x, b.y]
 }
 
 /// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.

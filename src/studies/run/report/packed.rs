@@ -2,10 +2,9 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use crate::dynamics::history::{OpenHinge, Sample};
-use crate::mechanics::geometry::pose::Pose;
 use crate::output::scene::{Piece, Scene};
 
 /// The largest integer that stands for a rotation or displacement.
@@ -36,34 +35,6 @@ pub(super) fn layouts<'a>(
     (layouts, layout_of)
 }
 
-/// The poses of all bodies in each frame, and its layout.
-pub(super) fn motion(frames: &[&Sample], layout_of: Vec<u16>) -> Map<String, Value> {
-    let times_s = frames.iter().map(|frame| frame.time_s.to_le_bytes());
-    let poses = || frames.iter().flat_map(|frame| &frame.poses);
-    let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
-    let shifts_m = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
-    let (shifts, shift_unit_m) = whole(shifts_m);
-    let motion = [
-        ("times_s", json!(encoded(times_s))),
-        (
-            "rotations",
-            json!(encoded(rotations.into_iter().map(i16::to_le_bytes))),
-        ),
-        ("rotation_unit_rad", json!(rotation_unit_rad)),
-        (
-            "shifts",
-            json!(encoded(shifts.into_iter().map(i16::to_le_bytes))),
-        ),
-        ("shift_unit_m", json!(shift_unit_m)),
-        (
-            "layouts",
-            json!(encoded(layout_of.into_iter().map(u16::to_le_bytes))),
-        ),
-    ];
-    let named = motion.map(|(name, value)| (name.to_owned(), value));
-    named.into_iter().collect()
-}
-
 /// The body and the outline of a piece, in units of the page.
 pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
     let corners = piece.outline_m.iter();
@@ -83,13 +54,13 @@ pub(super) fn eighth(part: f64) -> u8 {
 }
 
 /// Values as integer multiples of a unit, which is chosen so that the largest fits.
-fn whole(values: impl Iterator<Item = f64> + Clone) -> (Vec<i16>, f64) {
+pub(super) fn whole(values: impl Iterator<Item = f64> + Clone) -> (String, f64) {
     let most = values
         .clone()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
     let unit = if most > 0.0 { most / MOST } else { 1.0 };
-    let whole = values.map(|value| (value / unit).round() as i16).collect();
-    (whole, unit)
+    let whole = values.map(|value| ((value / unit).round() as i16).to_le_bytes());
+    (encoded(whole), unit)
 }
 
 pub(super) fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> String {

@@ -1,0 +1,429 @@
+// Draws the motion on a canvas. Everything is in #data, in metres, seconds and radians.
+const find = (id) => document.getElementById(id);
+const data = JSON.parse(find("data").textContent);
+const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
+const { frames, sections, unit_m: unitM } = data;
+const bodies = data.bodies.length;
+
+// The poses of the bodies, and the layout of each frame.
+const { layouts } = data;
+const times = new Float64Array(buffer(frames.times_s));
+const rotations = new Int16Array(buffer(frames.rotations));
+const shifts = new Int16Array(buffer(frames.shifts));
+const layoutOf = new Uint16Array(buffer(frames.layouts));
+const groundM = new Float32Array(buffer(frames.ground_m));
+const groundG = new Float32Array(buffer(frames.ground_g));
+// Where the feet move differently: how far the right one has gone from the left one.
+const rightFootM = frames.right_foot_m && new Float32Array(buffer(frames.right_foot_m));
+const thrust = new Int16Array(buffer(frames.thrust));
+const joints = new Uint8Array(buffer(frames.joints));
+const pressed = new Uint8Array(buffer(frames.pressed));
+const states = new Uint8Array(buffer(frames.states));
+const count = times.length;
+const start = times[0];
+const end = times[count - 1];
+// The history ends before the fall that the page goes on to show.
+const historyEnd = data.end_s;
+const historyCount = times.filter((t) => t <= historyEnd).length;
+const STATES = ["at rest", "sways right", "sways left", "overturned"];
+const NO_THRUST = -32768;
+
+// ---- the state of the page ----
+let time = start;
+let playing = false;
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** The frame before a time, and how far the time is on the way to the next: frames of other hinges do not blend. */
+function moment(t) {
+  let low = 0;
+  let high = count - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (times[middle] <= t) low = middle;
+    else high = middle - 1;
+  }
+  const next = Math.min(low + 1, count - 1);
+  const blends = next > low && layoutOf[low] === layoutOf[next];
+  const part = blends ? (t - times[low]) / (times[next] - times[low]) : 0;
+  return { frame: low, next, part: Math.min(Math.max(part, 0), 1) };
+}
+
+const blend = (values, width, index, { frame, next, part }) =>
+  values[frame * width + index] * (1 - part) + values[next * width + index] * part;
+
+/** Rotation and displacement of the origin of a body. */
+function pose(body, at) {
+  return {
+    rotation: blend(rotations, bodies, body, at) * frames.rotation_unit_rad,
+    x: blend(shifts, 2 * bodies, 2 * body, at) * frames.shift_unit_m,
+    y: blend(shifts, 2 * bodies, 2 * body + 1, at) * frames.shift_unit_m,
+  };
+}
+
+/** Where a point of a body is, its displacement times the exaggeration. */
+function moved(body, x, y, poses, exaggeration) {
+  if (body < 0) return [x, y];
+  const { rotation, x: shiftX, y: shiftY } = poses[body];
+  const cos = Math.cos(rotation);
+  const sin = Math.sin(rotation);
+  const nowX = cos * x - sin * y + shiftX;
+  const nowY = sin * x + cos * y + shiftY;
+  return [x + (nowX - x) * exaggeration, y + (nowY - y) * exaggeration];
+}
+
+/** A number with so many decimals, zero without a sign. */
+function fixed(value, decimals) {
+  const text = value.toFixed(decimals);
+  return Number(text) === 0 ? text.replace("-", "") : text;
+}
+
+const posesAt = (at) => Array.from({ length: bodies }, (_, body) => pose(body, at));
+
+// ---- the stage ----
+const stage = find("stage");
+const [low, high] = data.frame_m;
+const width = high[0] - low[0];
+const height = high[1] - low[1];
+const loaded = layouts.some(({ loads }) => loads.length > 0);
+
+/** A round number of metres between the marks of the rule. */
+function roundStep(rough) {
+  const power = 10 ** Math.floor(Math.log10(rough));
+  return power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
+}
+
+const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
+// A pulse may leave the ground with a velocity: where it goes far, the eye goes with it.
+find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);
+
+function draw() {
+  const ratio = window.devicePixelRatio || 1;
+  const wide = stage.clientWidth || 800;
+  const tall = stage.clientHeight || 400;
+  if (stage.width !== Math.round(wide * ratio) || stage.height !== Math.round(tall * ratio)) {
+    stage.width = Math.round(wide * ratio);
+    stage.height = Math.round(tall * ratio);
+  }
+  const pen = stage.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  const ink = css("--ink");
+  const soft = css("--soft");
+  pen.fillStyle = css("--paper");
+  pen.fillRect(0, 0, wide, tall);
+  const sizes = find("sizes").checked && data.dimensions.length > 0;
+  const below = sizes ? 92 : 64;
+  // Room beside the structure for its sway, and for its dimensions.
+  const beside = Math.max(sizes ? 54 : 10, 0.1 * wide);
+  const above = loaded ? 44 : 16;
+  const scale = Math.min((wide - 2 * beside) / width, (tall - below - above) / (1.05 * height));
+  const at = moment(time);
+  const exaggeration = Number(find("exaggeration").value);
+  const ground = [blend(groundM, 2, 0, at), blend(groundM, 2, 1, at)];
+  const camera = find("ride").checked ? ground : [0, 0];
+  const origin = [wide / 2 - (scale * (low[0] + high[0])) / 2, tall - below + scale * low[1]];
+  const onScreen = ([x, y]) => [
+    origin[0] + scale * (x + ground[0] - camera[0]),
+    origin[1] - scale * (y + ground[1] - camera[1]),
+  ];
+  const path = (points, close) => {
+    pen.beginPath();
+    points.forEach((point, i) => (i ? pen.lineTo(...onScreen(point)) : pen.moveTo(...onScreen(point))));
+    if (close) pen.closePath();
+  };
+  pen.lineWidth = 1;
+  pen.font = "12px system-ui, sans-serif";
+  pen.lineJoin = "round";
+
+  // The rule, fixed in space.
+  const step = roundStep(60 / scale);
+  const left = camera[0] + (0 - origin[0]) / scale;
+  const right = camera[0] + (wide - origin[0]) / scale;
+  pen.fillStyle = soft;
+  pen.textAlign = "center";
+  for (let mark = Math.ceil(left / step); mark * step <= right; mark += 1) {
+    const x = origin[0] + scale * (mark * step - camera[0]);
+    pen.strokeStyle = css("--line");
+    pen.beginPath();
+    pen.moveTo(x, 0);
+    pen.lineTo(x, tall - 22);
+    pen.stroke();
+    pen.fillText(`${Number((mark * step).toPrecision(6))} m`, x, tall - 8);
+  }
+
+  // The ground, which moves, hatched.
+  const floor = onScreen([0, low[1]])[1];
+  pen.fillStyle = css("--earth");
+  pen.fillRect(0, floor, wide, 14);
+  pen.strokeStyle = ink;
+  pen.beginPath();
+  pen.moveTo(0, floor);
+  pen.lineTo(wide, floor);
+  const hatch = 16;
+  const phase = (((scale * (ground[0] - camera[0])) % hatch) + hatch) % hatch;
+  for (let x = phase - hatch; x < wide + hatch; x += hatch) {
+    pen.moveTo(x, floor + 14);
+    pen.lineTo(x + 8, floor);
+  }
+  pen.stroke();
+  if (sizes) drawSizes(pen, onScreen, floor);
+  pen.strokeStyle = ink;
+  const foot = [0, 1].map((axis) => (rightFootM ? exaggeration * blend(rightFootM, 2, axis, at) : 0));
+  const [built, movedTo] = data.supports;
+  const faces = built.map((face, i) => face.map((x, k) => x + (movedTo[i][k] - x) * exaggeration));
+  faces.forEach(([ax, ay, bx, by], right) => {
+    pen.lineWidth = 4;
+    const [x, y] = foot.map((gone) => right * gone);
+    path([[x + ax - 0.3 * (bx - ax), y + ay - 0.3 * (by - ay)], [x + bx + 0.3 * (bx - ax), y + by + 0.3 * (by - ay)]]);
+    pen.stroke();
+  });
+
+  // The blocks: where they were, and where they are.
+  const layout = layouts[layoutOf[at.frame]];
+  const poses = posesAt(at);
+  const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
+  const outline = (piece) => {
+    const corners = [];
+    for (let i = 0; i < piece.outline.length; i += 2) {
+      corners.push([piece.body, piece.outline[i] * unitM, piece.outline[i + 1] * unitM]);
+    }
+    return corners;
+  };
+  const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone", "--stone"];
+  pen.lineWidth = 1;
+  pen.setLineDash([4, 4]);
+  pen.strokeStyle = soft;
+  for (const piece of layout.pieces) {
+    path(outline(piece).map(([, x, y]) => [x, y]), true);
+    pen.stroke();
+  }
+  pen.setLineDash([]);
+  pen.strokeStyle = pen.fillStyle = css("--fill");
+  pen.lineWidth = 1;
+  for (const piece of layout.fill) {
+    path(outline(piece).map(point), true);
+    pen.fill();
+    pen.stroke();
+  }
+  pen.strokeStyle = ink;
+  pen.lineWidth = 1.3;
+  for (const piece of layout.pieces) {
+    pen.fillStyle = css(piece.body < 0 ? "--earth" : fills[piece.body % fills.length]);
+    path(outline(piece).map(point), true);
+    pen.fill();
+    pen.stroke();
+  }
+
+  // Loads stand on their blocks.
+  pen.strokeStyle = pen.fillStyle = css("--mark");
+  pen.lineWidth = 2;
+  pen.textAlign = "center";
+  for (const [body, x, y, over, text] of layout.loads) {
+    const [px, py] = onScreen(point([body, x, y]));
+    pen.beginPath();
+    pen.moveTo(px, py - 22);
+    pen.lineTo(px, py - 2);
+    pen.moveTo(px - 4, py - 8);
+    pen.lineTo(px, py - 1);
+    pen.lineTo(px + 4, py - 8);
+    pen.moveTo(px - 0.5 * scale * over, py - 22);
+    pen.lineTo(px + 0.5 * scale * over, py - 22);
+    pen.stroke();
+    pen.fillText(text, px, py - 27);
+  }
+
+  // The ties.
+  pen.strokeStyle = css("--tie");
+  data.ties.forEach((ends, tie) => {
+    const broken = data.ties_broken_s[tie] !== null && times[at.frame] >= data.ties_broken_s[tie];
+    const [from, to] = ends.map(point);
+    const stub = ([x, y], [otherX, otherY]) => [x + 0.4 * (otherX - x), y + 0.4 * (otherY - y)];
+    pen.lineWidth = broken ? 2 : 3;
+    pen.setLineDash(broken ? [5, 4] : []);
+    for (const line of broken ? [[from, stub(from, to)], [to, stub(to, from)]] : [[from, to]]) {
+      path(line);
+      pen.stroke();
+    }
+  });
+  pen.setLineDash([]);
+
+  // Where elastic joints press, and the stress there as a wedge.
+  if (frames.largest_stress_pa) {
+    pen.fillStyle = pen.strokeStyle = css("--press");
+    data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
+      const { stresses, ends } = pressure(at.frame, joint);
+      if (stresses.every((stress) => stress === 0)) return;
+      const high = (0.6 * Math.hypot(ex - ix, ey - iy)) / frames.largest_stress_pa;
+      const [acrossX, acrossY] = data.across[joint];
+      const corner = (end, stress) => {
+        const [part, up] = [ends[end], high * stress];
+        return point([body, ix + part * (ex - ix) + up * acrossX, iy + part * (ey - iy) + up * acrossY]);
+      };
+      path([corner(0, 0), corner(0, stresses[0]), corner(1, stresses[1]), corner(1, 0)], true);
+      pen.globalAlpha = 0.55;
+      pen.fill();
+      pen.globalAlpha = 1;
+      pen.lineWidth = 3;
+      path([corner(0, 0), corner(1, 0)], false);
+      pen.stroke();
+    });
+  }
+
+  // The line of thrust, where sections are pressed.
+  if (find("thrust").checked && frames.thrust_unit) {
+    pen.strokeStyle = css("--thrust");
+    pen.lineWidth = 2.5;
+    pen.beginPath();
+    let drawing = false;
+    sections.forEach(([middleX, middleY, acrossX, acrossY], i) => {
+      const value = thrust[at.frame * sections.length + i];
+      if (value === NO_THRUST) {
+        drawing = false;
+        return;
+      }
+      const e = value * frames.thrust_unit;
+      const to = onScreen(point([layout.section_bodies[i], middleX + e * acrossX, middleY + e * acrossY]));
+      if (drawing) pen.lineTo(...to);
+      else pen.moveTo(...to);
+      drawing = true;
+    });
+    pen.stroke();
+  }
+
+  // The hinges.
+  pen.strokeStyle = css("--mark");
+  pen.lineWidth = 2;
+  for (const [body, x, y, edge] of hingesAt(at.frame)) {
+    const [px, py] = onScreen(point([body, x, y]));
+    pen.beginPath();
+    if (edge === PARTED) {
+      pen.moveTo(px - 4, py - 4);
+      pen.lineTo(px + 4, py + 4);
+      pen.moveTo(px - 4, py + 4);
+      pen.lineTo(px + 4, py - 4);
+    } else {
+      pen.arc(px, py, 4, 0, 2 * Math.PI);
+      pen.fillStyle = edge === EXTRADOS ? css("--mark") : css("--paper");
+      pen.fill();
+    }
+    pen.stroke();
+  }
+
+  // The points that are watched.
+  pen.strokeStyle = css("--mark");
+  pen.fillStyle = css("--paper");
+  pen.lineWidth = 2;
+  (data.points ?? []).forEach(({ at_m: [x, y] }, i) => {
+    const [px, py] = onScreen(point([layout.point_bodies[i], x, y]));
+    pen.fillRect(px - 4, py - 4, 8, 8);
+    pen.strokeRect(px - 4, py - 4, 8, 8);
+  });
+
+  // How the ground accelerates.
+  const g = blend(groundG, 1, 0, at);
+  const most = farthest(groundG);
+  if (most > 0) {
+    const length = (0.2 * wide * g) / most;
+    const y = tall - 38;
+    pen.strokeStyle = pen.fillStyle = css("--curve-2");
+    pen.lineWidth = 3;
+    pen.beginPath();
+    pen.moveTo(wide / 2, y);
+    pen.lineTo(wide / 2 + length, y);
+    if (Math.abs(length) > 6) {
+      const back = Math.sign(length) * 7;
+      pen.moveTo(wide / 2 + length - back, y - 5);
+      pen.lineTo(wide / 2 + length, y);
+      pen.lineTo(wide / 2 + length - back, y + 5);
+    }
+    pen.stroke();
+    pen.fillStyle = ink;
+    pen.textAlign = g < 0 ? "left" : "right";
+    pen.fillText(`ground ${fixed(g, 3)} g`, wide / 2 + (g < 0 ? 10 : -10), y + 4);
+  }
+  find("now").textContent = inWords(at, poses);
+}
+
+/** The dimensions of the structure at rest, outside it: heights left and right, widths below the ground. */
+function drawSizes(pen, onScreen, floor) {
+  const [left, right] = [onScreen(low)[0], onScreen(high)[0]];
+  pen.strokeStyle = pen.fillStyle = css("--soft");
+  pen.lineWidth = 1;
+  // Those that would be on another go one line farther.
+  const taken = { below: [], left: [], right: [] };
+  for (const { ends_m: [ax, ay, bx, by], side, text } of data.dimensions) {
+    const [a, b] = [onScreen([ax, ay]), onScreen([bx, by])];
+    const axis = side === "below" ? 0 : 1;
+    const span = [a[axis], b[axis]].sort((x, y) => x - y);
+    const lines = taken[side];
+    let line = lines.findIndex((spans) => spans.every(([from, to]) => span[1] <= from + 1 || to <= span[0] + 1));
+    if (line < 0) line = lines.push([]) - 1;
+    lines[line].push(span);
+    const at = side === "below" ? floor + 26 + 14 * line : side === "left" ? left - 16 - 16 * line : right + 16 + 16 * line;
+    const foot = (end) => (axis === 0 ? [end[0], at] : [at, end[1]]);
+    const ends = [foot(a), foot(b)];
+    pen.beginPath();
+    pen.moveTo(...ends[0]);
+    pen.lineTo(...ends[1]);
+    for (const [x, y] of ends) {
+      pen.moveTo(x - 3, y + 3);
+      pen.lineTo(x + 3, y - 3);
+    }
+    pen.stroke();
+    pen.save();
+    pen.textAlign = "center";
+    pen.translate((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
+    if (axis === 1) pen.rotate(-Math.PI / 2);
+    // On paper of its own, where the line would strike it through.
+    const wide = pen.measureText(text).width + 6;
+    if (axis === 0) {
+      pen.fillStyle = css("--paper");
+      pen.fillRect(-wide / 2, -6, wide, 12);
+      pen.fillStyle = css("--soft");
+      pen.fillText(text, 0, 4);
+    } else {
+      pen.fillText(text, 0, side === "left" ? -4 : 12);
+    }
+    pen.restore();
+  }
+}
+
+const INTRADOS = 1;
+const EXTRADOS = 2;
+const PARTED = 3;
+
+/** The hinges that are open in a frame: body, place, and edge. */
+function hingesAt(frame) {
+  const open = [];
+  data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
+    const code = joints[frame * data.joints.length + joint];
+    if (code === INTRADOS || code === PARTED) open.push([body, ix, iy, code]);
+    if (code === EXTRADOS || code === PARTED) open.push([body, ex, ey, code]);
+  });
+  return open.concat(layouts[layoutOf[frame]].hinges);
+}
+
+/** Stresses at the ends of what presses of a joint, in Pa, and where those are, from 0 at the intrados to 1 at the extrados. */
+function pressure(frame, joint) {
+  const first = 3 * (frame * data.joints.length + joint);
+  const [inner, outer, contact] = Array.from(pressed.subarray(first, first + 3), (part) => part / 255);
+  const stresses = [inner, outer].map((part) => part * frames.largest_stress_pa);
+  const ends = outer === 0 ? [0, contact] : inner === 0 ? [1 - contact, 1] : [0, 1];
+  return { stresses, ends };
+}
+
+function inWords(at, poses) {
+  // Of several that turn as far, the one that the words name.
+  let most = data.largest_body;
+  poses.forEach(({ rotation }, body) => {
+    if (Math.abs(rotation) > Math.abs(poses[most].rotation)) most = body;
+  });
+  const name = data.bodies[most];
+  const of = name === "" ? "" : /^\d+$/.test(name) ? ` (block ${name})` : ` (${name})`;
+  const open = data.joints.length
+    ? data.joints.filter((_, joint) => joints[at.frame * data.joints.length + joint]).length
+    : layouts[layoutOf[at.frame]].hinges.length;
+  const falls = time > historyEnd ? " and falls" : "";
+  const turned = `largest rotation ${fixed(poses[most].rotation, 5)} rad${of}`;
+  return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}${falls}, ${turned}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
+}
