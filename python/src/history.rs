@@ -529,6 +529,6 @@ impl History {
             &mut filming,
             |filming| filming.signals.raised.take(),
         )?;
-        Ok(py.detach(|| filming.report.page(&scenario, &self.summary, ["", words], "")))
+        Ok(py.detach(|| filming.report.page(&scenario, &self.summary, None, ["", words], "")))
     }
 }

@@ -12,7 +12,7 @@ use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{self, Options};
 use archrock::studies::results::{Results, Style};
 use archrock::studies::run::{
-    FILES, OVERLAY, Run, RunError, RunResults, Wanted, compared, heading, overlay,
+    FILES, OVERLAY, Run, RunError, RunOptions, RunResults, compared, heading, overlay,
 };
 use nalgebra::Vector2;
 use serde_json::Map;
@@ -92,8 +92,8 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut failures = Vec::new();
     for job in &jobs {
         super::warn(&job.scenarios[0].unlikely());
-        let told = match job.run(arguments, quiet) {
-            Ok(told) => told,
+        let results = match job.run(arguments, quiet) {
+            Ok(results) => results,
             // The other scenarios are still run.
             Err(Failure::Work(message)) if jobs.len() > 1 => {
                 job.place.results.iter().for_each(Destination::abandon);
@@ -103,14 +103,14 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             Err(failure) => return Err(failure),
         };
         match arguments.format {
-            Format::Json => summaries.push(told.summary),
+            Format::Json => summaries.push(results.summary),
             Format::Text if quiet => {}
             // Standard output carries the rotations and nothing else.
             Format::Text if job.place.to_stdout => {
                 // When standard error fails there is nowhere to report it.
-                let _ = io::stderr().write_all(shown_lines(&told.words).as_bytes());
+                let _ = io::stderr().write_all(shown_lines(&results.words).as_bytes());
             }
-            Format::Text => print(&told.words)?,
+            Format::Text => print(&results.words)?,
         }
     }
     if let Format::Json = arguments.format {
@@ -229,23 +229,18 @@ impl Job {
         } else {
             None
         };
-        let mut own = Vec::new();
+        let (mut own, mut summaries) = (Vec::new(), Map::new());
         for (run, scenario) in runs.iter().zip(scenarios) {
-            own.push(if several {
-                let place = self.place.within(scenario.motion().hinges().name());
-                place.run(run, scenario, quiet)?
-            } else {
-                self.place.run(run, scenario, quiet)?
-            });
+            let name = scenario.motion().hinges().name();
+            let inside = several.then(|| self.place.within(name));
+            let place = inside.as_ref().unwrap_or(&self.place);
+            let computed = place.run(run, scenario, quiet)?;
+            summaries.insert(name.to_owned(), computed.summary.clone());
+            own.push(computed);
         }
         let mut results = Results {
             summary: if several {
-                let summaries = own.iter().zip(scenarios);
-                let summaries = summaries.map(|(own, scenario)| {
-                    let name = scenario.motion().hinges().name();
-                    (name.to_owned(), own.summary.clone())
-                });
-                summaries.collect::<Map<_, _>>().into()
+                summaries.into()
             } else {
                 own[0].summary.clone()
             },
@@ -268,12 +263,12 @@ impl Job {
         }
         if several {
             results.words += &compared(&own);
-            for (run, own) in runs.iter().zip(&own) {
-                let (name, verdict, words) = (run.name(), &own.verdict, &own.words);
-                let _ = write!(results.words, "{name}\n  {verdict}{words}");
+        }
+        for (run, own) in runs.iter().zip(&own) {
+            if several {
+                let _ = writeln!(results.words, "{}", run.name());
             }
-        } else {
-            let _ = write!(results.words, "  {}{}", own[0].verdict, own[0].words);
+            let _ = write!(results.words, "  {}{}", own.verdict, own.words);
         }
         if let Some(mut folder) = folder {
             folder
@@ -327,9 +322,9 @@ impl Job {
             return Err(Failure::Input(message.to_owned()));
         }
         let beside = scenarios.iter().map(|one| one.motion().hinges());
-        let wanted = Wanted {
+        let wanted = RunOptions {
             beside: beside.collect(),
-            ..arguments.wanted(to_stdout)?
+            ..arguments.run_options(to_stdout)?
         };
         let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
@@ -339,12 +334,12 @@ impl Job {
 
 impl Arguments {
     /// What a run has to produce.
-    fn wanted(&self, to_stdout: bool) -> Result<Wanted, Failure> {
+    fn run_options(&self, to_stdout: bool) -> Result<RunOptions, Failure> {
         if self.exaggerate.is_some() && self.snapshots.is_empty() && self.film.is_none() {
             let message = "--exaggerate goes with --snapshots or --film";
             return Err(Failure::Input(message.to_owned()));
         }
-        Ok(Wanted {
+        Ok(RunOptions {
             figure: self.panels.of(self.figure.get()?),
             rotations: !to_stdout,
             dimensionless: self.dimensionless,
@@ -355,7 +350,7 @@ impl Arguments {
             exaggeration: self.exaggerate.unwrap_or(1.0),
             poses: self.poses,
             points_m: self.points_m.clone(),
-            ..Wanted::default()
+            ..RunOptions::default()
         })
     }
 

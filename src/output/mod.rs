@@ -101,17 +101,6 @@ pub(crate) fn range_ends([from, to]: [f64; 2], decimals: usize) -> [String; 2] {
         .unwrap_or_else(|| with(MOST))
 }
 
-/// Refuses values that are not finite. Tables check their own cells.
-pub(crate) fn finite(what: &str, values: &[f64]) -> Result<(), OutputError> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err(OutputError::NotFinite {
-            what: what.to_owned(),
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -7,7 +7,7 @@ use crate::common::{impact_times_s, pairs, parsed};
 use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
-use archrock::studies::run::{Run, Wanted};
+use archrock::studies::run::{Run, RunOptions};
 use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -220,7 +220,7 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
              [ground.rectangular]\namplitude_g = -0.2\nvertical_amplitude_g = {vertical_g:?}\nduration_s = 0.1\n\
              [simulation]\nduration_s = 0.2\ngravity_m_s2 = 10.0\n"
         ));
-        let run = Run::new(&scenario, Wanted::default()).unwrap();
+        let run = Run::new(&scenario, RunOptions::default()).unwrap();
         let mut text = Vec::new();
         let stdout: Box<dyn std::io::Write> = Box::new(&mut text);
         run.compute(None, Some(stdout), &mut |_| {}).unwrap();

@@ -21,7 +21,7 @@ pub fn compared(runs: &[RunResults<'_>]) -> String {
             [run.name().to_owned(), ends(history), peak]
         })
         .collect();
-    let header = ["model", "what happens", "largest rotation"].map(str::to_owned);
+    let header = ["model", "what happened", "largest rotation"].map(str::to_owned);
     let wide = [0, 1].map(|column| {
         let cells = rows.iter().chain([&header]);
         cells.map(|row| row[column].len()).max().unwrap_or(0)
@@ -34,15 +34,16 @@ pub fn compared(runs: &[RunResults<'_>]) -> String {
     text + &believed(runs)
 }
 
-fn ends(history: &Summary) -> String {
-    let time_s = history.outcome_time_s;
-    match history.outcome {
-        Outcome::NeverMoved => "never moves".to_owned(),
-        Outcome::Vibrates => "vibrates without opening".to_owned(),
-        Outcome::Incomplete => format!("no verdict: the run ends too early, at {time_s:.4} s"),
-        Outcome::Rest => format!("rests at {time_s:.4} s"),
-        Outcome::Overturned(sway) => format!("overturns to the {} at {time_s:.4} s", sway.name()),
-        Outcome::StillRocking => format!("still rocks at {time_s:.4} s"),
+fn ends(
+    Summary {
+        outcome,
+        outcome_time_s,
+        ..
+    }: &Summary,
+) -> String {
+    match outcome {
+        Outcome::NeverMoved | Outcome::Vibrates => outcome.to_string(),
+        _ => format!("{outcome} at {outcome_time_s:.4} s"),
     }
 }
 
@@ -85,30 +86,24 @@ fn believed(runs: &[RunResults<'_>]) -> String {
     };
     let others = runs.iter().map(|results| (results.run, &results.history));
     for (run, other) in others.filter(|(run, _)| trust(run) != trust(best)) {
-        let [own_verdict, other_verdict] = [own, other].map(|one| Verdict::from(one.outcome));
-        let (own_rad, other_rad) = (own.largest_rotation_rad(), other.largest_rotation_rad());
-        let _ = if other_verdict == Verdict::Incomplete {
-            Ok(())
-        } else if own_verdict != other_verdict {
-            writeln!(text, "  {}: ANOTHER OUTCOME", run.name())
-        } else if own_verdict == Verdict::Overturns {
-            let late_s = other.outcome_time_s - own.outcome_time_s;
-            let when = if late_s < 0.0 { "earlier" } else { "later" };
-            writeln!(
-                text,
-                "  {}: overturns too, {:.4} s {when}",
-                run.name(),
-                late_s.abs()
-            )
-        } else if own_rad > 0.0 {
-            let times = other_rad / own_rad;
-            writeln!(
-                text,
-                "  {}: the same, with {times:.2} times that rotation",
-                run.name()
-            )
-        } else {
-            Ok(())
+        let (name, verdict) = (run.name(), Verdict::from(own.outcome));
+        let late_s = other.outcome_time_s - own.outcome_time_s;
+        let when = if late_s < 0.0 { "earlier" } else { "later" };
+        let times = other.largest_rotation_rad() / own.largest_rotation_rad();
+        let _ = match Verdict::from(other.outcome) {
+            Verdict::Incomplete => Ok(()),
+            other if other != verdict => writeln!(text, "  {name}: ANOTHER OUTCOME"),
+            Verdict::Overturns => {
+                let apart_s = late_s.abs();
+                writeln!(text, "  {name}: overturns too, {apart_s:.4} s {when}")
+            }
+            _ if own.largest_rotation_rad() > 0.0 => {
+                writeln!(
+                    text,
+                    "  {name}: survives too, with {times:.2} times that rotation"
+                )
+            }
+            _ => Ok(()),
         };
     }
     text

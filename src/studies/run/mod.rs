@@ -47,7 +47,7 @@ use crate::dynamics::variation::{Variation, Variations, Varied};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::summary::summary_of;
-use crate::output::table::{Column, TableWriter};
+use crate::output::table::TableWriter;
 use crate::output::template::render;
 use crate::output::{Figure, Folder, OutputError, Subject, pretty};
 use crate::scenario::{Hinges, Scenario};
@@ -72,7 +72,7 @@ pub const FILES: [&str; 10] = [
 
 /// Options of a run; the defaults are those of the program without options.
 #[derive(Clone, Debug)]
-pub struct Wanted {
+pub struct RunOptions {
     /// Width of the pictures, and the size of their text.
     pub figure: Figure,
     /// Whether rotations are written to a file.
@@ -97,7 +97,7 @@ pub struct Wanted {
     pub points_m: Vec<Vector2<f64>>,
 }
 
-impl Default for Wanted {
+impl Default for RunOptions {
     fn default() -> Self {
         Self {
             figure: Figure::SCREEN,
@@ -137,7 +137,7 @@ pub struct RunResults<'r> {
     /// The motions with other properties that are as likely.
     pub varied: Vec<Varied>,
     run: &'r Run<'r>,
-    shown: Shown,
+    collected: Collected,
     folder: Option<Folder>,
     /// Number of rows of the rotations.
     rows: usize,
@@ -159,7 +159,7 @@ pub enum RunError {
 pub struct Run<'a> {
     scenario: &'a Scenario,
     model: Box<dyn Model>,
-    wanted: Wanted,
+    options: RunOptions,
     scales: Option<Scales>,
     points: Points,
 }
@@ -169,8 +169,8 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// Explains that the structure has no such model of motion, or that an option does not fit it.
-    pub fn new(scenario: &'a Scenario, wanted: Wanted) -> Result<Self, String> {
-        if wanted.dimensionless && scenario.motion().hinges().has_joints() {
+    pub fn new(scenario: &'a Scenario, options: RunOptions) -> Result<Self, String> {
+        if options.dimensionless && scenario.motion().hinges().has_joints() {
             return Err(
                 "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
                  measure by"
@@ -178,7 +178,7 @@ impl<'a> Run<'a> {
             );
         }
         let model = scenario.model().map_err(|error| error.to_string())?;
-        let scales = match model.as_mechanisms().filter(|_| wanted.dimensionless) {
+        let scales = match model.as_mechanisms().filter(|_| options.dimensionless) {
             Some(model) => {
                 let scales = Scales::new(model, scenario.gravity_m_s2());
                 let why_not = "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out";
@@ -186,11 +186,11 @@ impl<'a> Run<'a> {
             }
             None => None,
         };
-        let points = Points::new(scene(scenario, &*model), &wanted.points_m)?;
+        let points = Points::new(scene(scenario, &*model), &options.points_m)?;
         Ok(Self {
             scenario,
             model,
-            wanted,
+            options,
             scales,
             points,
         })
@@ -205,18 +205,18 @@ impl<'a> Run<'a> {
     /// The files that it writes, the seal last.
     #[must_use]
     pub fn files(&self) -> Vec<&'static str> {
-        let wanted = |file: &&str| match *file {
-            ROTATIONS => self.wanted.rotations,
-            REPORT => self.wanted.report,
-            SNAPSHOTS => !self.wanted.snapshots_s.is_empty(),
-            POSES => self.wanted.poses,
+        let is_written = |file: &&str| match *file {
+            ROTATIONS => self.options.rotations,
+            REPORT => self.options.report,
+            SNAPSHOTS => !self.options.snapshots_s.is_empty(),
+            POSES => self.options.poses,
             JOINTS => self.model.row().is_some(),
             // Elastic joints have no impacts.
             IMPACTS => self.model.shape().pressing == 0,
             OVERLAY => false,
             _ => true,
         };
-        FILES.into_iter().filter(wanted).collect()
+        FILES.into_iter().filter(is_written).collect()
     }
 
     /// Simulates the scenario. The tables go into a folder that was opened for them; [`RunResults::complete`] writes the other files. Rotations go to
@@ -232,14 +232,14 @@ impl<'a> Run<'a> {
     ) -> Result<RunResults<'_>, RunError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
-        let mut shown = Shown::new(self, folder.is_some());
-        let repeats = self.wanted.repeat && model.row().is_some();
+        let mut collected = Collected::new(self, folder.is_some());
+        let repeats = self.options.repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = Variations::start(self.variations()?, ground, &request);
         let (history, rows) = {
             let mut recording = Recording {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
-                shown: &mut shown,
+                collected: &mut collected,
                 watch,
                 written: Ok(()),
             };
@@ -259,12 +259,12 @@ impl<'a> Run<'a> {
             repeated: repeated.as_ref(),
             varied: &varied,
         };
-        let summary = Summary::of(&evidence, shown.points.peaks());
+        let summary = Summary::of(&evidence, collected.points.peaks());
         let words = Words {
             evidence,
             summary: &summary,
-            impacts: &shown.notable,
-            beside: &self.wanted.beside,
+            impacts: &collected.notable,
+            beside: &self.options.beside,
         };
         let (verdict, words) = (render(&VerdictLine(evidence)), render(&words));
         let summary = summary_of(&summary)?;
@@ -275,15 +275,15 @@ impl<'a> Run<'a> {
             history,
             varied,
             run: self,
-            shown,
+            collected,
             folder,
             rows,
         })
     }
 
-    /// The structure with other properties that are as likely as its own; empty if repetitions are not wanted.
+    /// The structure with other properties that are as likely as its own; empty if repetitions are not options.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
-        if !self.wanted.repeat {
+        if !self.options.repeat {
             return Ok(Vec::new());
         }
         let variations = self.scenario.variations();
@@ -312,7 +312,7 @@ impl RunResults<'_> {
             return Ok(());
         };
         let text = &mut self.words;
-        self.shown.write(
+        self.collected.write(
             self.run,
             &mut folder,
             &self.history,
@@ -342,9 +342,9 @@ pub fn overlay(runs: &[RunResults<'_>]) -> String {
         initial.make_ascii_uppercase();
     }
     let subject = first.subject(first.scenario.title().unwrap_or(&all));
-    let curves = runs.iter().map(|results| &results.shown.curves);
+    let curves = runs.iter().map(|results| &results.collected.curves);
     let named: Vec<_> = names.into_iter().zip(curves).collect();
-    overlay::draw(first.wanted.figure, &subject, &named)
+    overlay::draw(first.options.figure, &subject, &named)
 }
 
 /// The drawable parts of a structure, as a model moves them.
@@ -398,7 +398,7 @@ fn write_film(folder: &mut Folder, stills: &[String]) -> Result<(), OutputError>
 }
 
 /// What is collected from a history for its words and pictures.
-struct Shown {
+struct Collected {
     picture: Box<dyn Picture>,
     report: Option<Report>,
     snapshots: Option<Snapshots>,
@@ -408,25 +408,24 @@ struct Shown {
     curves: Curves,
 }
 
-impl Shown {
+impl Collected {
     /// The page and the snapshots are collected only if there is a folder.
     fn new(run: &Run<'_>, has_folder: bool) -> Self {
-        let (model, wanted) = (&*run.model, &run.wanted);
-        let snapshots = has_folder && !wanted.snapshots_s.is_empty();
+        let (model, options) = (&*run.model, &run.options);
+        let snapshots = has_folder && !options.snapshots_s.is_empty();
         let scene = || scene(run.scenario, model);
         Self {
             picture: match model.row() {
                 Some(row) => Box::new(RowTimeline::new(row)),
                 None => Box::new(Timeline::new(&model.bodies())),
             },
-            report: (has_folder && wanted.report)
-                .then(|| Report::new(run.scenario, model).watching(run.points.clone())),
+            report: (has_folder && options.report).then(|| Report::new(run.scenario, model)),
             snapshots: snapshots
-                .then(|| Snapshots::new(scene(), &wanted.snapshots_s, wanted.exaggeration)),
-            film: wanted
+                .then(|| Snapshots::new(scene(), &options.snapshots_s, options.exaggeration)),
+            film: options
                 .film_a_second
                 .filter(|_| has_folder)
-                .map(|a_second| Snapshots::film(scene(), a_second, wanted.exaggeration)),
+                .map(|a_second| Snapshots::film(scene(), a_second, options.exaggeration)),
             notable: Notable::default(),
             points: run.points.clone(),
             curves: Curves::default(),
@@ -471,13 +470,13 @@ impl Shown {
         opening: [&str; 2],
         words: &mut String,
     ) -> Result<(), OutputError> {
-        let (scenario, figure) = (run.scenario, run.wanted.figure);
+        let (scenario, figure) = (run.scenario, run.options.figure);
         let title = scenario.title().unwrap_or("Rocking history");
         let subject = run.subject(title);
         let picture = self.picture.draw(figure, &subject, history, &self.points);
         write(folder, PICTURE, "the picture", &picture)?;
         if let Some(report) = &self.report {
-            let page = report.page(scenario, history, opening, words);
+            let page = report.page(scenario, history, Some(&self.points), opening, words);
             write(folder, REPORT, "the report", &page)?;
         }
         if let Some(film) = &self.film {
@@ -495,12 +494,12 @@ impl Shown {
             let picture = snapshots.draw(figure, title);
             write(folder, SNAPSHOTS, "the snapshots", &picture)?;
             let places = [("before the start", "first"), ("after the end", "last")];
-            for ((place, shown), times_s) in places.into_iter().zip(snapshots.outside_s()) {
+            for ((place, which), times_s) in places.into_iter().zip(snapshots.outside_s()) {
                 let times_s: Vec<_> = times_s.iter().map(f64::to_string).collect();
                 if !times_s.is_empty() {
                     let _ = writeln!(
                         words,
-                        "  snapshots at {} s are {place}: they show its {shown} instant",
+                        "  snapshots at {} s are {place}: they show its {which} instant",
                         times_s.join(", ")
                     );
                 }
@@ -514,10 +513,11 @@ impl Shown {
 type Running<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
 
 /// The tables of a run.
+#[derive(Default)]
 struct Tables<'f> {
-    of_samples: Vec<Running<'f, Sample>>,
-    events: Option<Running<'f, Event>>,
-    impacts: Option<Running<'f, Event>>,
+    samples: Vec<Running<'f, Sample>>,
+    events: Vec<Running<'f, Event>>,
+    impacts: Vec<Running<'f, Event>>,
 }
 
 impl<'f> Tables<'f> {
@@ -526,93 +526,69 @@ impl<'f> Tables<'f> {
         folder: Option<&'f mut Folder>,
         rotations: Option<Box<dyn io::Write + 'f>>,
     ) -> Result<Self, OutputError> {
+        type File<'f> = Box<dyn io::Write + 'f>;
         let model = &*run.model;
-        let columns = || {
-            let ground = run.scenario.ground_motion();
-            let mut columns = tables::rotations(model, ground, run.scales);
-            columns.extend(run.points.columns());
-            columns
-        };
-        let mut tables = Self {
-            of_samples: Vec::new(),
-            events: None,
-            impacts: None,
-        };
-        if let Some(file) = rotations {
-            tables.add("cannot write the rotations", file, columns())?;
-        }
-        for (name, file) in folder.into_iter().flat_map(Folder::files) {
-            let file: Box<dyn io::Write + 'f> = Box::new(file);
-            match name {
-                ROTATIONS => tables.add("cannot write the rotations", file, columns())?,
-                POSES => tables.add(
-                    "cannot write the poses",
-                    file,
-                    tables::poses(&model.bodies()),
-                )?,
-                JOINTS => tables.add("cannot write the joints", file, tables::joints(model))?,
+        let files = folder.into_iter().flat_map(Folder::files);
+        let files = files.map(|(name, file)| (name, Box::new(file) as File<'f>));
+        let streamed = rotations.map(|file| (ROTATIONS, file));
+        let mut tables = Self::default();
+        for (name, file) in streamed.into_iter().chain(files) {
+            let (what, columns) = match name {
+                ROTATIONS => {
+                    let ground = run.scenario.ground_motion();
+                    let mut columns = tables::rotations(model, ground, run.scales);
+                    columns.extend(run.points.columns());
+                    ("cannot write the rotations", columns)
+                }
+                POSES => ("cannot write the poses", tables::poses(&model.bodies())),
+                JOINTS => ("cannot write the joints", tables::joints(model)),
                 EVENTS => {
-                    let columns = tables::events(model);
-                    tables.events =
-                        Some(TableWriter::new(file, "cannot write the events", columns)?);
+                    let (what, columns) = ("cannot write the events", tables::events(model));
+                    tables.events.push(TableWriter::new(file, what, columns)?);
+                    continue;
                 }
                 IMPACTS => {
                     let columns = match model.as_mechanisms() {
                         Some(model) => tables::impacts(model),
                         None => tables::landings(model),
                     };
-                    tables.impacts =
-                        Some(TableWriter::new(file, "cannot write the impacts", columns)?);
+                    let what = "cannot write the impacts";
+                    tables.impacts.push(TableWriter::new(file, what, columns)?);
+                    continue;
                 }
-                _ => {}
-            }
+                _ => continue,
+            };
+            tables.samples.push(TableWriter::new(file, what, columns)?);
         }
         Ok(tables)
     }
 
-    /// Adds a table of samples.
-    fn add(
-        &mut self,
-        what: &'static str,
-        file: Box<dyn io::Write + 'f>,
-        columns: Vec<Column<'static, Sample>>,
-    ) -> Result<(), OutputError> {
-        self.of_samples.push(TableWriter::new(file, what, columns)?);
-        Ok(())
-    }
-
     fn sample(&mut self, sample: &Sample) -> Result<(), OutputError> {
-        let mut tables = self.of_samples.iter_mut();
+        let mut tables = self.samples.iter_mut();
         tables.try_for_each(|table| table.write(sample))
     }
 
     fn event(&mut self, event: &Event) -> Result<(), OutputError> {
-        if let Some(events) = &mut self.events {
-            events.write(event)?;
-        }
-        match &mut self.impacts {
-            Some(impacts) if event.impact.is_some() => impacts.write(event),
-            _ => Ok(()),
-        }
+        let impacts = self.impacts.iter_mut();
+        let impacts = impacts.filter(|_| event.impact.is_some());
+        let mut tables = self.events.iter_mut().chain(impacts);
+        tables.try_for_each(|table| table.write(event))
     }
 
     /// Completes the tables and returns the number of samples.
     fn finish(self) -> Result<usize, OutputError> {
-        let mut samples = 0;
-        for table in self.of_samples {
-            samples = table.finish()?;
-        }
-        for table in [self.events, self.impacts].into_iter().flatten() {
+        for table in self.events.into_iter().chain(self.impacts) {
             table.finish()?;
         }
-        Ok(samples)
+        let mut samples = self.samples.into_iter();
+        samples.try_fold(0, |_, table| table.finish())
     }
 }
 
 /// Passes samples and events on to the tables and pictures.
 struct Recording<'r, 'f> {
     tables: Tables<'f>,
-    shown: &'r mut Shown,
+    collected: &'r mut Collected,
     watch: &'r mut dyn FnMut(Stage),
     /// The error of a table that could not be written, which ends the history.
     written: Result<(), OutputError>,
@@ -631,13 +607,13 @@ impl Recording<'_, '_> {
 impl Recorder for Recording<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         (self.watch)(Stage::Reached(sample.time_s));
-        self.shown.sample(sample);
+        self.collected.sample(sample);
         let written = self.tables.sample(sample);
         self.go_on(written)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.shown.event(event);
+        self.collected.event(event);
         // If a failed table ended the history, that end is not an event.
         if self.written.is_err() {
             return ControlFlow::Break(());
@@ -647,26 +623,26 @@ impl Recorder for Recording<'_, '_> {
     }
 
     fn wants_thrust_line(&self) -> bool {
-        let Shown {
+        let Collected {
             report,
             snapshots,
             film,
             ..
-        } = &self.shown;
+        } = &self.collected;
         report.is_some() || snapshots.is_some() || film.is_some()
     }
 
     fn wants_fall(&self) -> bool {
-        self.shown.report.is_some() || self.shown.film.is_some()
+        self.collected.report.is_some() || self.collected.film.is_some()
     }
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self.shown.fall(sample);
+        self.collected.fall(sample);
         ControlFlow::Continue(())
     }
 
     fn fell(&mut self, end: FallEnd) {
-        if let Some(report) = &mut self.shown.report {
+        if let Some(report) = &mut self.collected.report {
             report.end_fall(end);
         }
     }

@@ -20,7 +20,7 @@ pub const MOST_POINTS: usize = CURVES.len() / 2;
 /// Observes points of a structure, and records their displacements from the undeformed structure, relative to
 /// the ground.
 #[derive(Clone, Debug)]
-pub(super) struct Points {
+pub struct Points {
     scene: Scene,
     watched: Vec<Watched>,
 }

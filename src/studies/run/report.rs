@@ -60,7 +60,6 @@ pub struct Report {
     in_barriers: bool,
     excess_ratio: Envelope,
     leaves: bool,
-    points: Option<Points>,
 }
 
 impl Report {
@@ -83,15 +82,6 @@ impl Report {
             in_barriers: false,
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
             leaves: false,
-            points: None,
-        }
-    }
-
-    /// The same report with these points observed.
-    pub(super) fn watching(self, points: Points) -> Self {
-        Self {
-            points: Some(points),
-            ..self
         }
     }
 
@@ -99,9 +89,6 @@ impl Report {
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.film.push(sample);
-        if let Some(points) = &mut self.points {
-            points.push(sample);
-        }
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
@@ -121,12 +108,13 @@ impl Report {
         self.fall_end = Some(end);
     }
 
-    /// The page for a scenario: the report on its samples, if there are any, the verdict, and the other words of `run`.
+    /// The page for a scenario, with its observed points: the report on its samples, if there are any, the verdict, and the other words of `run`.
     #[must_use]
     pub fn page(
         &self,
         scenario: &Scenario,
         history: &Summary,
+        points: Option<&Points>,
         [samples, verdict]: [&str; 2],
         words: &str,
     ) -> String {
@@ -169,7 +157,7 @@ impl Report {
                 ),
                 (
                     "DATA",
-                    &script_safe(&self.data(ground, &frames, ends_at, history)),
+                    &script_safe(&self.data(ground, &frames, ends_at, (history, points))),
                 ),
             ],
         )
@@ -181,7 +169,7 @@ impl Report {
         ground: &GroundMotion,
         frames: &[&Sample],
         fall_from: usize,
-        history: &Summary,
+        (history, points): (&Summary, Option<&Points>),
     ) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
@@ -242,9 +230,9 @@ impl Report {
             "sections": list(sections.map(|one| flat([one.middle_m, one.across_m]))),
             "joints": joints,
             "across": list(across),
-            "layouts": list(hinges.iter().map(|open| self.layout(open, unit_m))),
+            "layouts": list(hinges.iter().map(|open| self.layout(open, points, unit_m))),
             "frames": self.frames(ground, frames, layout_of, joints.len()),
-            "points": self.points.as_ref().map(|points| points.on_page(curve)),
+            "points": points.map(|points| points.on_page(curve)),
             "energy_label": energy_label,
             "curves": {
                 "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
@@ -255,7 +243,7 @@ impl Report {
     }
 
     /// The outlines and hinges of a layout.
-    fn layout(&self, hinges: &[OpenHinge], unit_m: f64) -> Value {
+    fn layout(&self, hinges: &[OpenHinge], points: Option<&Points>, unit_m: f64) -> Value {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
             let ((body, x_m, y_m), text) = (point(mark), format!("{} kg", metres(load.mass_kg)));
@@ -273,7 +261,7 @@ impl Report {
             (body, x_m, y_m, code)
         });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
-        let points = self.points.iter().flat_map(|points| points.bodies(hinges));
+        let points = points.into_iter().flat_map(|points| points.bodies(hinges));
         json!({
             "pieces": list(self.scene.pieces(hinges).into_iter().map(drawn)),
             "fill": list(self.scene.fill(hinges).into_iter().map(drawn)),
