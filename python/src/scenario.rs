@@ -143,15 +143,16 @@ impl Scenario {
 }
 
 fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
-    match model {
-        None => Ok(None),
-        Some("four_links") => Ok(Some(Hinges::Four)),
-        Some("free_hinges") => Ok(Some(Hinges::Free)),
-        Some("elastic_joints") => Ok(Some(Hinges::Elastic)),
-        Some(other) => Err(PyValueError::new_err(format!(
-            "`model = {other:?}` is not one of \"four_links\", \"free_hinges\" and \"elastic_joints\""
-        ))),
-    }
+    let Some(name) = model else {
+        return Ok(None);
+    };
+    let mut known = Hinges::ALL.iter();
+    let found = known.find(|hinges| hinges.model().name == name);
+    found.copied().map(Some).ok_or_else(|| {
+        PyValueError::new_err(format!(
+            "`model = {name:?}` is not one of \"four_links\", \"free_hinges\" and \"elastic_joints\""
+        ))
+    })
 }
 
 #[pymethods]

@@ -77,7 +77,7 @@ pub use elastic_joints::ElasticTable;
 pub use error::{Place, ScenarioError, ScenarioErrors};
 pub use free_hinges::FreeTable;
 pub use ground::{Ground, PulseGround};
-pub use hinges::Hinges;
+pub use hinges::{Hinges, MODELS, ModelEntry};
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;

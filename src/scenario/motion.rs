@@ -46,15 +46,14 @@ impl Motion {
     /// Its name in sentences.
     #[must_use]
     pub const fn words(&self) -> &'static str {
-        ["four links", "free hinges", "elastic joints"][self.hinges() as usize]
+        self.hinges().model().words
     }
 
     /// The name in results of the model built from a structure.
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
         match self {
-            Self::FourLinks(_) if structure.thrusts() => "four_links",
-            Self::FourLinks(_) => "column",
-            Self::FreeHinges(_) | Self::ElasticJoints(_) => self.table_name(),
+            Self::FourLinks(_) if !structure.thrusts() => "column",
+            _ => self.hinges().model().name,
         }
     }
 
@@ -193,7 +192,7 @@ impl Motion {
     /// The name of its table.
     #[must_use]
     pub const fn table_name(&self) -> &'static str {
-        ["impact", "free_hinges", "elastic_joints"][self.hinges() as usize]
+        self.hinges().model().table
     }
 
     /// The contents of its table.

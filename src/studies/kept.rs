@@ -9,7 +9,7 @@ use super::catalogue::{self, StudyKind};
 use super::part::{Shard, rows_in};
 use super::{peaks, run};
 use crate::output::print::PictureFormat;
-use crate::scenario::{Hinges, Scenario};
+use crate::scenario::{self, Hinges, Scenario};
 
 /// A hidden file that names the scenario file to which the results beside it belong.
 pub const ORIGIN: &str = ".scenario";
@@ -312,20 +312,8 @@ pub struct Origin {
     records: Vec<String>,
 }
 
-/// Tables that results of one command may have, and those of another not: a title, studies, and models of motion.
-const OF_SOME: [&str; 9] = [
-    "title",
-    "map",
-    "suite",
-    "demand",
-    "verify",
-    "uncertain",
-    "impact",
-    "free_hinges",
-    "elastic_joints",
-];
-/// Those among them that say how the structure moves.
-const MODEL: [&str; 3] = ["impact", "free_hinges", "elastic_joints"];
+/// Tables beside those of models that results of one command may have, and those of another not: a title, and studies.
+const OF_SOME: [&str; 6] = ["title", "map", "suite", "demand", "verify", "uncertain"];
 
 impl Origin {
     /// A scenario that is about to have results.
@@ -353,10 +341,11 @@ impl Origin {
         let (own, others) = (self.scenario.as_object()?, other.scenario.as_object()?);
         let tables = own.keys().chain(others.keys());
         let of_both = tables.filter(|table| {
-            !OF_SOME.contains(&table.as_str())
-                || MODEL.contains(&table.as_str())
-                    && own.contains_key(*table)
-                    && others.contains_key(*table)
+            let of_model = scenario::MODELS
+                .iter()
+                .any(|one| one.table == table.as_str());
+            let in_both = own.contains_key(*table) && others.contains_key(*table);
+            !OF_SOME.contains(&table.as_str()) && (!of_model || in_both)
         });
         let mut of_both = of_both.filter(|table| own.get(*table) != others.get(*table));
         if let Some(table) = of_both.next() {

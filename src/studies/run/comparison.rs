@@ -49,11 +49,7 @@ fn ends(
 
 /// The model with the fewest assumptions, whether its outcome depends on its joints, and how the others differ from its answer.
 fn believed(runs: &[RunResults<'_>]) -> String {
-    let trust = |run: &Run<'_>| match run.scenario.motion().hinges() {
-        Hinges::Four => 0,
-        Hinges::Free => 1,
-        Hinges::Elastic => 2,
-    };
+    let trust = |run: &Run<'_>| run.scenario.motion().hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
         return String::new();
     };
@@ -76,11 +72,7 @@ fn believed(runs: &[RunResults<'_>]) -> String {
             best.name()
         ),
         None => {
-            let why = match best.scenario.motion().hinges() {
-                Hinges::Elastic => "the outcome is the same with the other stiffnesses and contact",
-                Hinges::Free => "hinges open at any joint",
-                Hinges::Four => "it is the only one",
-            };
+            let why = best.scenario.motion().hinges().model().trusted_because;
             format!("  believe {}: {why}\n", best.name())
         }
     };

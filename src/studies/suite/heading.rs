@@ -6,7 +6,7 @@ use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::output::Figure;
 use crate::output::axes::Scale;
-use crate::scenario::{Measure, Spacing, Spectral};
+use crate::scenario::{MODELS, Measure, Spacing, Spectral};
 
 /// The scenario of a suite in its report. The text of the resolved scenario is enough for that, so parts can be joined where the records
 /// are not at hand.
@@ -39,8 +39,8 @@ impl Heading {
 
     /// Whether its model has joints, whose cases may be uncertain.
     pub(super) fn has_joints(&self) -> bool {
-        let mut tables = ["free_hinges", "elastic_joints"].iter();
-        tables.any(|table| self.scenario.get(*table).is_some())
+        let mut models = MODELS.iter().filter(|model| model.has_joints);
+        models.any(|model| self.scenario.get(model.table).is_some())
     }
 
     pub(super) fn title(&self) -> &str {
