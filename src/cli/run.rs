@@ -127,7 +127,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 struct Job {
     /// Its file.
     name: String,
-    /// One for each model of motion that was asked for.
+    /// One for each chosen model of motion.
     scenarios: Vec<Scenario>,
     /// The scenario of its file, whose suite may name the record.
     origin: Rc<Origin>,
@@ -135,7 +135,7 @@ struct Job {
 }
 
 impl Job {
-    /// All jobs that were asked for, or everything that is wrong with them.
+    /// All jobs, or all errors in them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let mut jobs: Vec<Self> = Vec::new();
         let mut wrong = Vec::new();
@@ -333,7 +333,7 @@ impl Job {
 }
 
 impl Arguments {
-    /// What a run has to produce.
+    /// The options of a run.
     fn run_options(&self, to_stdout: bool) -> Result<RunOptions, Failure> {
         if self.exaggerate.is_some() && self.snapshots.is_empty() && self.film.is_none() {
             let message = "--exaggerate goes with --snapshots or --film";
@@ -401,7 +401,7 @@ impl Place {
         })
     }
 
-    /// The same with a folder inside this one.
+    /// Place of the results of one of several models, inside this one.
     fn within(&self, name: &str) -> Self {
         Self {
             results: self.results.as_ref().map(|results| results.within(name)),

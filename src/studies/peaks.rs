@@ -1,6 +1,6 @@
 //! How far the models of motion rock a structure in the same cases, compared as distributions.
 //!
-//! Where impacts decide, no model foretells a history, but it may well foretell the distribution of many: rocking is validated
+//! Where impacts decide, no model predicts a history, but it may well predict the distribution of many: rocking is validated
 //! statistically (Bachmann, Strand, Vassiliou, Broccardo and Stojadinovic, Earthquake Engineering and Structural Dynamics 47, 2018;
 //! Vassiliou, Broccardo, Cengiz, Dietz, Dihoru, Gunay, Mosalam, Mylonakis, Sextos and Stojadinovic, ibid. 50, 2021).
 

@@ -166,25 +166,25 @@ impl<'a, D> CaseSummary<'a, D> {
     }
 }
 
-/// How many of these cases ended too early for a verdict, and what to do; `None` if none did.
+/// Number of cases that ended too early for a verdict, and what to do, in words; `None` if none did.
 pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<String> {
     let what_to_do = Ending::INCOMPLETE;
     (incomplete > 0).then(|| format!("no verdict from {incomplete} of {of} {cases}; {what_to_do}"))
 }
 
 impl Remarks {
-    /// How many histories ended too early for a verdict, and what to do; `None` if none did.
+    /// Number of histories that ended too early for a verdict, and what to do, in words; `None` if none did.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
         no_verdict(self.incomplete, self.histories, "histories")
     }
 
-    /// How many cases failed, why the first one did, and which file lists the others; `None` if none failed.
+    /// Number of failed cases, the reason of the first, and the file that lists the others, in words; `None` if none failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
         let failures = first_of(&self.failures, file)?;
         Some(format!("failed: {}; {failures}", self.failures.len()))
     }
 
-    /// How many cases are uncertain, and which file lists them; `None` if none is.
+    /// Number of uncertain cases and the file that lists them, in words; `None` if none is.
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let cases = first_of(&self.uncertain, file)?;
         Some(format!(

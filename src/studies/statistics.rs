@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Number of standard deviations on either side of the mean that enclose 95 % of a normal distribution.
 const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
-/// How many of the samples have a property, and the estimated share among all possible samples.
+/// Number of samples with a property, and the estimated share among all possible samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
     /// The number of samples with the property.

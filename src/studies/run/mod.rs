@@ -85,9 +85,9 @@ pub struct RunOptions {
     pub report: bool,
     /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
-    /// How many pictures a second a film of the structure has; `None`: there is none.
+    /// Pictures a second of a film of the structure; `None` without film.
     pub film_a_second: Option<f64>,
-    /// What displacements are multiplied by in snapshots and film.
+    /// Factor on the displacements in snapshots and film.
     pub exaggeration: f64,
     /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
@@ -397,7 +397,7 @@ fn write_film(folder: &mut Folder, stills: &[String]) -> Result<(), OutputError>
     Ok(())
 }
 
-/// What is collected from a history for its words and pictures.
+/// Data of a history for its words and pictures.
 struct Collected {
     picture: Box<dyn Picture>,
     report: Option<Report>,

@@ -269,7 +269,7 @@ impl<'a> Words<'a> {
         pushed.collect()
     }
 
-    /// How many times as strong a push is as the one that starts the structure. Any push starts a structure on hinges that ties hold.
+    /// A push as a multiple of the one that starts the structure, in words. Any push starts a structure on hinges that ties hold.
     fn times(&self, push_g: &f64, starts_g: &f64) -> String {
         match push_g / starts_g {
             times if times.is_finite() => format!(", {times:.2} times as much"),
