@@ -444,7 +444,7 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
                 let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
                 assert_eq!(reached.unwrap(), Reached::End);
                 let crown = row.joints[voussoirs / 2].extrados_m;
-                let pose = follower.placement().poses[voussoirs / 2 - 1];
+                let pose = follower.stance.placement.poses[voussoirs / 2 - 1];
                 let drop = (crown - pose.of(crown)).y;
                 // The judge rests where no block goes by more than 1e-7.
                 assert!((drop - blocks.crown_drop()).abs() < 1e-6, "{what}: {drop}");
@@ -586,7 +586,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
                 break;
             }
             let crown = row.joints[8].extrados_m;
-            let drop = (crown - follower.placement().poses[7].of(crown)).y;
+            let drop = (crown - follower.stance.placement.poses[7].of(crown)).y;
             let force = follower.stance.forces_n().sum::<f64>() / weight_n;
             let due = blocks.pull(&blocks.bars[0]);
             // The judge rests where no block goes by more than 1e-7, and where it is that times the stiffness.
@@ -596,7 +596,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
                 (drop - blocks.crown_drop()).abs() < 2e-6,
                 "{what} {to}: {drop}"
             );
-            let hinges = follower.hinges().unwrap().hinges.len();
+            let hinges = follower.hinges.as_ref().unwrap().hinges.len();
             most = most.max(hinges);
             let [first_g, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
             assert!(
@@ -679,7 +679,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
             blocks.support = way.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
             let crown = row.joints[8].extrados_m;
-            let drop = (crown - follower.placement().poses[7].of(crown)).y;
+            let drop = (crown - follower.stance.placement.poses[7].of(crown)).y;
             assert!((drop - blocks.crown_drop()).abs() < 2e-6, "{what}: {drop}");
             let forces = follower.stance.forces_n().map(|force_n| force_n / weight_n);
             let pairs: Vec<(f64, f64)> = forces
@@ -691,7 +691,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
                 assert!((force - due).abs() < loose, "{what}: {pairs:?}");
             }
             pulling += u32::from(pairs.iter().all(|(force, _)| *force > 0.01));
-            most = most.max(follower.hinges().unwrap().hinges.len());
+            most = most.max(follower.hinges.as_ref().unwrap().hinges.len());
         }
     }
     assert!(most == 5 && pulling > 5, "{most} {pulling}");
@@ -712,7 +712,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let mut follower = Follower::new(&row).unwrap();
     let way = |part: f64| movements * part;
     follower.move_supports(way, 0.0, 1.0).unwrap();
-    let hinges = &follower.hinges().unwrap().hinges;
+    let hinges = &follower.hinges.as_ref().unwrap().hinges;
     assert_eq!(hinges.len(), 4);
     let force_n = follower.stance.forces_n().next().unwrap();
 
@@ -1176,7 +1176,7 @@ fn a_springing_that_turns_leaves_an_arch_that_fits() {
     let state = follower.state().unwrap();
     let sum: f64 = state.turns_rad.iter().sum();
     assert!((sum + 0.02).abs() < 1e-14 && state.margin() >= -1e-12);
-    assert!(follower.placement().closure_error() < 1e-13);
+    assert!(follower.stance.placement.closure_error() < 1e-13);
 }
 
 const SEMICIRCLE: &str =

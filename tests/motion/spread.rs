@@ -136,14 +136,15 @@ fn a_settled_arch_stays_where_it_is() {
                 assert_eq!(sample.state, State::Rest);
                 let open: Vec<usize> = sample.hinges.iter().map(|open| joint(open.hinge)).collect();
                 let expected: Vec<usize> = follower
-                    .hinges()
+                    .hinges
+                    .as_ref()
                     .unwrap()
                     .hinges
                     .iter()
                     .map(|hinge| hinge.joint)
                     .collect();
                 assert_eq!(open, expected);
-                for (pose, there) in sample.poses.iter().zip(&follower.placement().poses) {
+                for (pose, there) in sample.poses.iter().zip(&follower.stance.placement.poses) {
                     let centre = row.blocks[0].centre_m;
                     assert!((pose.of(centre) - there.of(centre)).norm() < 1e-12);
                 }

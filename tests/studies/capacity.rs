@@ -332,7 +332,7 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
         // Heights, ways to the side and energy of the bar, over the whole mass.
         let known = |part: f64| {
             let displaced = held.displaced(part);
-            let joints: Vec<usize> = held.hinges().iter().map(|hinge| hinge.joint).collect();
+            let joints: Vec<usize> = held.pins.hinges.iter().map(|hinge| hinge.joint).collect();
             let place = |block: usize, at: Vector2<f64>| {
                 let before = joints.iter().filter(|joint| **joint <= block).count();
                 let body = before.checked_sub(1).filter(|body| *body < 3);

@@ -165,12 +165,6 @@ impl Program {
         &self.factor.row.moments
     }
 
-    /// Whether the last solution keeps a joint shut.
-    #[must_use]
-    pub(crate) fn keeps_shut(&self, joint: usize) -> bool {
-        self.active[joint] == [true; 2]
-    }
-
     /// The joints that are open in the last solution, and the rates of their gaps in m/s, relative to the
     /// jumps. A corner that is pressed has the rate zero.
     pub fn open_joints(&self) -> impl Iterator<Item = (usize, [f64; 2])> {

@@ -27,7 +27,6 @@ use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
 use super::geometry::rigid::linear;
-use super::joints::Placement;
 use super::stability::{StabilityError, falls_at, onset_at};
 use super::stance::Stance;
 use super::sway::Sway;
@@ -217,7 +216,8 @@ pub struct Follower<'a> {
     /// The row undeformed.
     pub row: &'a Row,
     descent: Descent<'a>,
-    hinges: Option<Pins>,
+    /// The hinges on which it stands; none while it is undeformed.
+    pub hinges: Option<Pins>,
     /// Its condition.
     pub condition: Condition,
     /// Positions of its blocks, and the memory of its ties.
@@ -254,24 +254,12 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// The hinges on which it stands; none while it is undeformed.
-    #[must_use]
-    pub const fn hinges(&self) -> Option<&Pins> {
-        self.hinges.as_ref()
-    }
-
     /// Whether it stands on more hinges than three, which ties alone hold.
     #[must_use]
     pub fn is_held_by_ties(&self) -> bool {
         self.hinges
             .as_ref()
             .is_some_and(|pins| pins.hinges.len() > 3)
-    }
-
-    /// Positions of its blocks.
-    #[must_use]
-    pub const fn placement(&self) -> &Placement {
-        &self.stance.placement
     }
 
     /// Its forces and rotations; none while it is undeformed, where they are not determined.

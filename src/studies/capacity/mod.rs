@@ -151,7 +151,7 @@ pub(super) fn crown_of_row(row: &Row, held: &Held<'_>) -> Carried {
 
 /// Assigns points of a row to the bodies of its first mechanism.
 fn carried_by_held(held: &Held<'_>) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
-    let hinges = held.hinges().iter();
+    let hinges = held.pins.hinges.iter();
     let places = hinges.map(|hinge| place_of_joint(hinge.joint));
     carried_by(places.collect(), held.bodies())
 }

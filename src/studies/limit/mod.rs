@@ -187,7 +187,7 @@ fn of_moved_row(
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
-    let hinges = follower.hinges().map(|pins| pins.hinges.clone());
+    let hinges = follower.hinges.as_ref().map(|pins| pins.hinges.clone());
     summary.hinges = Some(hinges.unwrap_or_default());
     if !row.ties.is_empty() {
         summary.tie_places = scenario.structure().tie_places();

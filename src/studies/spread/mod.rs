@@ -302,7 +302,7 @@ fn path(
 
 fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     let (place, crown_m) = follower.row.crown();
-    let poses = &follower.placement().poses;
+    let poses = &follower.stance.placement.poses;
     let state = follower.state();
     let reaction = state.as_ref().map(|state| state.right_reaction.linear);
     // A larger force is one over the height of three hinges on one line, which is rounding.

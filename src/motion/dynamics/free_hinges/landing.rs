@@ -115,7 +115,7 @@ pub struct LandingStepper<'a> {
     course: Course<'a>,
     /// The time up to which gravity and ground have acted on the velocities.
     kicked_s: f64,
-    placement: Placement,
+    pub placement: Placement,
     program: Program,
     /// For solutions that must not change the active set.
     auxiliary: Program,
@@ -237,11 +237,6 @@ impl<'a> LandingStepper<'a> {
             stepper.release(rotations_rad)?;
         }
         Ok(stepper)
-    }
-
-    /// Positions of the blocks.
-    pub fn into_placement(self) -> Placement {
-        self.placement
     }
 
     /// Takes up the initial rotations, at rest.
@@ -464,7 +459,7 @@ impl<'a> LandingStepper<'a> {
         let moments = self.program.moments();
         for joint in 1..=blocks {
             let ends = joint == blocks
-                || !self.program.keeps_shut(joint)
+                || self.program.active[joint] != [true; 2]
                 || self.jumps[joint] != Twist::ZERO;
             if ends {
                 let sum = moments[joint] - moments[first];

@@ -71,7 +71,7 @@ pub fn motion(
         return stepper::run(released(recorder)?);
     };
     let placement = match initial_rad {
-        Some(_) => released(None)?.into_placement(),
+        Some(_) => released(None)?.placement,
         None => standing.placement.clone(),
     };
     stepper::run(SlidingStepper::new(

@@ -36,7 +36,8 @@ impl Body {
         Self {
             bar,
             first_per_bar: Vector2::new(bar.dot(&first), bar.perp(&first)) / bar.norm_squared(),
-            polar: moments.polar_about(pivot),
+            polar: moments.polar - 2.0 * moments.first.dot(&pivot)
+                + moments.mass * pivot.norm_squared(),
         }
     }
 

@@ -164,12 +164,6 @@ impl MassMoments {
     pub fn central_polar(&self) -> f64 {
         self.polar - self.first.norm_squared() / self.mass
     }
-
-    /// Polar moment of inertia about `pole` (Steiner).
-    #[must_use]
-    pub(crate) fn polar_about(&self, pole: Vector2<f64>) -> f64 {
-        self.polar - 2.0 * self.first.dot(&pole) + self.mass * pole.norm_squared()
-    }
 }
 
 linear!(MassMoments { mass, first, polar });

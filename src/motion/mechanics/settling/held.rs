@@ -60,7 +60,8 @@ pub enum HeldError {
 pub struct Held<'a> {
     row: &'a Row,
     sway: Sway,
-    pins: Pins,
+    /// Its hinges.
+    pub pins: Pins,
     /// 1 where the first body turns anticlockwise, or -1.
     sense: f64,
     /// Rotation at which it has lost its strength.
@@ -106,18 +107,12 @@ impl<'a> Held<'a> {
         })
     }
 
-    /// Its hinges.
-    #[must_use]
-    pub fn hinges(&self) -> &[Pin] {
-        &self.pins.hinges
-    }
-
     /// How many bodies move.
     #[must_use]
     pub fn bodies(&self) -> usize {
         match self.row.supports {
             Supports::Left => 1,
-            Supports::Both => self.hinges().len() - 1,
+            Supports::Both => self.pins.hinges.len() - 1,
         }
     }
 
@@ -227,7 +222,7 @@ impl<'a> Held<'a> {
         let push = Vector2::new(self.sway.sign(), 0.0);
         let pushed = self.pins.loads(row, &poses, push, &[]);
         let pins_m = self.pins.at_m(&poses);
-        let joint = |hinge: usize| self.hinges()[hinge].joint;
+        let joint = |hinge: usize| self.pins.hinges[hinge].joint;
         if row.supports == Supports::Left {
             let blocks = row.blocks.len();
             let [held, pushed] = [held, pushed].map(|loads| loads[blocks] - loads[joint(0)]);
