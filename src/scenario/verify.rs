@@ -28,6 +28,7 @@
 //! state = { part_of_d0 = 0.4, period_factor = 1.68, damping_percent = 8, divide_acceleration = 1.35, divide_displacement = 1 }
 //! ```
 
+use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Unbounded};
 use std::path::Path;
 
@@ -306,41 +307,18 @@ impl FreeStanding {
 }
 
 /// One value for each limit state that has one.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ByState<T> {
-    /// For SLD.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sld: Option<T>,
-    /// For SLV.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub slv: Option<T>,
-    /// For SLC.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub slc: Option<T>,
-}
+pub type ByState<T> = BTreeMap<LimitState, T>;
 
-impl<T> ByState<T> {
-    /// The value for a state.
-    #[must_use]
-    pub const fn get(&self, state: LimitState) -> Option<&T> {
-        match state {
-            LimitState::Sld => self.sld.as_ref(),
-            LimitState::Slv => self.slv.as_ref(),
-            LimitState::Slc => self.slc.as_ref(),
-        }
-    }
-
-    fn read(
-        table: &mut Table<'_>,
-        read: impl Fn(&mut Table<'_>, LimitState) -> Reading<T>,
-    ) -> Self {
-        let mut of = |state: LimitState| table.table(state.name(), |table| read(table, state));
-        Self {
-            sld: of(LimitState::Sld),
-            slv: of(LimitState::Slv),
-            slc: of(LimitState::Slc),
-        }
-    }
+fn read_by_state<T>(
+    table: &mut Table<'_>,
+    read: impl Fn(&mut Table<'_>, LimitState) -> Reading<T>,
+) -> ByState<T> {
+    let states = LimitState::ALL.iter();
+    let values = states.filter_map(|state| {
+        let value = table.table(state.name(), |table| read(table, *state))?;
+        Some((*state, value))
+    });
+    values.collect()
 }
 
 /// The demand of the ground or of the building.
@@ -484,7 +462,7 @@ impl Demand {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
         let by_points = states.any(|state| table.gives_in(state, "spectrum"));
         let points = |table: &mut Table<'_>| {
-            ByState::read(table, |table, state| {
+            read_by_state(table, |table, state| {
                 PointDemand::read(table, state, confidence_factor)
             })
         };
@@ -515,8 +493,8 @@ impl Demand {
     pub fn states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
         states.filter(|state| match self {
-            Self::Code(code) => code.hazards.get(*state).is_some(),
-            Self::Points(points) => points.get(*state).is_some(),
+            Self::Code(code) => code.hazards.contains_key(state),
+            Self::Points(points) => points.contains_key(state),
         })
     }
 }
@@ -535,7 +513,7 @@ impl CodeDemand {
             soil,
             topographic_factor: relief.factor(),
         });
-        let hazards = ByState::read(table, |table, _| read_hazard(table, site));
+        let hazards = read_by_state(table, |table, _| read_hazard(table, site));
         let height = table.table("height", |table| Height::read(table, &hazards));
         Ok(Self {
             soil,
@@ -573,8 +551,8 @@ impl Height {
             ));
         }
         for state in LimitState::ALL {
-            let lacks = |mode: &BuildingMode| mode.states.get(*state).is_none();
-            let checked = hazards.get(*state).is_some();
+            let lacks = |mode: &BuildingMode| !mode.states.contains_key(state);
+            let checked = hazards.contains_key(state);
             if let Some(index) = modes.iter().position(lacks).filter(|_| checked) {
                 let name = state.name();
                 let wrong = format!(
@@ -591,20 +569,16 @@ impl Height {
     #[must_use]
     pub fn at(&self, state: LimitState) -> Vec<Mode> {
         let modes = self.modes.iter();
-        modes
-            .filter_map(|mode| {
-                let ModeState {
-                    t_s,
-                    damping_percent,
-                } = *mode.states.get(state)?;
-                Some(Mode {
-                    t_s,
-                    damping_percent,
-                    gamma: mode.gamma,
-                    psi: mode.psi,
-                })
+        let modes = modes.filter_map(|mode| {
+            let at_state = mode.states.get(&state)?;
+            Some(Mode {
+                t_s: at_state.t_s,
+                damping_percent: at_state.damping_percent,
+                gamma: mode.gamma,
+                psi: mode.psi,
             })
-            .collect()
+        });
+        modes.collect()
     }
 }
 
@@ -614,7 +588,7 @@ impl BuildingMode {
         Ok(Self {
             gamma: table.required("gamma", &any),
             psi: table.required("psi", &any),
-            states: ByState::read(table, |table, _| {
+            states: read_by_state(table, |table, _| {
                 Ok(ModeState {
                     t_s: table.required("t_s", &PERIOD_S),
                     damping_percent: table.required("damping_percent", &DAMPING_PERCENT),

@@ -436,7 +436,7 @@ impl Basis<'_> {
     /// The rule of a limit state; `None` for SLD.
     fn rule(&self, state: LimitState) -> Option<StateRule> {
         match &self.demand {
-            Demand::Points(points) => points.get(state)?.state,
+            Demand::Points(points) => points.get(&state)?.state,
             Demand::Code(_) => StateRule::circolare(state, self.settings.confidence_factor),
         }
     }

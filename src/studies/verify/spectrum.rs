@@ -72,7 +72,7 @@ impl Spectrum {
     ) -> Option<Self> {
         let code = match demand {
             Demand::Points(points) => {
-                let points = points.get(state)?.clone();
+                let points = points.get(&state)?.clone();
                 return Some(Self::Points {
                     spectrum: points.spectrum,
                     damping_percent: points.damping_percent,
@@ -85,7 +85,7 @@ impl Spectrum {
             soil: code.soil,
             topographic_factor: code.relief.factor(),
         };
-        let spectrum = GroundSpectrum::new(*code.hazards.get(state)?, site)
+        let spectrum = GroundSpectrum::new(*code.hazards.get(&state)?, site)
             .expect("the hazards of a scenario are within the ranges of the code");
         let ground = Ground {
             spectrum,
