@@ -304,7 +304,7 @@ fn outlines_hold_the_blocks() {
     ];
     for row in rows {
         assert_eq!(row.outlines_m.len(), row.blocks.len());
-        for (outline, block) in row.outlines_m.iter().zip(row.blocks) {
+        for (outline, block) in row.outlines_m.iter().zip(&row.blocks) {
             let drawn = Block::prism(outline, 0.7, 2100.0);
             assert!((drawn.mass_kg / block.mass_kg - 1.0).abs() < 1e-3);
             assert!((drawn.centre_m - block.centre_m).norm() < 1e-3 * row.size_m);

@@ -93,7 +93,7 @@ fn masses_are_those_of_the_middle_line() {
         crown_deg: 60.0,
     }));
     assert!((basket.row.mass_kg() / (1500.0 * length) - 1.0).abs() < 1e-12);
-    let crown = basket.row.joints;
+    let crown = &basket.row.joints;
     let middle_m = (crown[4].middle_m() + crown[5].middle_m()) / 2.0;
     assert!(middle_m.x.abs() < 1e-12 && middle_m.y < 3.0 && middle_m.y > 2.9);
 }

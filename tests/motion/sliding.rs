@@ -939,7 +939,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
             density_kg_m3,
         });
         let masonry = Masonry::new(shape, Piers::default(), fill, Vec::new()).unwrap();
-        let row = masonry.row;
+        let row = masonry.row.clone();
         let coefficient = least_coefficient(&row).unwrap() * (1.0 + excess);
         let peak = amplitude_g * GRAVITY;
         let ground = Pulse::HalfSine

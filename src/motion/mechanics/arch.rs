@@ -76,6 +76,7 @@ impl MeasuredAt {
 /// assert!((arch.incipient()?.acceleration_g - 0.370009738).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+#[readonly::make]
 #[derive(Clone, Debug, Serialize)]
 pub struct Arch {
     /// Radius of the middle line, in metres.

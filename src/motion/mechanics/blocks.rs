@@ -115,6 +115,7 @@ pub struct Drum {
 }
 
 /// A row of rigid blocks in its undeformed shape.
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// The blocks from left to right.

@@ -115,6 +115,7 @@ const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 ///
 /// It is one block unless it is cut into drums, and prismatic unless it is tapered. Housner's model is a single
 /// prismatic block; the others are simulated with free hinges.
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Column {
     /// Height, in metres.

@@ -2,7 +2,8 @@
 
 mod report;
 
-use self::report::{ByModel, Certificate, Summary, chain, chain_of_four_links};
+pub use self::report::chain;
+use self::report::{ByModel, Certificate, Summary, chain_of_four_links};
 use super::results::{Answer, StudyError};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::{

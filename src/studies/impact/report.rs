@@ -225,7 +225,8 @@ impl Stance {
 }
 
 /// The first `count` impacts after a first sway to this side; fewer if one stops the structure.
-pub(super) fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<ChainImpact> {
+#[must_use]
+pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<ChainImpact> {
     let impacts = (1..=count).map_while(|index| {
         Some(ChainImpact {
             index,

@@ -6,6 +6,7 @@ use thiserror::Error;
 use super::{damping_factor, displacement_m};
 
 /// Accelerations at rising periods, at one damping.
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct PointSpectrum {

@@ -29,6 +29,7 @@ use crate::mechanics::sway::Sway;
 ///
 /// It starts from its equilibrium under its own weight. No impact takes energy in an instant, and the hinge of a joint lies inside its
 /// edge: such a row overturns before its twin with rigid joints ([`FreeHinges`](crate::dynamics::free_hinges::FreeHinges)) does.
+#[readonly::make]
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {
     rigid: RigidRow,

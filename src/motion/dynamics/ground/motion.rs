@@ -13,6 +13,7 @@ use crate::mechanics::blocks::{Row, Supports};
 /// Ground acceleration from [`GroundMotion::start_s`] on, zero after the last corner.
 ///
 /// It is that of the whole ground, or of that under the left foot of a structure whose right foot moves in another way.
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
     /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.

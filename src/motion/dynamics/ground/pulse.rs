@@ -323,7 +323,7 @@ mod tests {
                 .with_train(train)
                 .inclined_m_s2(amplitude)
                 .unwrap();
-            for piece in ground.pieces {
+            for piece in &ground.pieces {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;
                 for direction in [Vector2::x(), Vector2::y(), Vector2::new(-1.0, 0.35)] {

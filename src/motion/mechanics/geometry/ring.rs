@@ -51,6 +51,7 @@ pub enum RingError {
 ///
 /// Sections are radial cuts, named by their angle from the left springing (0) to the right one
 /// (`embrace_rad`), in radians.
+#[readonly::make]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
     /// Thickness over mean radius.

@@ -178,6 +178,7 @@ impl Shape {
 }
 
 /// An arch of any shape with what it stands on and what it carries.
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Masonry {
     /// Its shape.
