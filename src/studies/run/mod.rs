@@ -65,7 +65,7 @@ const SUMMARY: &str = "summary.json";
 /// Several models of motion in one picture; it lies in the folder that contains theirs.
 pub const OVERLAY: &str = "overlay.svg";
 
-/// All files that a run may write, in the order in which they are listed.
+/// All files that a run may write, except the pictures of a film, in the order in which they are listed.
 pub const FILES: [&str; 10] = [
     ROTATIONS, REPORT, SNAPSHOTS, POSES, JOINTS, EVENTS, IMPACTS, PICTURE, OVERLAY, SUMMARY,
 ];
@@ -281,7 +281,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The structure with other properties that are as likely as its own; empty if repetitions are not options.
+    /// The structure with other properties that are as likely as its own; empty if `repeat` is off.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
         if !self.options.repeat {
             return Ok(Vec::new());

@@ -16,8 +16,9 @@ use super::Scales;
 /// `friction_demand`; the vertical acceleration if the ground has one; where the feet move differently, `right_foot_x_m` and `right_foot_y_m`,
 /// how far the right one has gone from where it was beside the left one, to the right and upwards.
 ///
-/// With scales, three columns follow the others: `p_t` (time times `p`), `acceleration_over_incipient`
-/// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]).
+/// With scales, three columns follow these: `p_t` (time times `p`), `acceleration_over_incipient`
+/// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]). Columns of
+/// points come last.
 pub(super) fn rotations(
     model: &dyn Model,
     ground: &GroundMotion,
@@ -161,14 +162,14 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// | `phase` | the phase that begins, as in `rotations.csv`; phase 0 begins with the run, without a row |
 /// | `kind` | `uplift`, `impact`, `rest` or `overturned`; of a tie, `tie_yields` (for the first time) or `tie_breaks` |
 /// | `sway` | `right` or `left`, from here on; empty at rest |
-/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and of free hinges |
+/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and for rows of blocks |
+/// | `tie` | if there are ties: number of the tie, from 1; empty for other events |
 /// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
 /// | `energy_j` | kinetic and potential, just after |
 /// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
-/// | `tie` | where there are ties: which one, from 1 on; empty of other events |
-/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open or open now, and the edge about which each turns (`both`: it parts), separated by spaces |
+/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open from here on, and the edge about which each turns (`both`: the joint parts), separated by spaces |
 ///
-/// For a column there are no columns of hinges. A structure that is released starts in the first mechanism
+/// The table of a free-standing column has no hinges. A structure that is released starts in the first mechanism
 /// without a row: `impacts.csv` has its hinges, as the first to close.
 ///
 /// Rows of blocks have thousands of impacts and hundreds of bodies, so the columns of bodies are left out.
@@ -210,7 +211,7 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
 ///
 /// The mechanism after is the one to which the impact leads, with the energy that it would keep, even if this
 /// is so little that the structure comes to rest. If no mechanism can follow, the hinges are
-/// empty. For a column there are no columns of hinges.
+/// empty. The table of a free-standing column has no hinges.
 ///
 /// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after, from the left, in degrees from the left
 /// springing; `hinge_a_edge` ... are their edges, `intrados` or `extrados`. `closed_a_deg` and

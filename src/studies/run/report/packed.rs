@@ -48,7 +48,7 @@ pub(super) fn body_number(body: Option<usize>) -> i64 {
     body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
 }
 
-/// A fraction in eight bits; only zero becomes zero.
+/// A fraction from 0 to 1 as a byte from 0 to 255, rounded up: only zero becomes zero.
 pub(super) fn eighth(part: f64) -> u8 {
     (255.0 * part).ceil().clamp(0.0, 255.0) as u8
 }
