@@ -226,15 +226,19 @@ fn slips_m(runs: &[&Summary]) -> Vec<RepeatedValue> {
 }
 
 /// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for
-/// elastic joints, and for motions that are known to stay far from overturning.
+/// elastic joints, for motions that are known to stay far from overturning, and for those that ended too early for any verdict.
 fn early_difference(
     own: &Summary,
     repetition: &'static str,
     other: &Summary,
 ) -> Option<EarlyDifference> {
     let row = own.row()?;
-    let overturns = Verdict::from(own.outcome) == Verdict::Overturns;
-    if own.elastic().is_some() || !overturns && is_far(row.peak_potential_over_barrier) {
+    let is_clear = match Verdict::from(own.outcome) {
+        Verdict::Overturns => false,
+        Verdict::Incomplete => true,
+        Verdict::Survives | Verdict::Uncertain => is_far(row.peak_potential_over_barrier),
+    };
+    if own.elastic().is_some() || is_clear {
         return None;
     }
     let others = &other.row()?.half_cycles;
