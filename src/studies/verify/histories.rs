@@ -114,7 +114,7 @@ pub struct MeanSpectrum {
     pub least_ratio: Option<f64>,
     /// The largest ratio.
     pub largest_ratio: Option<f64>,
-    /// Whether the ratios are within [`SPECTRUM_MARGIN`].
+    /// Whether the ratios are within `SPECTRUM_MARGIN`.
     pub fits: Option<bool>,
 }
 
