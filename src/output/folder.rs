@@ -227,7 +227,7 @@ impl Folder {
         self.obsolete.push(name.to_owned());
     }
 
-    /// The same with every picture in this format too, beside its SVG.
+    /// This folder with every picture in this format too, beside its SVG.
     #[must_use]
     pub fn with_pictures(mut self, pictures: Option<PictureFormat>) -> Self {
         self.pictures = pictures;

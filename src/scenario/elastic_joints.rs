@@ -45,7 +45,7 @@ const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
 pub struct ElasticTable {
     /// Stiffness of a joint per area, against penetration.
     pub normal_stiffness_gpa_m: Option<f64>,
-    /// The same against slip.
+    /// Stiffness against slip, in GPa/m.
     pub shear_stiffness_gpa_m: Option<f64>,
     /// Young's modulus of the blocks, from which the stiffness can be derived instead.
     pub stone_modulus_gpa: Option<f64>,

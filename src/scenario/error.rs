@@ -60,7 +60,7 @@ impl ScenarioErrors {
         }])
     }
 
-    /// The same errors without their places, for a text that no user wrote.
+    /// These errors without their places, for a text that no user wrote.
     pub(super) fn without_places(mut self) -> Self {
         for error in &mut self.0 {
             error.place = None;

@@ -64,7 +64,7 @@ impl Ground {
         Ok(self.motion_under(gravity_m_s2))
     }
 
-    /// The same for the gravity of a scenario, which is known to be in range.
+    /// The ground motion under the gravity of a scenario, which is known to be in range.
     pub(super) fn motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
             Self::Pulse(pulse) => pulse.motion(gravity_m_s2),

@@ -28,7 +28,7 @@ use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
 named! {
-    /// What may vary over a map, by its key in `[map]`. Of the two quantities, the first in this order goes along x.
+    /// A quantity that varies over a map, by its key in `[map]`. Of the two quantities, the first in this order goes along x.
     pub enum Quantity {
         /// A number of another table of the scenario, by its table and key.
         Other = "table.key",
@@ -75,7 +75,7 @@ impl Quantity {
 /// One direction of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What varies.
+    /// The quantity that varies.
     pub quantity: Quantity,
     /// Its key in `[map]`; for a number of another table, `table.key`.
     pub key: String,

@@ -120,7 +120,7 @@ pub struct Changes<'a> {
     pub statics: bool,
 }
 
-/// What to simulate, with every default filled in.
+/// A structure, its ground motion and the studies of it, with every default filled in.
 ///
 /// A scenario is read from a text, which is checked. It can be written again: to TOML by
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
@@ -215,7 +215,7 @@ impl Scenario {
         self.uncertain.as_ref()
     }
 
-    /// The same scenario with nothing uncertain.
+    /// This scenario without uncertain numbers.
     #[must_use]
     pub fn without_uncertain(self) -> Self {
         Self {
@@ -446,7 +446,7 @@ impl Scenario {
         self.motion.model(&self.structure)
     }
 
-    /// The same structure with other properties that are as likely as its own.
+    /// Models of this structure with other properties that are as likely as its own.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -562,7 +562,7 @@ impl Scenario {
         }
     }
 
-    /// The same request from rest, whatever `[initial]` says; studies use it for their histories.
+    /// The request from rest, whatever `[initial]` contains; studies use it for their histories.
     #[must_use]
     pub fn request_from_rest(&self) -> Request {
         self.request_on(&self.ground_motion, &self.structure)

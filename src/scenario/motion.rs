@@ -95,7 +95,7 @@ impl Motion {
         Ok(variations)
     }
 
-    /// The same model for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases)
+    /// The model of motion for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases)
     /// and [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
     ///
     /// # Errors

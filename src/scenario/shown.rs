@@ -16,7 +16,7 @@ pub fn shown(text: &str) -> String {
     escape(text, |_| false)
 }
 
-/// The same for a text of several lines: its line ends and tabs are kept.
+/// A text of several lines without control characters; its line ends and tabs are kept.
 #[must_use]
 pub fn shown_lines(text: &str) -> String {
     escape(text, |c| matches!(c, '\n' | '\t'))

@@ -146,7 +146,7 @@ pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     4.0 * (rise_m / half_m).atan().to_degrees()
 }
 
-/// The same, which must be one of an arch.
+/// Embrace angle of an arch of this span and rise, checked to be within its bounds.
 fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
     if EMBRACE_DEG.contains(embrace_deg) {

@@ -69,7 +69,7 @@ impl Measure {
 pub struct Suite {
     /// The records as they are in their files, sorted by file name; at least one.
     pub records: Vec<Series>,
-    /// What the levels measure.
+    /// Intensity measure of the levels.
     pub measure: Measure,
     /// The levels to which each record is scaled, above 0.
     pub levels: Sequence,

@@ -61,7 +61,7 @@ pub(super) fn describe<T>(read: impl FnOnce(&mut Table<'_>) -> Reading<T>) -> Va
     table.description.map_or(Value::Null, Description::schema)
 }
 
-/// What a table allows.
+/// Keys of a table, their rules and relations.
 #[derive(Default)]
 struct Description {
     properties: Map<String, Value>,

@@ -45,7 +45,7 @@ named! {
     }
 }
 
-/// What `[[tie]]` says, in the units of its keys.
+/// A tie as `[[tie]]` gives it, in the units of its keys.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieTable {
     /// Between what it is, where that has a name.
@@ -66,11 +66,11 @@ pub struct TieTable {
     pub modulus_gpa: Option<f64>,
     /// Force for each metre that it is stretched, instead of both.
     pub stiffness_n_m: Option<f64>,
-    /// What it pulls with in the undeformed structure.
+    /// Its force in the undeformed structure.
     pub prestress_n: f64,
-    /// What it pulls with at most.
+    /// The largest force with which it pulls.
     pub yield_force_n: Option<f64>,
-    /// The same by its section.
+    /// The stress at which it yields.
     pub yield_stress_mpa: Option<f64>,
     /// Strain at which it breaks.
     pub breaks_at_strain: Option<f64>,
@@ -189,7 +189,7 @@ impl TieTable {
                     .to_owned(),
             );
         };
-        // What carries the arch: the block before the left springing, and the one behind the right.
+        // The piers of the arch: the block before the left springing, and the one behind the right.
         let at_m = |joint: usize| row.joints[joint].intrados_m;
         let blocks = row.blocks.len();
         Ok([

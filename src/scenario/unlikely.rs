@@ -87,7 +87,7 @@ impl Scenario {
         if self.motion.supports().is_some() {
             return None;
         }
-        // What stands on hinges that ties hold is started by any push.
+        // Any push starts a structure that stands on hinges held by ties.
         let times = along_g / starts_g().filter(|starts_g| *starts_g > 0.0)?;
         (times > PEAK_OVER_INCIPIENT).then(|| {
             let peak = plain(along_g);

@@ -249,7 +249,7 @@ impl Program {
             let [intrados, extrados, along] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
             let first = equations + 4 * index;
             for (edge, corner) in [intrados, extrados].into_iter().enumerate() {
-                // What is zero already is bound by nothing else.
+                // A variable that is zero already needs no other bound.
                 if open[edge] {
                     right.push(1.0);
                 } else {

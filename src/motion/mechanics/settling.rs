@@ -415,7 +415,7 @@ impl<'a> Follower<'a> {
                 continue;
             }
             if let Some(state) = held {
-                // What ties remember depends on the way.
+                // The memory of ties depends on the path.
                 if !self.row.ties.is_empty() {
                     rates = self.rates(&state, next - low).collect();
                     self.stand(&condition, state);

@@ -169,7 +169,7 @@ pub fn limit_with_yielding_ties(
             break;
         }
     }
-    // What only the bounds of the programme hold is held by nothing.
+    // A push that only the bounds of the programme limit is unlimited.
     let mut strongest = row.ties.iter().zip(&forces);
     let unbounded = push_g >= 0.99 * LARGEST_PUSH
         || strongest

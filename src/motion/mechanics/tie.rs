@@ -376,7 +376,7 @@ impl<R: Real> TieMemory<R> {
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
         let left_m = breaks_m - stretch_m;
         let intact = left_m.positive(self.intact, zero);
-        // What was in it as it broke, and the trapezoid of its work in that step, at whose end it pulls no more.
+        // Its energy as it broke, and the trapezoid of its work in that step, at whose end it no longer pulls.
         let last_j = self.force_n * (stretch_m - self.stretch_m) * 0.5;
         let lost_j = (self.energy_j(tie) + last_j) * (self.intact - intact);
         self.taken_j += yielded_j * intact + lost_j;

@@ -289,7 +289,7 @@ impl Series {
         shown(&self.file)
     }
 
-    /// The same record, with another scaling.
+    /// This record with another scaling.
     #[must_use]
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
         Self {
@@ -366,7 +366,7 @@ impl Series {
         self.accelerations().iter().map(scaled).collect()
     }
 
-    /// The same, unscaled, in the unit of the file; for velocities, in that unit per second.
+    /// Unscaled accelerations in the unit of the file; for velocities, in that unit per second.
     fn accelerations(&self) -> Cow<'_, [(f64, f64)]> {
         match self.unit.quantity() {
             Recorded::Acceleration => Cow::Borrowed(&*self.samples),

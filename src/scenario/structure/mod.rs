@@ -124,7 +124,7 @@ impl Structure {
         })
     }
 
-    /// The same model with the properties that only four links have; `None` for a column.
+    /// The four-link model, with the properties that only four links have; `None` for a column.
     ///
     /// # Errors
     /// When it does not rock as four links.
@@ -149,7 +149,7 @@ impl Structure {
         }
     }
 
-    /// What it carries, as it is drawn, with its loads; `None` where there can be nothing.
+    /// Fill and loads on it, as they are drawn; `None` for a structure that cannot carry any.
     #[must_use]
     pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
         match self {

@@ -131,7 +131,7 @@ pub(super) fn crown_of(structure: &dyn Parts, model: &dyn MechanismModel, sway: 
     carrying(model, sway)(place, at_m)
 }
 
-/// What carries a point in the first mechanism to a side; the point is given with its place along the structure.
+/// The body that carries a point in the first mechanism to a side; the point is given with its place along the structure.
 fn carrying(
     model: &dyn MechanismModel,
     sway: Sway,

@@ -87,7 +87,7 @@ impl<'a> LinkImpact<'a> {
         Some(report::line_table(self, &self.after()?.mechanism, line))
     }
 
-    /// The same impact by the models that obey the momentum theorems, and by the model of the scenario.
+    /// This impact by the models that obey the momentum theorems, and by the model of the scenario.
     fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
         let mut models = vec![
             ImpactModel::MaxRestitution,

@@ -328,7 +328,7 @@ impl OpenHinge {
 }
 
 impl YieldingJoint {
-    /// What the joint does.
+    /// Words for the motion of the joint.
     fn words(&self) -> String {
         // Named by the edge about which it turns.
         let opens = match (self.opens_intrados, self.opens_extrados) {

@@ -104,7 +104,7 @@ impl SuiteFragility {
         let own = levels[first.unwrap_or(0)];
         let level = first.map(|_| own.overturns_from(self.measure));
         let scale = level.map(|level| own.scale * level / own.level(self.measure));
-        // What the peak is multiplied by, all others are too.
+        // All measures are multiplied by the factor of the peak.
         let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
         let of = |strength: fn(&Strength) -> f64, power: i32| {
             Some(strength(own.strength.as_ref()?) * scale?.powi(power))

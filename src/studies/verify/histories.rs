@@ -76,7 +76,7 @@ pub struct HistorySide {
     pub mean_interval_m: Option<[f64; 2]>,
     /// Displacement that may be reached, in metres.
     pub capacity_m: f64,
-    /// The same divided by FC.
+    /// Capacity divided by the confidence factor FC, in metres.
     pub capacity_over_fc_m: f64,
     /// Ultimate displacement, in metres, which no record may exceed.
     pub d0_m: f64,

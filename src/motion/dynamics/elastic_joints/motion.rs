@@ -421,7 +421,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// Quantities at the places, with the velocities after half a kick more.
     pub fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let arch = self.arch;
-        arch.dispatch(Look {
+        arch.dispatch(Observer {
             motion: self,
             half,
             slides,
@@ -610,14 +610,14 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     }
 }
 
-/// An observation, likewise.
-struct Look<'m, 'a, const L: usize> {
+/// Observes a motion with the widest vectors of the processor.
+struct Observer<'m, 'a, const L: usize> {
     motion: &'m Motion<'a, L>,
     half: &'m Step<L>,
     slides: &'m [Slide],
 }
 
-impl<const L: usize> WithSimd for Look<'_, '_, L> {
+impl<const L: usize> WithSimd for Observer<'_, '_, L> {
     type Output = Observed<Lanes<L>>;
 
     #[inline(always)]

@@ -166,7 +166,7 @@ impl ElasticStructure {
         let bent = built.bent.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
-        // What both supports do alike moves everything and bends nothing.
+        // A movement common to both supports bends nothing.
         let (along_m, along) = self.moved_along();
         let from = along.supports.iter().zip(self.supports);
         let ways = from.map(|(from, to)| far(&[0, 1, 2].map(|axis| to[axis] - from[axis])));
@@ -286,7 +286,7 @@ impl ElasticStructure {
     /// overestimates a convex function), so neither on the path.
     #[must_use]
     pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
-        // What ties add to it is not known.
+        // The contribution of ties is not known.
         if !self.ties.is_empty() {
             return None;
         }

@@ -77,7 +77,7 @@ impl State {
     pub fn margin(&self) -> f64 {
         let forces = self.pressing().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
-        // What is no number is no margin.
+        // A margin that is not a number counts as none.
         let least = |least: f64, next: f64| if least <= next { least } else { next };
         openings.chain(forces).fold(f64::INFINITY, least)
     }
@@ -603,7 +603,7 @@ impl<'a> Chain<'a> {
         for bars in alike {
             let tied = bars[0].parts;
             let body = tied.map(|part| part.checked_sub(1).filter(|body| *body < count));
-            // What is no body has no pin, and does not turn.
+            // A support has no pin, and does not turn.
             let pins_m = body.map(|body| body.map_or(Vector2::zeros(), |body| pins_m[body]));
             let all = Between::new(bars, tied.map(|part| &parts[part]), pins_m);
             for (one, first) in body.iter().enumerate() {
