@@ -529,6 +529,10 @@ impl History {
             &mut filming,
             |filming| filming.signals.raised.take(),
         )?;
-        Ok(py.detach(|| filming.report.page(&scenario, &self.summary, None, ["", words], "")))
+        Ok(py.detach(|| {
+            filming
+                .report
+                .page(&scenario, &self.summary, None, ["", words], "")
+        }))
     }
 }

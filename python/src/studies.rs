@@ -9,7 +9,7 @@ use archrock::output::{Batch, Figure};
 use archrock::studies::catalogue::{self as studies, Done, Options, Rows, StudyKind};
 use archrock::studies::kept::Writer;
 use archrock::studies::part::Shard;
-use archrock::studies::results::{Style, Results, StudyError};
+use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::Factors;
 use archrock::studies::threshold::along::AlongOptions;
