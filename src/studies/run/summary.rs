@@ -402,5 +402,9 @@ pub fn summary(
         repeated,
         varied: &[],
     };
-    summary_of(&Summary::of(&evidence, Vec::new()))
+    // A history computed again is equal, except for the time that it took.
+    summary_of(&Summary {
+        longest_step_us: None,
+        ..Summary::of(&evidence, Vec::new())
+    })
 }
