@@ -34,7 +34,7 @@ impl Mode {
             * (1.0 + 0.0004 * damping * damping).sqrt()
     }
 
-    /// By how much an oscillator of this damping, in resonance with the mode, exceeds the floor, [C7.2.6]. The damping
+    /// Ratio of an oscillator of this damping, in resonance with the mode, to the floor, [C7.2.6]. The damping
     /// of the mode counts as a fraction here, as in the transfer of a harmonic motion; in per cent there would be no
     /// amplification.
     #[must_use]
@@ -57,7 +57,7 @@ impl Mode {
     }
 }
 
-/// The spectrum where a mechanism stands in a building.
+/// The spectrum at the height of a mechanism in a building.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorSpectrum {
     ground: GroundSpectrum,
@@ -100,14 +100,14 @@ impl FloorSpectrum {
         PLATEAU[1] * self.first_period_s()
     }
 
-    /// The displacement that is demanded at that period, in metres.
+    /// The displacement demand at that period, in metres.
     #[must_use]
     pub fn resonance_m(&self, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         let acceleration_g = self.acceleration_g(self.first_period_s(), damping_percent);
         displacement_m(acceleration_g, self.resonance_s(), gravity_m_s2)
     }
 
-    /// The displacement that is demanded of a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`. Beyond the resonance
+    /// The displacement demand on a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`. Beyond the resonance
     /// with the first mode it is at least that at resonance.
     #[must_use]
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {

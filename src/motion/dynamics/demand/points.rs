@@ -20,7 +20,7 @@ pub struct PointSpectrum {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{reason}")]
 pub struct PointError {
-    /// The row that is wrong, from 0; `None` where there are too few.
+    /// Index of the wrong row, from 0; `None` if there are too few rows.
     pub row: Option<usize>,
     reason: String,
 }

@@ -42,7 +42,7 @@ pub struct ElasticJoints {
     rest: (f64, Rest),
     /// A gravity, and the energy beyond which it overturns under it, once requested.
     barrier_j: Arc<OnceLock<(f64, Option<f64>)>>,
-    /// Whether it serves a study of many cases, whose steps are longer where none is given.
+    /// True for a study of many cases: its default steps are longer.
     many_cases: bool,
     /// Factor on the longest step, for a repetition.
     steps_times: f64,
@@ -71,9 +71,9 @@ const DAMPED: f64 = 0.3;
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
 /// Number of histories side by side: eight are slower, since they do not fit into the cache next to the processor.
 const SIDE_BY_SIDE: usize = 4;
-/// By what the stiffness is multiplied and divided to see what depends on it.
+/// Factor by which variations multiply and divide the stiffness.
 const OTHER_STIFFNESS: f64 = 3.0;
-/// The step that is proposed where the energy does not balance, over the longest one.
+/// The step that an error of the energy balance proposes, over the longest step.
 const SHORTER: f64 = 0.3;
 /// Remedy for too many steps.
 const TOO_LONG: &str = "take a smaller damping time or stiffness of the joints, or free hinges, the limit of stiff joints";
@@ -136,8 +136,8 @@ impl ElasticJoints {
         Ok(Self { options, ..self })
     }
 
-    /// This model for a study of many cases: where no step is given, steps are longer, as long as most answers allow without changing.
-    /// Where answers do change, repetitions disagree.
+    /// This model for a study of many cases: its default steps are longer. Few answers change, and where one does, repetitions
+    /// disagree.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
@@ -182,7 +182,7 @@ impl ElasticJoints {
         self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
     }
 
-    /// The longest step where none is given, in seconds.
+    /// The default of the longest step, in seconds.
     pub fn default_step_s(structure: &ElasticStructure) -> f64 {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;

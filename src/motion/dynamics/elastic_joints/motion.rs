@@ -63,24 +63,24 @@ pub struct Motion<'a, const L: usize> {
     arch: Arch,
     /// The last two are the left and the right support.
     bodies: Vec<Moving<Lanes<L>>>,
-    /// From what displacements and rotations of the bodies they are measured: of settled rows those at rest, else none.
+    /// Displacements and rotations of the bodies that count as zero: those at rest of a settled row, else zero.
     datum: Vec<[f64; 3]>,
     /// One over the mass, and over the moment of inertia, of each body.
     inverses: Vec<[f64; 2]>,
     memories: Vec<Memory<Lanes<L>>>,
-    /// Of the joints whose forces are found now.
+    /// Forces of the joints that are computed together.
     bearing: [Bearing<Lanes<L>>; TOGETHER],
-    /// Of each place of each joint, joint by joint.
+    /// Memories of the places of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
     ties: Vec<TieMemory<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
 }
 
-/// The forces of so many joints are found together, each part of the law for all of them before the next one. Such short loops have
-/// steps that do not depend on each other, so that the processor computes several at a time; more joints would not fit into its cache.
+/// Number of joints whose forces are computed together: each part of the law for all of them, then the next part. The steps of such
+/// short loops are independent, so the processor computes several at a time; more joints would not fit into its cache.
 const TOGETHER: usize = 12;
 
-/// How a joint bears at the places.
+/// Gap and forces of a joint at the places of its bodies.
 #[derive(Clone, Copy)]
 struct Bearing<R> {
     gap: Gap<R>,
@@ -107,11 +107,11 @@ pub struct Spent<R> {
     pub slip_balance_j: R,
     pub damped_j: R,
     pub crushed_j: R,
-    /// Energy that ties took as they yielded and broke.
+    /// Energy dissipated by yielding and breaking ties.
     pub ties_j: R,
     /// Work of the moving ground.
     pub ground_j: R,
-    /// Work of the right support as it goes away from the left one.
+    /// Work of the right support by its motion relative to the left one.
     pub feet_j: R,
 }
 
@@ -126,7 +126,7 @@ pub struct Step<const L: usize> {
     pub damping: Lanes<L>,
     /// Velocity that the ground gains in the time of the kick, in m/s.
     pub shift_m_s: [Lanes<L>; 2],
-    /// How far the right support goes away from the left one, from place to place, in m.
+    /// Displacement of the right support relative to the left one, from place to place, in m.
     pub apart_m: [Lanes<L>; 2],
 }
 
@@ -288,7 +288,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// Moves the right support, and finds the forces; its work is the mean of the forces on it before and after, times its way.
+    /// Moves the right support, and finds the forces. Its work is the mean of the forces on it before and after, times its displacement.
     #[inline(always)]
     fn part(&mut self, step: &Step<L>) {
         let right = self.structure.bodies.len() + 1;
@@ -400,7 +400,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.pull();
     }
 
-    /// Adds the forces of the ties; they remember.
+    /// Adds the forces of the ties, and updates their memories.
     #[inline(always)]
     fn pull(&mut self) {
         let ground = self.structure.bodies.len();
@@ -492,7 +492,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         seen
     }
 
-    /// How far a support has gone since the beginning, the left one being 0, in m.
+    /// Displacement of a support (0 left, 1 right) since the beginning, in m.
     #[inline(always)]
     fn gone(&self, support: usize) -> [Lanes<L>; 2] {
         let body = &self.bodies[self.structure.bodies.len() + support];

@@ -32,9 +32,9 @@ const STRIDE: u64 = 16;
 const REST_STRAIN_RATIO: f64 = 0.1;
 /// ... or below this fraction of the barrier of its first mechanism.
 const REST_BARRIER_RATIO: f64 = 0.03;
-/// On quiet ground a row with less than this fraction of the barrier cannot overturn any more ...
+/// On quiet ground a row below this fraction of the barrier cannot overturn any more ...
 const SAFE: f64 = 0.5;
-/// ... and with less than this fraction of its largest energy so far it turns no block as far as it did.
+/// ... and below this fraction of its largest energy so far no block exceeds its largest rotation so far.
 const DECAYED: f64 = 0.25;
 /// Energy is taken to decay this many times slower than it did so far.
 const SLOWER: f64 = 4.0;
@@ -48,7 +48,7 @@ const HINGE_RATIO: f64 = 0.5;
 pub struct Start<'a> {
     pub structure: &'a ElasticStructure,
     pub rest: &'a Rest,
-    /// Energy above that at rest without which it does not overturn unless joints slip, where that is known; it takes time to find.
+    /// Least energy above that at rest with which it overturns without slip, if known; it takes time to find.
     pub barrier_j: &'a dyn Fn() -> Option<f64>,
 }
 
@@ -63,7 +63,7 @@ struct Lane<'a> {
     quiet_s: f64,
     /// Time up to which it steps without pause.
     until_s: f64,
-    /// Whether it is observed where it is.
+    /// True if its present position has been observed.
     is_seen: bool,
     /// Time up to which the kicks have acted, and the velocity of the ground then.
     kicked_s: f64,
@@ -74,17 +74,17 @@ struct Lane<'a> {
     opening: Opening,
     /// The largest energies that count as rest.
     still_j: f64,
-    /// The barrier with rigid joints; where that is unknown, with elastic joints, once computed.
+    /// The barrier with rigid joints; if that is unknown, with elastic joints, once computed.
     barrier_j: Option<f64>,
     /// The largest energy so far.
     largest_j: f64,
-    /// Whether the centre of gravity goes back to where it rests.
+    /// True while the centre of gravity moves back to its position at rest.
     returns: bool,
-    /// When the ground was seen quiet for good, and the energy then.
+    /// Time and energy of the first observation on ground that stays quiet.
     quiet: Option<(f64, f64)>,
     end_s: f64,
     quiet_since_s: f64,
-    /// When a joint was last open beyond its state at rest.
+    /// Last time at which a joint was open beyond its state at rest.
     open_until_s: f64,
     marks: Marks,
     /// The error that ends it.
@@ -434,8 +434,8 @@ impl<'a, const L: usize> Group<'a, L> {
         slid
     }
 
-    /// Lets a lane step on, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock,
-    /// as if samples were made.
+    /// Continues a lane, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock, with
+    /// or without samples.
     pub fn go_on(&mut self, index: usize) -> Option<Result<Summary, RowMotionError>> {
         let lane = self.lanes[index].as_mut()?;
         if !lane.is_seen {
@@ -462,7 +462,7 @@ impl<'a, const L: usize> Group<'a, L> {
 
 impl<'a> Lane<'a> {
     fn rests_since(&self) -> Option<f64> {
-        // A row that never had more energy than at rest may rock all the same.
+        // A row may rock without more energy than at rest.
         let since_s = if self.course.moved {
             self.quiet_since_s
         } else {
@@ -488,9 +488,9 @@ impl<'a> Lane<'a> {
         }
     }
 
-    /// Whether all that it is followed for is known, with this energy: on ground that is quiet for good it gains none.
+    /// True if its end can be foreseen from this energy: on ground that stays quiet it gains none.
     fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
-        // Nothing is known of the barrier where the feet have gone apart.
+        // Once the feet have parted, the barrier is unknown.
         if self.feet.is_some() {
             return false;
         }
@@ -500,7 +500,7 @@ impl<'a> Lane<'a> {
         }
         let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
         if self.until == Until::Settled {
-            // It decays at most that much slower from now on.
+            // From now on it decays at most `SLOWER` times slower.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
             let rested_s = self.course.time + rests_s + self.course.rest_time_s();

@@ -138,7 +138,7 @@ pub struct LandingStepper<'a> {
     shares: Vec<[f64; 2]>,
     /// Corners that touched at the beginning of the step.
     closed: Vec<Corners>,
-    /// Whether it lies where it stood and stays there.
+    /// True while it stays at its initial position.
     stands: bool,
     /// Corners that were pressed in the step that ended at an impact.
     pressed: Vec<Corners>,
@@ -146,7 +146,7 @@ pub struct LandingStepper<'a> {
     friction_demand: f64,
     step_iterations: u64,
     crowd: Crowd,
-    /// Since when it lies undeformed without motion, in seconds; `None` while it moves.
+    /// Time since which it lies at its initial position without motion, in seconds; `None` while it moves.
     lies_since_s: Option<f64>,
 }
 
@@ -224,7 +224,7 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
     }
 
-    /// A stepper that starts where the row stands, or released at rest with the initial rotations.
+    /// A stepper that starts at the stance of the row, or released at rest with the initial rotations.
     pub fn released(
         task: Task<'a>,
         settings: &'a Settings,
@@ -287,7 +287,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Motions of the blocks after a kick that lasts so long, before contact.
+    /// Motions of the blocks after a kick of this duration, before contact.
     fn kick(&mut self, kick: Vector2<f64>, lasts_s: f64) {
         let blocks = self.free.len();
         for (index, piece) in self.pieces.iter().enumerate() {
@@ -408,7 +408,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Work of the right support by the impulses of the last solution, and of ties that pulled so long.
+    /// Work of the right support by the impulses of the last solution, and of ties that pulled for this duration.
     fn work_of_right_support(&mut self, lasts_s: f64) -> f64 {
         if !self.right.moves() {
             return 0.0;
@@ -536,7 +536,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Changes the gaps, with the right support where it is at this time.
+    /// Changes the gaps, with the right support at its position at this time.
     fn open_gaps(&mut self, time_s: f64) {
         let change = &self.change;
         if !self.right.moves() {
@@ -626,7 +626,7 @@ impl<'a> LandingStepper<'a> {
     /// Shuts the corners that belong to an impact besides those that the closure shut.
     fn shut_what_landed(&mut self) {
         loop {
-            // Where supports have moved three joints stay open.
+            // On moved supports three joints stay open.
             let moved = self.rest.is_on_hinges() || self.right_support_is_gone();
             let may_shut = self.row.supports == Supports::Both && !moved;
             let few = may_shut && self.placement.open_corners() <= 3;
@@ -644,7 +644,7 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
     }
 
-    /// Solves for the velocities at the instant of the positions, with what touched at the beginning of the step.
+    /// Solves for the velocities at the instant of the positions, with the corners that touched at the beginning of the step.
     fn complete_kick(&mut self) -> Result<(), RowMotionError> {
         let before = self.momentum();
         let ground = self.half_kick();

@@ -22,13 +22,13 @@ use crate::mechanics::sway::Sway;
 
 /// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
 ///
-/// Joints carry no tension and do not slide; impacts are perfectly inelastic. The blocks alone are given: which
-/// hinges open, and what an impact leaves, follow from them.
+/// Joints carry no tension and do not slide; impacts are perfectly inelastic. Hinges and restitution follow from the
+/// blocks alone.
 #[derive(Clone, Debug)]
 pub struct FreeHinges {
     rigid: RigidRow,
     options: RowOptions,
-    /// Whether it serves a study of many cases, whose steps are longer where none is given.
+    /// True for a study of many cases: its default steps are longer.
     many_cases: bool,
     /// Factor on the steps, for a repetition.
     steps_times: f64,
@@ -91,7 +91,7 @@ impl RowOptions {
     }
 }
 
-/// The step that is proposed where the energy does not balance, over the longest one.
+/// The step that an error of the energy balance proposes, over the longest step.
 const SHORTER: f64 = 0.2;
 /// An energy balance that is wrong by more than this fraction of the largest energy of the motion is mentioned.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
@@ -127,8 +127,8 @@ impl FreeHinges {
         Self::new(column.row()?)
     }
 
-    /// This model on supports that moved slowly before time zero, from where they were built: it starts on the hinges on which it
-    /// followed them, and its motion counts from there.
+    /// This model on supports that moved slowly before time zero, from where they were built. It starts on the hinges that this
+    /// movement opened; displacements and rotations count from there.
     ///
     /// # Errors
     /// When it falls or a tie breaks on the way, or it slides there.
@@ -156,15 +156,15 @@ impl FreeHinges {
         })
     }
 
-    /// This model for a study of many cases. If no step is given and no joint slips, steps are as long as most answers allow without
-    /// changing. Where answers do change, repetitions disagree.
+    /// This model for a study of many cases. Without slip its default steps are longer. Few answers change, and where one does,
+    /// repetitions disagree.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
         self
     }
 
-    /// Coulomb's coefficient of friction, where joints slip.
+    /// Coulomb's coefficient of friction; `None` if joints do not slip.
     #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         self.options.friction_coefficient
@@ -188,7 +188,7 @@ impl FreeHinges {
         self.settings(request).longest_step_s
     }
 
-    /// How a motion is computed.
+    /// Settings of the computation of a motion.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {

@@ -47,7 +47,7 @@ pub fn simulate(
     )
 }
 
-/// Computes a motion of a row that stands anywhere.
+/// Computes a motion of a row from any stance.
 pub fn motion(
     task: Task<'_>,
     settings: &Settings,

@@ -8,12 +8,12 @@ use crate::mechanics::contact::Corners;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
 
-/// A row where it stands.
+/// The initial position of a row.
 #[derive(Clone, Debug)]
 pub(super) struct Rest<'a> {
     row: &'a Row,
     pub placement: Placement,
-    /// Corners that touch there.
+    /// Corners that touch in this position.
     pub touching: Vec<Corners>,
 }
 
@@ -31,18 +31,18 @@ impl<'a> Rest<'a> {
         self.placement.open_corners() > 0
     }
 
-    /// Whether a row with these gaps lies there: three hinges leave no other place.
+    /// True if a row with these gaps lies in this position: three hinges determine it.
     pub fn has(&self, gaps_m: &[[f64; 2]]) -> bool {
         touching(gaps_m).eq(self.touching.iter().copied())
     }
 
-    /// How the blocks are turned from there.
+    /// Rotations of the blocks from this position.
     pub fn turned_rad(&self, poses: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
         let stood = self.placement.poses.iter().map(Pose::rotation_rad);
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
-    /// Rise of the blocks with their centres at the given places, times their masses.
+    /// Rise of the blocks with these centres, times their masses.
     pub fn rise_kg_m(&self, centres_m: &[Vector2<f64>]) -> f64 {
         self.moved_kg_m(centres_m, |moved| moved.y)
     }

@@ -1,9 +1,9 @@
-//! The right support of a row with rigid joints on feet that move differently: a body whose motion beside the left support is
-//! prescribed.
+//! The right support of a row with rigid joints on feet that move differently: a body whose motion relative to the left support
+//! is prescribed.
 //!
-//! Over a step it moves at the mean velocity that brings it where it has to be, so that joints follow it exactly; at an instant, as at an
-//! impact, at its velocity then. Its work is the impulse that it takes, times the mean of its velocities before and after: with what the
-//! blocks gain by the same rule this leaves no energy over.
+//! Over a step it moves at the mean velocity between its positions, so that joints follow it exactly. At an instant, as at an impact, it
+//! moves at its velocity then. Its work is the impulse on it, times the mean of its velocities before and after. The energy of the
+//! blocks follows the same rule, so both balance.
 
 use nalgebra::Vector2;
 
@@ -13,11 +13,11 @@ use crate::mechanics::geometry::pose::Pose;
 
 /// The right support.
 pub(super) struct RightSupport<'a> {
-    /// `None` where both feet move alike, and of a row with only one.
+    /// `None` if both feet move alike, or the row has only one.
     feet: Option<FeetApart<'a>>,
-    /// How far it has gone away from where it was beside the left one.
+    /// Its displacement relative to the left support, in metres.
     pub gone_m: Vector2<f64>,
-    /// How far it had gone when the joints last followed it: movements that are too small to open a joint add up.
+    /// That displacement when the joints last followed it: movements too small to open a joint add up.
     followed_m: Vector2<f64>,
     /// Its velocity over the last step or after the last impact, and in the present solution.
     velocity_m_s: Vector2<f64>,
@@ -35,31 +35,31 @@ impl<'a> RightSupport<'a> {
         }
     }
 
-    /// Whether it moves beside the left one at all.
+    /// True if it ever moves relative to the left one.
     pub const fn moves(&self) -> bool {
         self.feet.is_some()
     }
 
-    /// Whether it is farther than this from where it was.
+    /// True if it has moved by more than this.
     pub fn is_gone(&self, least_m: f64) -> bool {
         self.moves() && self.gone_m.norm() > least_m
     }
 
-    /// Positions of supports that stood there.
+    /// Positions of the supports, from their initial ones.
     pub fn poses(&self, stood: &[Pose; 2]) -> [Pose; 2] {
         let [left, mut right] = *stood;
         right.translation += self.gone_m;
         [left, right]
     }
 
-    /// The present solution is that of a step from this time on.
+    /// Takes the velocity over a step from this time, for the present solution.
     pub fn step(&mut self, from_s: f64, lasts_s: f64) {
         if let Some(feet) = &self.feet {
             self.next_m_s = (feet.ahead(from_s + lasts_s) - self.followed_m) / lasts_s;
         }
     }
 
-    /// The present solution is that of an instant.
+    /// Takes the velocity at an instant, for the present solution.
     pub fn stop_at(&mut self, time_s: f64) {
         if let Some(feet) = &self.feet {
             self.next_m_s = feet.velocity_m_s(time_s);
@@ -71,7 +71,7 @@ impl<'a> RightSupport<'a> {
         (self.velocity_m_s + self.next_m_s) * 0.5
     }
 
-    /// The present solution becomes that of the motion.
+    /// Takes over the present solution as the motion.
     pub const fn take(&mut self) {
         self.velocity_m_s = self.next_m_s;
     }
@@ -83,7 +83,7 @@ impl<'a> RightSupport<'a> {
         }
     }
 
-    /// The joints have followed it.
+    /// Notes that the joints have followed it.
     pub const fn is_followed(&mut self) {
         self.followed_m = self.gone_m;
     }

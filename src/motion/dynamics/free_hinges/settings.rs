@@ -1,23 +1,23 @@
-//! How a motion of a row with rigid joints is computed.
+//! Settings of the computation of a motion with rigid joints.
 
 use crate::dynamics::row::clock::Clock;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::tie::square_frequency;
 
-/// The shortest step over the longest one, where it is not given.
+/// Default of the shortest step over the longest one.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
-/// How much longer the steps of studies of many cases are than those of a run. Of the second peaks of 73 random arches 8 then differ
-/// by more than 1 % from those with the shortest steps, and 5 with the steps of a run.
+/// Steps of studies of many cases over those of a run. With them, second peaks of 8 of 73 random arches differ by more than 1 % from
+/// those with the shortest steps; with the steps of a run, those of 5 arches do.
 pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 /// Impacts within the shortest step after which the next landings are merged: an endless series would stop time.
 const CROWDED_IMPACTS: usize = 50;
 /// The time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
-/// Steps over the longest ones with which a block between ties would be stable. Joints make of blocks heavier bodies, whose steps might be
-/// longer.
+/// Step over the longest stable one of a single block between ties. Shut joints combine blocks to heavier bodies, whose stable steps
+/// are longer.
 const TIE_STEP_RATIO: f64 = 0.2;
 
-/// How a motion is computed.
+/// Settings of the computation of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Longest step in seconds.
@@ -28,7 +28,7 @@ pub struct Settings {
     pub shortest_step_s: f64,
     /// Number of impacts within the shortest step after which landings crowd.
     pub merged_after: usize,
-    /// When to stop at the latest, in seconds.
+    /// Latest end, in seconds.
     pub end_s: f64,
     /// Time between samples in seconds; if `None`, there are none. Steps end there whether or not samples are wanted.
     pub output_step_s: Option<f64>,
@@ -64,7 +64,7 @@ impl Settings {
         }
     }
 
-    /// These settings with steps that are short beside the vibration of blocks on the ties of the row.
+    /// These settings with steps short enough for the vibration of blocks on the ties of the row.
     pub(super) fn for_ties(self, row: &Row) -> Self {
         let square = square_frequency(&row.ties, &row.blocks);
         if square == 0.0 {
@@ -94,8 +94,8 @@ impl Settings {
         }
     }
 
-    /// These settings with the steps that it takes multiplied. Steps also end at output times: where these limit them, the output step
-    /// is multiplied as well.
+    /// These settings with the actual steps multiplied. Steps also end at output times: if these limit the steps, the output step is
+    /// multiplied as well.
     pub(super) fn with_steps_times(&self, factor: f64) -> Self {
         let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
         let times = |step_s| {
@@ -111,8 +111,8 @@ impl Settings {
         }
     }
 
-    /// These settings with the landings that follow an impact within four shortest steps merged with each other. Real impacts take time:
-    /// nobody knows in which order landings follow within it.
+    /// These settings with the landings that follow an impact within four shortest steps merged. Real impacts take time, and the order
+    /// of landings within that time is unknown.
     pub(super) fn with_landings_merged(&self) -> Self {
         Self {
             shortest_step_s: (MERGED_RATIO * self.shortest_step_s).min(self.longest_step_s),

@@ -53,7 +53,7 @@ pub struct SlidingStepper<'a> {
     gravity: f64,
     rest: Rest<'a>,
     right: RightSupport<'a>,
-    /// Gaps and offsets of the joints where the row stood.
+    /// Gaps and offsets of the joints at the initial position.
     stood_m: Vec<Vector3<f64>>,
     course: Course<'a>,
     faces: Vec<Faces>,
@@ -64,13 +64,13 @@ pub struct SlidingStepper<'a> {
     velocities: Vec<Vector3<f64>>,
     contacts: Vec<Contact>,
     ties: Ties<'a>,
-    /// Energy that ties took so far as they yielded and broke.
+    /// Energy dissipated so far by yielding and breaking ties.
     taken_by_ties: f64,
     /// Contributions of ties to the velocities of the blocks in a kick.
     pulled: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
-    /// How far the coordinates of every joint will be from zero at the end of the step, per time, apart from their rates.
+    /// Distance from zero of the coordinates of every joint at the end of the step, per time, without the effect of their rates.
     lags: Vec<Vector3<f64>>,
     /// Rates of the coordinates in the motion before the step.
     rates_before: Vec<Vector3<f64>>,
@@ -81,7 +81,7 @@ pub struct SlidingStepper<'a> {
     /// For solutions that must not change the modes.
     auxiliary: Program,
     modes_before: Vec<Mode>,
-    /// Whether no joint is open.
+    /// True while no joint is open.
     stands: bool,
     /// Energy that friction took outside impacts.
     held_back: f64,
@@ -96,7 +96,7 @@ pub struct SlidingStepper<'a> {
 }
 
 impl<'a> SlidingStepper<'a> {
-    /// A stepper for a row that stands there, or is released at rest at a placement.
+    /// A stepper for a row that starts at this stance, or is released at rest at a placement.
     pub fn new(
         standing: &Stance,
         placement: &Placement,
@@ -132,7 +132,7 @@ impl<'a> SlidingStepper<'a> {
         course.note_ties(ties.memories());
         course.note_return();
         let start_energy = gravity * rest.rise_kg_m(&placement.centres_m);
-        // With the energy that friction took: up to where it was highest it may be held.
+        // Heights include the energy that friction dissipated: friction may hold the row up to its highest position.
         course.summit = Summit::new(start_energy, ground.start_s());
         let stands = rest.has(&placement.gaps_m);
         if !stands {
@@ -212,8 +212,8 @@ impl<'a> SlidingStepper<'a> {
         0.5 * self.program.twice_kinetic_j()
     }
 
-    /// How far the coordinates would be from zero at the end of a step, per time, if the joints moved on as in the
-    /// last solution, apart from the effect of their rates: what they are now, and the curvature of the motion.
+    /// Distance from zero of the coordinates at the end of a step, per time, if the joints moved as in the last solution. It omits the
+    /// effect of their rates: the present coordinates and the curvature of the motion remain.
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
@@ -228,7 +228,7 @@ impl<'a> SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
-            // A joint that moves as one has no curvature, whatever straight lines say.
+            // A joint whose blocks move as one has no curvature; straight lines would show some.
             let mut right = None;
             if self.program.modes[joint] != Mode::WHOLE {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
@@ -317,7 +317,7 @@ impl<'a> SlidingStepper<'a> {
         of_row.least_normal_n = of_row.least_normal_n.min(least / time_s);
     }
 
-    /// Moves the blocks for a step; what happened to ties in it.
+    /// Moves the blocks for a step; returns the events of ties in it.
     fn drift(&mut self, step: f64) -> Vec<(usize, EventKind)> {
         for ((position, velocity), centre) in self
             .positions
@@ -382,7 +382,7 @@ impl<'a> SlidingStepper<'a> {
         sliding.expect("joints may slip")
     }
 
-    /// How far the row slid along its supports, left and right.
+    /// Slides of the row along its supports, left and right.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
@@ -396,7 +396,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Whether a block has turned or moved too far, from where either foot would have it.
+    /// True if a block has turned too far, or moved too far from its positions relative to both feet.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.slides();
         let gone = [left, right + self.right.gone_m];
@@ -475,7 +475,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Whether the corners are pressed that were where the row stood.
+    /// True if the corners press that pressed at the initial position.
     fn touches_as_it_stood(&self) -> bool {
         let modes = self.program.modes.iter().zip(&self.rest.touching);
         modes
@@ -484,13 +484,13 @@ impl<'a> SlidingStepper<'a> {
             && !self.right_support_is_gone()
     }
 
-    /// Whether the right support is not where it stood beside the left one.
+    /// True if the right support has moved relative to the left one.
     fn right_support_is_gone(&self) -> bool {
         self.right.is_gone(APART_RATIO * self.thinnest_m)
     }
 
-    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground; from between the
-    /// feet, where these part.
+    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slide of the row
+    /// along the ground.
     fn displacement(&self) -> f64 {
         let on_ground = match (self.row.supports, self.row.supports_extend) {
             (Supports::Left, [base, _]) => [base; 2],
@@ -576,7 +576,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.sliding().friction_j += late.friction_j + taken.friction_j;
         if landing.is_none() {
             late.add(taken);
-            // Energy that friction takes in an impact holds nothing back.
+            // Friction in an impact does not hold the row.
             self.held_back += self.held_back_j();
         }
         self.end_landing(late, landing.is_none());

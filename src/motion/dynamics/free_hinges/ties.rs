@@ -22,12 +22,12 @@ pub(super) struct Ties<'a> {
     ties: Vec<Pulling<'a>>,
     /// Positions of the left and the right support.
     supports: [Pose; 2],
-    /// Elastic energy where the row stood.
+    /// Elastic energy at the initial position.
     at_rest_j: f64,
 }
 
 impl<'a> Ties<'a> {
-    /// Ties of a row that stands there when its motion starts.
+    /// Ties of a row whose motion starts from this stance.
     pub fn new(row: &'a Row, standing: &Stance) -> Self {
         let lines = standing.lines(row).zip(&standing.ties);
         let ties = row
@@ -53,7 +53,7 @@ impl<'a> Ties<'a> {
         self.ties.is_empty()
     }
 
-    /// The supports have moved, and with them what is on the ground nearer to each.
+    /// Moves the supports, and with each the ends of ties on the ground nearer to it.
     pub const fn move_supports(&mut self, poses: [Pose; 2]) {
         self.supports = poses;
     }
@@ -70,7 +70,7 @@ impl<'a> Ties<'a> {
             .sum()
     }
 
-    /// The blocks have moved to these poses.
+    /// Stretches the ties to these poses of the blocks.
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
         let lines = lines(self.row, &self.supports, pose);
         for (tie, line) in self.ties.iter_mut().zip(lines) {
@@ -94,7 +94,7 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// Elastic energy in them, above that where the row stood.
+    /// Their elastic energy, above that at the initial position.
     pub fn energy_j(&self) -> f64 {
         let each = self
             .ties
@@ -103,7 +103,7 @@ impl<'a> Ties<'a> {
         each.sum::<f64>() - self.at_rest_j
     }
 
-    /// Energy that they took as they yielded and broke.
+    /// Energy that they dissipated by yielding and breaking.
     pub fn taken_j(&self) -> f64 {
         self.ties.iter().map(|tie| tie.memory.taken_j.0[0]).sum()
     }

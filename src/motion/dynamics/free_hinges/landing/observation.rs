@@ -1,4 +1,4 @@
-//! Records and reports on the way: energies and their balance, impacts and samples.
+//! Records and reports during the motion: energies and their balance, impacts and samples.
 
 use nalgebra::Vector2;
 
@@ -44,7 +44,7 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Potential energy of the blocks, and what is in the ties beyond that at rest.
+    /// Potential energy of the blocks, and elastic energy of the ties above that at rest.
     pub fn energy(&self) -> f64 {
         self.height_energy() + self.ties.energy_j()
     }
@@ -62,7 +62,7 @@ impl LandingStepper<'_> {
     fn observe(&mut self) {
         let lies = self.lies_at_rest();
         let potential = self.energy();
-        // On hinges rounding leaves a little of it, which is no side.
+        // At rest on hinges, rounding leaves a small sway to neither side.
         let sway = if lies { 0.0 } else { self.sway_kg_m() };
         let kinetic = kinetic(&self.pieces);
         // On hinges a row may swing while the same corners touch.
@@ -73,7 +73,7 @@ impl LandingStepper<'_> {
         let rotations = self.rest.turned_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
-        // Ties that have yielded or broken hold another energy where the row rests.
+        // Ties that have yielded or broken have another elastic energy at rest.
         let rests = kinetic < least && self.height().abs() < least;
         let known_s = self.lies_since_s.filter(|_| lies);
         self.lies_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
@@ -82,13 +82,13 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Whether it may come to rest on hinges: if it stood on some, or its feet move differently.
+    /// True if it may come to rest on hinges: it started on some, or its feet move differently.
     fn may_end_on_hinges(&self) -> bool {
         self.rest.is_on_hinges() || self.right.moves()
     }
 
-    /// Notes heights and displacements of a row that may end on hinges: it may come to rest on others, lower or higher, so its energy
-    /// shows neither rest nor overturning. Between feet that part it lies far away if it is far from where either foot would have it.
+    /// Notes heights and displacements of a row that may end on hinges. It may come to rest on other hinges, lower or higher, so its
+    /// energy shows neither rest nor overturning. A block counts as far away if it is far from its positions relative to both feet.
     fn observe_hinges(&mut self) {
         let height = (!self.right.moves()).then_some(self.course.potential);
         self.course.note_height(height);
@@ -105,17 +105,17 @@ impl LandingStepper<'_> {
             .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
     }
 
-    /// Whether the row lies where it stood before it moved.
+    /// True if the row lies at its initial position.
     fn lies_at_rest(&self) -> bool {
         self.rest.has(&self.placement.gaps_m) && !self.right_support_is_gone()
     }
 
-    /// Whether the right support is not where it stood beside the left one.
+    /// True if the right support has moved relative to the left one.
     pub fn right_support_is_gone(&self) -> bool {
         self.right.is_gone(SHUT_RATIO * self.thinnest)
     }
 
-    /// Horizontal displacement of the centre of gravity times the mass; from between the feet, where these part.
+    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass.
     pub fn sway_kg_m(&self) -> f64 {
         let sway = self.rest.sway_kg_m(&self.placement.centres_m);
         sway - 0.5 * self.row.mass_kg() * self.right.gone_m.x
@@ -150,7 +150,7 @@ impl LandingStepper<'_> {
         self.report_impact(!self.stands, [before_j, taken_j], None);
     }
 
-    /// Reports the joints that opened in a step that began at this time where the row stood.
+    /// Reports the joints that opened in a step from the initial position; the step began at this time.
     fn note_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
@@ -292,7 +292,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.lies_since_s
     }
 
-    /// By its height: what is in ties may be less than at rest.
+    /// Judged by its height: the elastic energy of ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
         if self.may_end_on_hinges() {
             return self.course.overturned_s();
