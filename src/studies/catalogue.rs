@@ -1,4 +1,4 @@
-//! The studies of a scenario, each an entry in one list: computed at once, in parts or by merging parts, whichever it is.
+//! The list of all studies of a scenario. Each can be computed at once; those of many cases also in parts, which are merged.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use super::ensemble::{Ensemble, Question};
 use super::map::{self, OverturningMap};
 use super::part::{self, PartFile};
 use super::results::{Reported, Results, StudyError, Style};
-use super::runner::{Computed, Progress, Runner, Task};
+use super::runner::{Computed, Progress, Runner, Study as _, Task};
 use super::spread::{self, Way};
 use super::suite::{self, Heading, RecordSuite};
 use super::threshold::along::{self, Along, AlongOptions};
@@ -33,7 +33,7 @@ pub struct Options {
     pub along: Option<AlongOptions>,
     /// The control point of capacity curves, in metres.
     pub point_m: Option<Vector2<f64>>,
-    /// The movements of a springing that `spread` follows; empty: the usual ones.
+    /// The movements of a springing that `spread` follows.
     #[serde(skip)]
     pub ways: Vec<Way>,
 }
@@ -41,15 +41,15 @@ pub struct Options {
 /// Receives the progress of a study; the work stops when it returns a break.
 pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// How the rows of a study are found.
+/// The source of the rows of a study.
 pub enum Rows<'w> {
-    /// They are computed, in a folder, where this can be resumed, or in memory. `watch` is as in [`Runner::rows`].
+    /// They are computed: for a task in its folder, where the work can be resumed, otherwise in memory.
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
 }
 
-/// Chooses the style of merged results from the scenario of the parts if that is read. It may refuse options that do not fit the study.
+/// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
 pub type ChooseStyle<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Result<Style, String>;
 
 /// The result of a computation.
@@ -86,15 +86,15 @@ impl PartialEq for StudyKind {
 
 impl Eq for StudyKind {}
 
-/// Which pulses overturn the structure, over two quantities.
+/// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind {
-    name: "map",
+    name: OverturningMap::NAME,
     files: &map::FILES,
     run: |scenario, _, style, rows| run(OverturningMap::of(scenario), style, rows),
 };
-/// Which records overturn the structure.
+/// The records that overturn the structure.
 pub const SUITE: StudyKind = StudyKind {
-    name: "suite",
+    name: RecordSuite::NAME,
     files: &suite::FILES,
     run: |scenario, _, style, rows| run(RecordSuite::of(scenario), style, rows),
 };
@@ -112,7 +112,7 @@ pub const THRESHOLD: StudyKind = StudyKind {
 };
 /// The threshold for each value of a key along a range.
 pub const THRESHOLD_ALONG: StudyKind = StudyKind {
-    name: "threshold_along",
+    name: Along::NAME,
     files: &along::FILES,
     run: |scenario, options, style, rows| {
         let along = options.along.clone();
@@ -135,7 +135,7 @@ pub const CAPACITY: StudyKind = StudyKind {
         Ok(whole(capacity::report(scenario, &sides, style.figure)?))
     },
 };
-/// How far a springing may move until the arch falls.
+/// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     name: "spread",
     files: &spread::FILES,
@@ -159,30 +159,30 @@ pub const VERIFY: StudyKind = StudyKind {
         Ok(whole(verify::report(scenario, &check)?))
     },
 };
-/// How histories end and proceed, for samples of the uncertain numbers.
+/// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind {
-    name: "uncertain",
+    name: Histories::NAME,
     files: Histories::FILES,
     run: |scenario, _, style, rows| run(ensemble(scenario, Histories::of(scenario)), style, rows),
 };
 /// The factor from which samples of the uncertain numbers overturn.
 pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind {
-    name: "uncertain_threshold",
+    name: FirstEdges::NAME,
     files: FirstEdges::FILES,
     run: |scenario, options, style, rows| {
         let question = FirstEdges::of(scenario, options.factors);
         run(ensemble(scenario, question), style, rows)
     },
 };
-/// Which records overturn samples of the uncertain numbers.
+/// The records that overturn samples of the uncertain numbers.
 pub const UNCERTAIN_SUITE: StudyKind = StudyKind {
-    name: "uncertain_suite",
+    name: Capacities::NAME,
     files: Capacities::FILES,
     run: |scenario, _, style, rows| run(ensemble(scenario, Capacities::of(scenario)), style, rows),
 };
-/// How likely pulses overturn samples of the uncertain numbers, over two quantities.
+/// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind = StudyKind {
-    name: "uncertain_map",
+    name: CellsOfSamples::NAME,
     files: &cells::FILES,
     run: |scenario, _, style, rows| run(CellsOfSamples::of(scenario), style, rows),
 };

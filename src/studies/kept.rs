@@ -41,30 +41,23 @@ pub const THRESHOLD: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_THRESHOLD),
     of_models: Some("threshold.json"),
     of_records: true,
-    ..Writer::new("threshold", catalogue::THRESHOLD.files)
+    ..Writer::of_study(catalogue::THRESHOLD)
 };
 /// `archrock threshold --along`.
 pub const ALONG: Writer = Writer::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
 const MAP: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_MAP),
-    ..Writer::new("map", catalogue::MAP.files)
+    ..Writer::of_study(catalogue::MAP)
 };
 const SUITE: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_SUITE),
     of_models: Some("models/peaks.json"),
-    ..Writer::new("suite", catalogue::SUITE.files)
+    ..Writer::of_study(catalogue::SUITE)
 };
 
-const ALL: [Writer; 8] = [
-    RUN,
-    THRESHOLD,
-    ALONG,
-    MAP,
-    SUITE,
-    Writer::new("capacity", catalogue::CAPACITY.files),
-    Writer::new("spread", catalogue::SPREAD.files),
-    Writer::new("verify", catalogue::VERIFY.files),
-];
+/// The commands with results in subfolders or with a name other than that of a study.
+const SPECIAL: [Writer; 5] = [RUN, THRESHOLD, ALONG, MAP, SUITE];
+const MERGE: &str = "merge";
 
 /// The folder that compares the results of several models of motion.
 const MODELS: &str = "models";
@@ -80,26 +73,37 @@ impl Writer {
         }
     }
 
-    /// `merge` of a study, which replaces the results of that study only: those of its samples are merged apart.
-    #[must_use]
-    pub const fn merge(kind: StudyKind) -> Self {
-        Self::new("merge", kind.files)
+    const fn of_study(kind: StudyKind) -> Self {
+        Self::new(kind.name, kind.files)
     }
 
-    /// The command that writes the results of a study.
+    /// `merge` of a study. It replaces the results of that study only, because those of its samples are merged separately.
+    #[must_use]
+    pub const fn merge(kind: StudyKind) -> Self {
+        Self::new(MERGE, kind.files)
+    }
+
+    /// The command that writes the results of a study. Only `merge` writes those of samples into a folder of their own.
     #[must_use]
     pub fn of(kind: StudyKind) -> Self {
-        let mut all = ALL.into_iter();
-        let writer = all.find(|writer| writer.files == kind.files);
-        writer.unwrap_or(Self::merge(kind))
+        let has_samples = |writer: &Self| writer.samples == Some(kind);
+        let mut special = SPECIAL.into_iter();
+        match special.find(|writer| writer.files == kind.files || has_samples(writer)) {
+            Some(writer) if has_samples(&writer) => Self::merge(kind),
+            writer => writer.unwrap_or(Self::of_study(kind)),
+        }
+    }
+
+    /// `run`, and the command of each study.
+    fn all() -> impl Iterator<Item = Self> {
+        let studies = StudyKind::ALL.into_iter().map(Self::of);
+        [RUN].into_iter().chain(studies)
     }
 
     /// The command whose results have this seal; `None` if no command writes them.
     #[must_use]
     pub fn of_seal(seal: &str) -> Option<Self> {
-        let studies = StudyKind::ALL.into_iter().map(Self::merge);
-        let mut all = ALL.into_iter().chain(studies);
-        all.find(|writer| writer.files.last() == Some(&seal))
+        Self::all().find(|writer| writer.files.last() == Some(&seal))
     }
 
     /// The file that holds the scenario.
@@ -116,8 +120,7 @@ impl Writer {
         of_summary(&serde_json::from_slice(summary).ok()?)
     }
 
-    /// The paths of everything that the last run of this command may have left in a folder, in the order in which it is removed: the seal
-    /// first. Rows of an interrupted study are not among them.
+    /// All paths that the last run of this command may have written in a folder, in the order of their removal: the seal first. Rows of an interrupted study are not among them.
     #[must_use]
     pub fn last_run(&self, folder: &Path) -> Vec<PathBuf> {
         let mut seal_first = self.beside_one_another(folder, self.files).into_iter();
@@ -159,8 +162,8 @@ impl Writer {
     /// Warnings of results of other commands in a folder that come from another scenario.
     #[must_use]
     pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
-        let others = ALL.iter().filter(|writer| writer.files != self.files);
-        let warning = |other: &Self| {
+        let others = Self::all().filter(|other| other.files != self.files && other.name != MERGE);
+        let warning = |other: Self| {
             let difference = other
                 .places(folder)
                 .into_iter()
@@ -178,7 +181,7 @@ impl Writer {
         all
     }
 
-    /// A warning of rows of samples that were interrupted and that this run, which has no samples, leaves where they are.
+    /// A warning about rows of an interrupted study of samples. This run has no samples and does not remove them.
     fn interrupted(&self, folder: &Path) -> Option<String> {
         let kind = self.samples?;
         let part = Self::part(folder, kind);
@@ -312,7 +315,7 @@ pub struct Origin {
     records: Vec<String>,
 }
 
-/// Tables beside those of models that results of one command may have, and those of another not: a title, and studies.
+/// Tables that may differ between results of several commands, apart from those of models: a title, and studies.
 const OF_SOME: [&str; 6] = ["title", "map", "suite", "demand", "verify", "uncertain"];
 
 impl Origin {

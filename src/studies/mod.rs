@@ -5,14 +5,14 @@
 //! [runner](runner::Runner) computes them in memory, or in [files](part) that can be resumed and merged. The result
 //! of a case is a row, which stays a typed value from the computation to the last file.
 //!
-//! - [`run`]: one history, with everything reported about it;
+//! - [`run`]: one history, with all its reports;
 //! - [`map`]: which pulses overturn, over two quantities;
 //! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them; and the first of them
 //!   [along](threshold::along) a range of values of one key;
-//! - [`suite`]: which records overturn, at several levels, and the [`fragility`](suite::fragility) curve of that;
-//! - [`survival`](threshold::survival): the same in brief: where a structure first overturns, and where it survives again;
+//! - [`suite`]: which records overturn, at several levels, and their [`fragility`](suite::fragility) curve;
+//! - [`survival`](threshold::survival): the strengths of a motion that a structure survives, in brief;
 //! - [`capacity`]: capacity curves, without a history;
-//! - [`spread`]: how far a springing may move until the arch falls, without a history;
+//! - [`spread`]: the movement of a springing at which the arch falls, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page.
 
 pub mod capacity;

@@ -1,6 +1,6 @@
-//! The part file of a running study: what is being computed, and the rows so far.
+//! The part file of a running study: a header that identifies the study, and the rows so far.
 //!
-//! The first line is a header that identifies the study. Every other line holds a checksum, the index of a case
+//! The first line is the header. Every other line holds a checksum, the index of a case
 //! and its row, separated by commas. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
 //! are only ever appended, so the file of a killed program is valid up to its last complete line; the
 //! checksums reveal any other damage. A study that was computed in shards, on several machines, is merged from
@@ -135,7 +135,7 @@ impl Header {
         self.shard.cases(self.cases).count()
     }
 
-    /// How another header differs, if its file holds other rows; `None` if both belong to the very same part.
+    /// The first difference of another header; `None` if both belong to the same part.
     fn other(&self, other: &Self) -> Option<String> {
         self.difference(other).or_else(|| {
             let (here, there) = (self.shard, other.shard);
@@ -160,7 +160,7 @@ impl Header {
         }
     }
 
-    /// How the study of another header differs from this one's; `None` if they belong together.
+    /// The first difference of the study of another header; `None` if they belong together.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let differ = |what: &str, here: &str, there: &str| {
@@ -417,7 +417,7 @@ impl PartFile {
         let length = if rows.is_empty() { 0 } else { length };
         part.file.set_len(length).map_err(part.cannot("shorten"))?;
         if length == 0 {
-            let mut line = serde_json::to_string(header).map_err(part.cannot_tell())?;
+            let mut line = serde_json::to_string(header).map_err(part.cannot_write())?;
             line.push('\n');
             part.write(&line)?;
         }
@@ -437,7 +437,7 @@ impl PartFile {
     pub fn append<R: Serialize>(&mut self, rows: &[(usize, R)]) -> Result<(), PartError> {
         let mut lines = String::new();
         for (index, row) in rows {
-            lines += &to_line(*index, row).map_err(self.cannot_tell())?;
+            lines += &to_line(*index, row).map_err(self.cannot_write())?;
         }
         self.write(&lines)
     }
@@ -477,7 +477,7 @@ impl PartFile {
         move |source| PartError::Io { what, path, source }
     }
 
-    fn cannot_tell(&self) -> impl FnOnce(serde_json::Error) -> PartError + use<> {
+    fn cannot_write(&self) -> impl FnOnce(serde_json::Error) -> PartError + use<> {
         let cannot = self.cannot("write");
         move |error| cannot(error.into())
     }

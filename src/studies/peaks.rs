@@ -1,6 +1,6 @@
-//! How far the models of motion rock a structure in the same cases, compared as distributions.
+//! The distributions of the largest rotations by several models of motion in the same cases.
 //!
-//! Where impacts decide, no model predicts a history, but it may well predict the distribution of many: rocking is validated
+//! After impacts no model predicts a single history, but a model may predict the distribution of many: rocking is validated
 //! statistically (Bachmann, Strand, Vassiliou, Broccardo and Stojadinovic, Earthquake Engineering and Structural Dynamics 47, 2018;
 //! Vassiliou, Broccardo, Cengiz, Dietz, Dihoru, Gunay, Mosalam, Mylonakis, Sextos and Stojadinovic, ibid. 50, 2021).
 
@@ -139,8 +139,8 @@ fn in_words(found: &Distance) -> String {
         .shares_there
         .map(|share| format!("{:.0} %", 100.0 * share));
     format!(
-        "distributions of the largest rotation, {one} against {other}: {:.2} apart at most (Kolmogorov): {one_there} and {other_there} of the \
-         cases rock up to {:.4} rad",
+        "distributions of the largest rotation, {one} and {other}: Kolmogorov distance {:.2}: {one_there} and {other_there} of the cases \
+         rotate by at most {:.4} rad",
         found.kolmogorov_distance, found.at_rotation_rad
     )
 }

@@ -104,12 +104,12 @@ impl fmt::Display for Remark {
     }
 }
 
-/// How far results of many cases with four links can be trusted: their line of thrust is not followed. The program and the Python package
-/// issue it, so it names no options.
+/// The limit of studies with four links, which do not compute the line of thrust. The program and the Python package issue it, so it
+/// names no options.
 const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, unless the thrust line stays inside the arch, which is not \
                           checked here: check it in single runs, and compare with free hinges";
 
-/// How far the results of many cases can be trusted; `None` if the model of motion is not four links of an arch.
+/// The limit of the results of many cases; `None` if the model of motion is not four links of an arch.
 pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
     let four = scenario.motion().hinges() == Hinges::Four && scenario.structure().thrusts();
     four.then_some(FOUR_LINKS)
@@ -121,7 +121,7 @@ pub(crate) fn rough_guide_of(warnings: &[String]) -> Option<&'static str> {
     given.then_some(FOUR_LINKS)
 }
 
-/// Warnings about the results of many cases: unlikely numbers of the scenario, and how far four links can be trusted.
+/// Warnings about the results of many cases: unlikely numbers of the scenario, and the limit of four links.
 #[must_use]
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let mut warnings = scenario.unlikely();
@@ -188,7 +188,7 @@ impl Remarks {
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let cases = first_of(&self.uncertain, file)?;
         Some(format!(
-            "uncertain: with other steps, or with landings merged, they end otherwise or differ before the largest rotation; {cases}"
+            "uncertain cases end otherwise with other steps or with landings merged, or differ before the largest rotation; {cases}"
         ))
     }
 }
@@ -209,13 +209,13 @@ pub(crate) type Words = (u8, &'static str);
 /// How a case ended, in words.
 pub(crate) const fn in_words(ending: &Ending) -> Words {
     match (&ending.uncertain, ending.outcome) {
-        (Some(_), _) => (5, "are uncertain"),
-        (None, Outcome::NeverMoved) => (0, "never move"),
-        (None, Outcome::Vibrates) => (1, "vibrate without opening"),
-        (None, Outcome::Rest) => (2, "come to rest"),
-        (None, Outcome::Overturned(_)) => (3, "overturn"),
-        (None, Outcome::StillRocking) => (4, "are still rocking"),
-        (None, Outcome::Incomplete) => (6, "are incomplete"),
+        (Some(_), _) => (5, "uncertain"),
+        (None, Outcome::NeverMoved) => (0, "never moved"),
+        (None, Outcome::Vibrates) => (1, "vibrated without opening"),
+        (None, Outcome::Rest) => (2, "came to rest"),
+        (None, Outcome::Overturned(_)) => (3, "overturned"),
+        (None, Outcome::StillRocking) => (4, "still rocking"),
+        (None, Outcome::Incomplete) => (6, "incomplete"),
     }
 }
 

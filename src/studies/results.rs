@@ -1,4 +1,4 @@
-//! The results of a study, once it has all rows: files and words, the same for the program, for merged parts, and for Python.
+//! The results of a study from all its rows: files and words, identical for the program, for merged parts and for Python.
 
 use std::fmt;
 use std::io::Write as _;
@@ -121,7 +121,7 @@ impl Results {
     }
 }
 
-/// An answer given at once, for programs and for people.
+/// An answer without files, for programs and for people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// All numbers.

@@ -15,6 +15,8 @@ struct Written {
     doc: String,
     /// Doc comment and fields: of the one variant of a struct, or of all of an enum.
     variants: Vec<(String, Fields)>,
+    /// Whether it is written as the value inside it.
+    is_transparent: bool,
 }
 
 fn source() -> PathBuf {
@@ -43,15 +45,13 @@ fn written(folder: &Path, found: &mut Vec<Written>) {
                     }
                     _ => continue,
                 };
-                let derives = |word| list(&attributes, "derive").contains(word);
-                // A transparent type is written as the value inside it.
-                if derives("Serialize") && !list(&attributes, "serde").contains("transparent") {
-                    let (file, name, doc) = (file.clone(), name.to_string(), doc(&attributes));
+                if list(&attributes, "derive").contains("Serialize") {
                     found.push(Written {
-                        file,
-                        name,
-                        doc,
+                        file: file.clone(),
+                        name: name.to_string(),
+                        doc: doc(&attributes),
                         variants,
+                        is_transparent: list(&attributes, "serde").contains("transparent"),
                     });
                 }
             }
@@ -108,6 +108,7 @@ fn parts(kind: &Type) -> (String, Option<&Type>) {
             (last.ident.to_string(), inner)
         }
         Type::Array(array) => ("Vec".to_owned(), Some(&array.elem)),
+        Type::Tuple(tuple) => ("Vec".to_owned(), tuple.elems.first()),
         Type::Reference(reference) => parts(&reference.elem),
         _ => (String::new(), None),
     }
@@ -122,7 +123,21 @@ fn maps_sides(kind: &Type) -> bool {
     matches!(inner.args.first(), Some(GenericArgument::Type(key)) if parts(key).0 == "Sway")
 }
 
-/// What a value is in words, and the name of the type inside.
+/// The JSON that a function of a file for `serialize_with` writes, in words.
+fn written_by(function: &str, file: &Path) -> &'static str {
+    let text = fs::read_to_string(file).unwrap();
+    let (_, body) = text.split_once(&format!("\nfn {function}<")).unwrap();
+    let (body, _) = body.split_once("\n}\n").unwrap();
+    let words = [
+        ("f64", "number"),
+        ("to_degrees", "number"),
+        ("serialize_str", "text"),
+    ];
+    let known = words.iter().find(|(code, _)| body.contains(code));
+    known.unwrap_or_else(|| panic!("{function} is not known")).1
+}
+
+/// The type of a value in words, and the name of the type inside.
 fn words(kind: &Type) -> (String, String) {
     let (name, inner) = parts(kind);
     match (&*name, inner) {
@@ -153,10 +168,17 @@ fn wrapped(inner: &Type, before: &str, after: &str) -> (String, String) {
     (format!("{before}{words}{after}"), name)
 }
 
+/// A key with its type, and its meanings, each after the variant of an enum that has it.
+struct Row {
+    key: String,
+    kind: String,
+    meanings: Vec<[String; 2]>,
+}
+
 /// The table of a summary.
 struct Reference<'a> {
     written: &'a [Written],
-    rows: String,
+    rows: Vec<Row>,
     /// Types that have their rows already, with the key of the first value.
     known: Vec<(&'a Written, String)>,
 }
@@ -177,7 +199,16 @@ impl<'a> Reference<'a> {
             return;
         }
         let (mut kind, name) = words(&field.ty);
-        let inside = self.found(one, &name);
+        let text_after = |word: &str| {
+            let (_, text) = serde.split_once(&format!("{word} = \""))?;
+            text.split('"').next()
+        };
+        let mut inside = self.found(one, &name);
+        if let Some(transparent) = inside.filter(|inside| inside.is_transparent) {
+            let value = transparent.variants[0].1.iter().next().unwrap();
+            kind = kind.replace("text", &words(&value.ty).0);
+            inside = None;
+        }
         let Some(ident) = field.ident.as_ref().filter(|_| !serde.contains("flatten")) else {
             // The fields of another type in place of this one.
             if let Some(inside) = inside {
@@ -190,9 +221,12 @@ impl<'a> Reference<'a> {
             }
             return;
         };
-        let renamed = serde.split_once("rename = \"");
-        let renamed = renamed.map(|(_, after)| after.split('"').next().unwrap().to_owned());
-        let key = format!("{before}{}", renamed.unwrap_or_else(|| ident.to_string()));
+        let name = text_after("rename").map_or_else(|| ident.to_string(), str::to_owned);
+        let key = format!("{before}{name}");
+        if let Some(function) = text_after("serialize_with") {
+            kind = written_by(function, &one.file).to_owned();
+            inside = None;
+        }
         let is_object = |one: &&Written| one.variants.iter().any(|(_, fields)| !fields.is_empty());
         let inside = inside.filter(is_object);
         let known = self
@@ -207,11 +241,32 @@ impl<'a> Reference<'a> {
         if serde.contains("skip_serializing_if") {
             kind = kind.strip_suffix(" or null").unwrap_or(&kind).to_owned() + ", or absent";
         }
-        let meaning = [variant, &doc(&field.attrs)].join(" ");
-        let _ = writeln!(self.rows, "| `{key}` | {kind} | {} |", meaning.trim());
+        let meaning = [variant.to_owned(), doc(&field.attrs)];
+        self.add_row(key.clone(), kind, meaning);
         if let Some(inside) = inside.filter(|_| known.is_none()) {
             self.known.push((inside, key.clone()));
             self.add(inside, &format!("{key}."));
+        }
+    }
+
+    /// Adds a row. Variants of an enum that have the same key share its row.
+    fn add_row(&mut self, key: String, kind: String, meaning: [String; 2]) {
+        let Some(row) = self.rows.iter_mut().find(|row| row.key == key) else {
+            let meanings = vec![meaning];
+            self.rows.push(Row {
+                key,
+                kind,
+                meanings,
+            });
+            return;
+        };
+        if kind.len() > row.kind.len() {
+            row.kind = kind;
+        }
+        match &mut row.meanings[..] {
+            [[variant, known]] if *known == meaning[1] => variant.clear(),
+            known if known.iter().any(|[_, known]| *known == meaning[1]) => {}
+            _ => row.meanings.push(meaning),
         }
     }
 
@@ -245,11 +300,22 @@ fn summaries_are_described_by_their_types() {
             );
             let mut reference = Reference {
                 written: &found,
-                rows: String::new(),
+                rows: Vec::new(),
                 known: Vec::new(),
             };
             reference.add(one, "");
-            text += &reference.rows;
+            for row in &reference.rows {
+                let meanings = row.meanings.iter().flatten();
+                let meanings: Vec<&str> = meanings.map(String::as_str).collect();
+                let meaning = meanings.join(" ");
+                let _ = writeln!(
+                    text,
+                    "| `{}` | {} | {} |",
+                    row.key,
+                    row.kind,
+                    meaning.trim()
+                );
+            }
         }
     }
     assert!(text.matches("###").count() >= 2, "{text}");

@@ -81,7 +81,7 @@ fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     Ok(None)
 }
 
-/// Capacity of a row, whose ties change the push that its first mechanism bears along its way.
+/// Capacity of a row, whose ties change the push that its first mechanism resists along its way.
 fn of_row(
     row: &Row,
     point_m: Option<Vector2<f64>>,

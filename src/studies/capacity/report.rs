@@ -63,7 +63,7 @@ pub struct Oscillator {
     pub secant_period_s_at_part_of_ultimate: SecantPeriods,
 }
 
-/// Secant periods in seconds, at parts of the ultimate displacement; absent where ties have no force left.
+/// Secant periods in seconds, at parts of the ultimate displacement; null if ties have no force left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SecantPeriods {
     /// At a fifth of the ultimate displacement.

@@ -43,7 +43,7 @@ type OfSample<'a> = Result<OverturningMap<'a>, String>;
 /// Cached map of a sample, with the number of the sample.
 type Cached<'a> = (usize, Arc<OnceLock<OfSample<'a>>>);
 
-/// The cells of a map, for every sample: those of a sample follow one another, and first come those of the scenario itself.
+/// The cells of a map for the scenario itself, followed by those for each sample.
 #[derive(Debug)]
 pub struct CellsOfSamples<'a> {
     scenario: &'a Scenario,
@@ -54,10 +54,10 @@ pub struct CellsOfSamples<'a> {
 }
 
 impl<'a> CellsOfSamples<'a> {
-    /// Of a scenario with a map and a table `[uncertain]`.
+    /// The cells for a scenario with a map and a table `[uncertain]`.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         let map = OverturningMap::of(scenario)?;
         let uncertain = uncertain(scenario)?;
@@ -113,7 +113,7 @@ impl<'a> CellsOfSamples<'a> {
         found
     }
 
-    /// The number of a sample, and that of a cell within it.
+    /// The numbers of the sample and of the cell within it.
     fn place(&self, index: usize) -> [usize; 2] {
         let cells = self.map.count();
         [index / cells, index % cells]
@@ -221,14 +221,14 @@ impl CellCounts {
 /// The probabilities whose lines are drawn on the map.
 const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// Where on a column of the map, going up, the probability first reaches the [`LEVELS`].
+/// The values of y on a column of the map, upwards, at which the probability first reaches the [`LEVELS`].
 struct Crossing {
     /// The value of x.
     x: f64,
-    /// The values of y, between cells by the line through them; that of the lowest cell if it is reached there already, and
-    /// `None` if it is not reached.
+    /// The values of y, interpolated between cells; the value of the lowest cell if it reaches the level already, and `None` if no
+    /// cell does.
     y: [Option<f64>; 3],
-    /// Whether the lowest cell reaches it already, so that it may be reached below the map.
+    /// Whether the lowest cell reaches the level already, so that it may be reached below the map.
     at_most: [bool; 3],
 }
 
@@ -277,7 +277,7 @@ impl CellsOfSamples<'_> {
         (0..cells).map(of).collect()
     }
 
-    /// Where the probability first reaches the [`LEVELS`], column by column.
+    /// The crossings of all columns.
     fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
         let [_, y] = self.map.axes;
         let values = &self.map.values[1];
@@ -289,7 +289,7 @@ impl CellsOfSamples<'_> {
             .collect()
     }
 
-    /// Of each sample the part of its cells that certainly overturn, as answers of samples; the scenario itself comes first.
+    /// The part of the cells that certainly overturn, as the answer of each sample; the scenario itself comes first.
     fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
         let part = |(sample, cells): (usize, &[CellRow])| {

@@ -42,7 +42,7 @@ impl FirstStrength {
             strengths.sort_by(f64::total_cmp);
             strengths
         };
-        // Below a bound anything above 0 is possible, and 0 makes the fractiles 0 that depend on it.
+        // A bound counts as 0, so that every fractile that depends on it is 0.
         let lowest = sorted(|edge| if edge.at_most { 0.0 } else { edge.strength() });
         Some(Self {
             strength: fractile(&sorted(FirstEdge::strength), part)?,
@@ -200,14 +200,14 @@ fn first_words(
     let beyond = format!("beyond {}", rounded(tried_to.fold(0.0, f64::max)));
     let [low, median, high] = band.map(|factor| factor.in_words("", &beyond));
     let probability = at_one.map_or(
-        "with a probability that is not known up to the factor 1, which is outside the factors that were tried"
+        "with an unknown probability up to the factor 1, which is outside the factors that were tried"
             .to_owned(),
         |at_one| format!("up to the factor 1 with a probability of {}", share_in_words(&at_one)),
     );
     let own = match samples.own.as_ref().map(|own| (own.factor, own.at_most)) {
         Ok((Some(own), true)) => format!("at or below {}", rounded(own)),
         Ok((Some(own), false)) => format!("at {}", rounded(own)),
-        Ok((None, _)) => "at none that was tried".to_owned(),
+        Ok((None, _)) => "at no factor that was tried".to_owned(),
         Err(_) => "has no answer".to_owned(),
     };
     format!(

@@ -1,4 +1,4 @@
-//! How the history of every sample ends, how far it goes, and how it proceeds over time.
+//! Ending, largest rotation and course of the history of every sample.
 
 use std::ops::ControlFlow;
 
@@ -34,12 +34,12 @@ pub struct Histories {
     pub step_s: f64,
     /// Number of these instants, from time zero.
     pub times: usize,
-    /// Structure, motion and model of the scenario itself. Samples that differ in neither share the model: its mechanisms after impacts take
-    /// many times as long to find as a history of four links takes.
+    /// Structure, motion and model of the scenario itself. Samples that differ in neither share the model, because finding its
+    /// mechanisms after impacts takes much longer than a history.
     own: (Structure, Motion, Box<dyn Model>),
 }
 
-/// How the history of a sample proceeded and ended.
+/// Course and ending of the history of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryAnswer {
     /// How the history ended.
@@ -317,9 +317,9 @@ fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
                 .map(|part| (part, "rotation"));
             let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
             // Rounded down, as in `run`, so that a value just below 100 % does not read as 100 %.
-            margin.map_or("stands".to_owned(), |(part, what)| {
+            margin.map_or("survives".to_owned(), |(part, what)| {
                 let percent = (1000.0 * part).floor() / 10.0;
-                format!("stands, at {percent:.1} % of the {what} from which it would overturn")
+                format!("survives, at {percent:.1} % of the {what} from which it would overturn")
             })
         }
     };

@@ -51,14 +51,14 @@ impl<'a> Influence<'a> {
         }
     }
 
-    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`. What is
-    /// left is decided by several numbers together, unless the intervals allow that nothing is left.
+    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`. The
+    /// rest is decided by several numbers together, or by chance if the intervals allow that nothing is left.
     pub(super) fn in_words(&self) -> String {
         const LEAST: f64 = 0.05;
         let answer = self.answer;
         let Some(numbers) = &self.numbers else {
             return format!(
-                "what decides {answer} cannot be said: the samples are alike, or too few"
+                "no influence on {answer} is known: the samples do not differ, or are too few"
             );
         };
         if let [only] = &numbers[..] {

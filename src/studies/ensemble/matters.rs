@@ -1,4 +1,4 @@
-//! Which uncertain numbers matter: the share of the variance of an answer that each of them explains.
+//! The influence of uncertain numbers: the share of the variance of an answer that each of them explains.
 //!
 //! Sobol's first-order index of a number is the part of the variance of the answer that would vanish, on average, if that
 //! number were known: `Var(E[Y | X]) / Var(Y)`. It is estimated from the existing samples, without further ones: the
@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::studies::statistics::{bootstrap, correlation, interval, moments, ranks};
 
-/// How much an uncertain number matters.
+/// The influence of an uncertain number on an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Matters {
     /// Its first-order index, from 0 to 1.
@@ -84,7 +84,7 @@ const MOST_HARMONICS: usize = 8;
 /// Number of samples needed for each cosine.
 const SAMPLES_PER_HARMONIC: usize = 16;
 
-/// How much each number matters for the answer of the samples: `values[sample][number]`, `answers[sample]`. `None` if the
+/// The influence of each number on the answers of the samples: `values[sample][number]`, `answers[sample]`. `None` if the
 /// answer does not vary, or there are fewer than [`LEAST_SAMPLES`].
 #[must_use]
 pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>> {

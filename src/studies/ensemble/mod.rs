@@ -1,8 +1,8 @@
 //! The consequences of uncertain numbers: a question answered for every sample of a scenario.
 //!
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is
-//! answered for each case: how its history ends and proceeds ([`histories`]), from which factor it overturns ([`edges`]), or which
-//! records overturn it ([`records`]). The study knows only the answers, so shards, resuming and threads work alike for all questions;
+//! answered for each case: the ending and course of its history ([`histories`]), the factor that first overturns it ([`edges`]), or the
+//! records that overturn it ([`records`]). The study knows only the answers, so shards, resuming and threads work alike for all questions;
 //! so do the shares, the influence of each number and the files.
 //! The cells of a map ([`cells`]) are a study of their own, whose cases are cells of samples.
 
@@ -23,7 +23,6 @@ pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
 use super::results::{Reported, Results, Style};
 use super::runner::Study;
-pub use super::statistics;
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
@@ -54,7 +53,7 @@ pub trait Question: Sync {
     /// Explains why there is none.
     fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer>;
 
-    /// The answer for the scenario itself, where that is computed with more care than its samples.
+    /// The answer for the scenario itself, which may be computed more accurately than those of its samples.
     ///
     /// # Errors
     /// As [`Question::answer`].

@@ -209,8 +209,8 @@ fn distribution(mut intensities: Vec<f64>) -> [Option<f64>; 2] {
     ]
 }
 
-/// The edges that count: without mirrored records if every one of them gives exactly what the record itself gives, as with four links
-/// of a symmetric structure.
+/// The edges that count. Mirrored records do not count if each has exactly the edges of the record itself, as with four links of a
+/// symmetric structure.
 struct Counted<'a> {
     question: &'a Capacities,
     /// For the scenario itself and for each sample, the edges of each record.

@@ -20,13 +20,13 @@ pub struct Findings<'a, A, D> {
     pub(super) lines: Vec<String>,
     /// The influence of the uncertain numbers. The first sentence has the first that is known.
     pub(super) influences: Vec<Influence<'a>>,
-    /// How many histories have no verdict, and what to do.
+    /// The number of histories without a verdict, and the remedy.
     pub(super) no_verdict: Option<String>,
     /// The part of the summary that only this question has.
     pub(super) details: D,
     /// Pictures and pages.
     pub(super) pictures: Vec<String>,
-    /// Tables before that of the samples.
+    /// Tables that precede the table of the samples.
     pub(super) tables: Vec<Vec<u8>>,
     /// The columns of the table of samples; without columns there is no such table.
     pub(super) columns: Vec<Column<'a, Line<'a, A>>>,
@@ -118,7 +118,7 @@ struct SampleSummary<'a, D> {
     what_matters: Map<String, Value>,
 }
 
-/// Quantiles of the answers; `None` where they are not known.
+/// Quantiles of the answers; `None` if unknown.
 #[derive(Serialize)]
 pub(super) struct Band {
     quantile_05: Option<f64>,
@@ -183,12 +183,12 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
         ];
         words.extend(self.lines);
         for (reasons, what) in [
-            (invalid, "make no structure that stands"),
+            (invalid, "make no valid structure"),
             (failed, "could not be computed"),
         ] {
             words.extend(reasons.first().map(|first| {
                 format!(
-                    "{} of {} samples {what}, and are left out of the shares; the first: {}",
+                    "{} of {} samples {what}, and do not count; the first: {}",
                     reasons.len(),
                     samples.rows.len(),
                     first.reason()

@@ -18,7 +18,7 @@ pub struct SampleRow<A> {
     pub answer: Result<A, NoAnswer>,
 }
 
-/// The rows of an ensemble, with that of the scenario itself set apart.
+/// The rows of an ensemble, with a separate answer of the scenario itself.
 pub struct Samples<'a, A> {
     /// The scenario.
     pub(crate) scenario: &'a Scenario,
@@ -48,12 +48,12 @@ impl<'a, A> Samples<'a, A> {
         }
     }
 
-    /// The title of the scenario, or another one.
+    /// The title of the scenario, or `otherwise` without one.
     pub(crate) fn title(&self, otherwise: &'a str) -> &'a str {
         self.scenario.title().unwrap_or(otherwise)
     }
 
-    /// The answers that there are.
+    /// The answers, without the samples that have none.
     pub(crate) fn answers(&self) -> impl Iterator<Item = &'a A> + Clone + use<'a, A> {
         self.rows.iter().filter_map(|row| row.answer.as_ref().ok())
     }
@@ -70,7 +70,7 @@ impl<'a, A> Samples<'a, A> {
         Share::of(count, self.answers().count())
     }
 
-    /// How many samples ended too early for a verdict, and what to do; `None` if none did.
+    /// The number of samples that ended too early for a verdict, and the remedy; `None` if none did.
     pub(super) fn no_verdict(&self) -> Option<String> {
         let incomplete = self
             .without()

@@ -1,4 +1,4 @@
-//! Impacts of the structure of a scenario: the chain of mechanisms through which they lead, and one impact in detail.
+//! Impacts of the structure of a scenario: the chain of mechanisms after them, and one impact in detail.
 
 mod report;
 

@@ -30,7 +30,7 @@ use crate::studies::results::Answer;
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
 #[template(path = "studies/impact/words.txt")]
 pub struct Summary {
-    /// The impacts after a first sway to the right, or to the side of a symmetric structure that was chosen.
+    /// The impacts after a first sway to the right, or for a symmetric structure to the chosen side.
     pub impacts: Vec<ChainImpact>,
     /// The impacts after a first sway to the left, for an arch of four links that is not symmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -120,26 +120,26 @@ pub struct LineExtremes {
     pub admissible: bool,
     /// The largest eccentricity over the thickness: 0.5 at the edges.
     pub largest_eccentricity_ratio: Option<f64>,
-    /// The joint of a row where it is.
+    /// The joint of a row with the largest eccentricity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_eccentricity_joint: Option<usize>,
-    /// The angle of a ring where it is.
+    /// The angle of a ring at the largest eccentricity, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_eccentricity_angle_deg: Option<f64>,
     /// The least normal impulse, in N s per metre.
     pub least_normal_n_s_per_m: Option<f64>,
-    /// The joint of a row where it is.
+    /// The joint of a row with the least normal impulse.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub least_normal_joint: Option<usize>,
-    /// The angle of a ring where it is.
+    /// The angle of a ring at the least normal impulse, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub least_normal_angle_deg: Option<f64>,
     /// The largest ratio of the tangential to the normal impulse.
     pub largest_tangential_ratio: Option<f64>,
-    /// The joint of a row where it is.
+    /// The joint of a row with the largest ratio.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_tangential_joint: Option<usize>,
-    /// The angle of a ring where it is.
+    /// The angle of a ring at the largest ratio, in degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub largest_tangential_angle_deg: Option<f64>,
 }
@@ -147,7 +147,7 @@ pub struct LineExtremes {
 /// An impact by an impact model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ByModel {
-    /// The model.
+    /// The impact model.
     pub model: &'static str,
     /// The impact; null if no mechanism can follow by this model.
     pub impact: Option<ModelImpact>,
@@ -176,7 +176,7 @@ pub struct Certificate {
     pub restitution_four_link: f64,
     /// The largest restitution of any admissible motion.
     pub restitution_all_fields: f64,
-    /// The second less the first.
+    /// The largest restitution of any admissible motion less that of the four hinges.
     pub gap: f64,
     /// Whether the impulse line of the four hinges is admissible; null without one.
     pub impulse_line_admissible: Option<bool>,

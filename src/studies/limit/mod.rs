@@ -89,7 +89,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
     summary.four_links = Some(match scenario.mechanisms() {
         // Limit analysis of the row is complete without them.
         Err(FourLinkError::Ties) => FourLinks::None {
-            none_because: "four links take no ties, so there are no unstable equilibrium and no equivalent block of theirs"
+            none_because: "four links take no ties, so there is no unstable equilibrium and no equivalent block"
                 .to_owned(),
         },
         Err(error) => FourLinks::None {
@@ -173,7 +173,7 @@ fn of_moved_row(
     coefficient: Option<f64>,
 ) -> Result<Summary, NoLimit> {
     let mut follower = Follower::new(row)?;
-    // The reader of the scenario has seen that the row follows these movements.
+    // The reader of the scenario has checked that the row follows these movements.
     follower.move_supports(|part| *movements * part, 0.0, 1.0)?;
     let stance = &follower.stance;
     let starts_g =
@@ -210,7 +210,7 @@ fn of_moved_row(
     Ok(summary)
 }
 
-/// The mechanism in which the hinges of a row on moved springings give way to a push; none where any push moves it, because ties hold
+/// The mechanism in which the hinges of a row on moved springings give way to a push; `None` if any push moves it, because ties hold
 /// it on more than three hinges or it is about to fall.
 fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
     if follower.is_held_by_ties() {

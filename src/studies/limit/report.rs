@@ -25,7 +25,7 @@ use crate::studies::results::Answer;
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
 #[template(path = "studies/limit/words.txt")]
 pub struct Summary {
-    /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion where its springings have
+    /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion if its springings have
     /// moved. Null if no push starts it.
     pub incipient_acceleration_g: Sides<Option<f64>>,
     /// Ground acceleration that starts the structure, in m/s2.
@@ -42,19 +42,19 @@ pub struct Summary {
     /// The push at which a structure on moved springings falls, in units of gravity.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capacity_g: Option<Sides<Option<f64>>>,
-    /// Why that push was not found; null where it was, or where there is none.
+    /// Why the push at which it falls was not found; null if it was found, or if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capacity_not_found: Option<Sides<Option<String>>>,
     /// Hinges on which a structure on moved springings stands.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hinges: Option<Vec<Pin>>,
-    /// Present for a structure with ties.
+    /// Forces of the ties, and the pushes that they change. Present for a structure with ties.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ties: Option<Ties>,
     /// The first mechanism of a row as four links. Present for an arch of blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub four_links: Option<FourLinks>,
-    /// Present if joints may slip.
+    /// The onset of motion with slipping joints. Present if joints may slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
     /// Names of the bodies of the first mechanism.
@@ -92,7 +92,7 @@ pub enum OpenHinge {
 pub struct Ties {
     /// Force of each tie at rest, in N.
     pub forces_at_rest_n: Vec<f64>,
-    /// Limit analysis without ties and with yielding ties. Absent where springings have moved.
+    /// Limit analysis without ties and with yielding ties. Absent if springings have moved.
     #[serde(flatten)]
     pub limits: Option<TieLimits>,
     /// Whether a structure on moved springings is a mechanism without its ties.
@@ -116,7 +116,7 @@ pub struct TieLimits {
 pub struct YieldingTies {
     /// The push in units of gravity; null if there is no limit while ties hold.
     pub incipient_acceleration_g: Option<f64>,
-    /// Force of each tie in N; null likewise. The smallest forces that give this push.
+    /// Force of each tie in N: the smallest forces that give this push; null if there is no limit while ties hold.
     pub forces_n: Option<Vec<f64>>,
     /// Hinges of the mechanism.
     pub mechanism: Vec<OpenHinge>,
@@ -191,9 +191,9 @@ pub struct FrictionSide {
 pub struct YieldingJoint {
     /// The joint, from 0 at the left springing or the base.
     pub joint: usize,
-    /// Whether the joint opens at the intrados, beyond what slipping needs.
+    /// Whether the joint opens at the intrados, by more than slipping causes.
     pub opens_intrados: bool,
-    /// Whether the joint opens at the extrados, beyond what slipping needs.
+    /// Whether the joint opens at the extrados, by more than slipping causes.
     pub opens_extrados: bool,
     /// The edge towards which the right block slips, if it does.
     pub slips_towards: Option<Edge>,

@@ -105,7 +105,7 @@ pub struct OverturningMap<'a> {
     pub axes: [&'a Axis; 2],
     /// Values along x and y.
     pub values: [Vec<f64>; 2],
-    /// Whether the number of outcomes of each cell, when it is repeated in other ways, is found.
+    /// Whether each cell is repeated in other ways, to count its outcomes.
     pub(super) repeat: bool,
     /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
@@ -127,24 +127,14 @@ pub(super) struct Described<'a> {
 
 /// The description of an axis.
 pub(super) fn described(axis: &Axis) -> Described<'_> {
+    const PULSE: &[&str] = &["duration_s", "frequency_hz"];
+    const RECORD: &[&str] = &["scale", "peak_g"];
     let (label, table, keys): (_, _, &[_]) = match axis.quantity {
-        Quantity::Duration => (
-            "pulse duration (s)",
-            "ground",
-            &["duration_s", "frequency_hz"],
-        ),
-        Quantity::Frequency => (
-            "pulse frequency (Hz)",
-            "ground",
-            &["duration_s", "frequency_hz"],
-        ),
+        Quantity::Duration => ("pulse duration (s)", "ground", PULSE),
+        Quantity::Frequency => ("pulse frequency (Hz)", "ground", PULSE),
         Quantity::Amplitude => ("pulse amplitude (g)", "ground", &["amplitude_g"]),
-        Quantity::Scale => ("factor on the record", "ground", &["scale", "peak_g"]),
-        Quantity::PeakG => (
-            "peak ground acceleration (g)",
-            "ground",
-            &["scale", "peak_g"],
-        ),
+        Quantity::Scale => ("factor on the record", "ground", RECORD),
+        Quantity::PeakG => ("peak ground acceleration (g)", "ground", RECORD),
         Quantity::MeanRadius => ("mean radius R (m)", "arch", &["mean_radius_m"]),
         Quantity::ThicknessRatio => ("t / R", "arch", &["thickness_ratio", "thickness_m"]),
         Quantity::Embrace => ("embrace angle (deg)", "arch", &["embrace_deg"]),
@@ -257,7 +247,7 @@ impl<'a> OverturningMap<'a> {
             .and_then(|()| Self::of_sample(scenario, scenario.clone()))
     }
 
-    /// The cells of the map of a scenario, where all that its axes do not vary is as in another one, a sample of it.
+    /// The cells of the map of a scenario. All values that its axes do not vary are those of `sample`.
     pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
         let (Some(map), Some(_)) = (&scenario.map, scenario.ground()) else {
             return None;
@@ -459,7 +449,7 @@ impl<'a> OverturningMap<'a> {
         Ok((standing, (ground, request)))
     }
 
-    /// The endings of cells with the same structure, and how many outcomes each has when it is repeated in other ways.
+    /// The endings of cells with the same structure, and the number of outcomes of each with its repetitions, if requested.
     fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Ended> {
         if self.repeat {
             let ended = all_outcomes(model, cases).into_iter();
@@ -488,13 +478,13 @@ impl<'a> OverturningMap<'a> {
     }
 }
 
-/// How the history of a cell ends, and how many outcomes it has if that was requested; or why it has no history.
+/// The ending of the history of a cell, and its number of outcomes if requested; or why it has no history.
 type Ended = Result<(Ending, Option<Outcomes>), String>;
 
-/// How many outcomes a cell has when it is repeated in several ways, or why that is unknown.
+/// The number of outcomes of a cell with its repetitions, or why that is unknown.
 type Outcomes = Result<usize, String>;
 
-/// How histories end, and how many outcomes each has with all its repetitions; none is left out or cut short.
+/// The endings of histories, and the number of outcomes of each with all its repetitions, every one followed to its end.
 fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcomes), String>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));

@@ -39,11 +39,11 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
 pub(crate) struct Cells<'c> {
     /// All kinds.
     pub(crate) palette: &'c [Kind],
-    /// That of each cell.
+    /// The kind of each cell.
     pub(crate) kinds: Vec<Kind>,
-    /// The uncertain cells by their numbers, and why.
+    /// The numbers of the uncertain cells, with the reasons.
     pub(crate) doubts: Vec<(usize, Box<str>)>,
-    /// Numbers of each cell, by their names; what a cell does not have is left out.
+    /// Columns by their names, with the number of each cell; `None` if a cell has none.
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
 
@@ -130,8 +130,8 @@ fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
         .collect()
 }
 
-/// The command that runs a cell, with placeholders for its two values. The whole scenario goes to standard input, so the
-/// command works wherever the page is, and whichever keys define the dimensions in the scenario file.
+/// The command that runs a cell, with placeholders for its two values. Its standard input is the whole
+/// scenario, so it depends neither on the place of the page nor on the keys that define the dimensions in the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario;
     // A cell alone, without samples.

@@ -78,24 +78,24 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     remarks
 }
 
-/// How many cells had each outcome, what is doubtful about them, and what failed.
+/// The number of cells with each outcome, and remarks on doubtful and failed cells.
 fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
     let words = |cell: &CellRow| match &cell.result {
         CellResult::Ended(ending)
             if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking =>
         {
-            (4, "are still rocking at the end, which counts as survived")
+            (4, "still rocking at the end, which counts as survived")
         }
         CellResult::Ended(ending) => in_words(ending),
-        CellResult::CannotStand => (7, "cannot stand"),
-        CellResult::NotFourLinks => (8, "are too thick for four links"),
+        CellResult::CannotStand => (7, "unable to stand"),
+        CellResult::NotFourLinks => (8, "too thick for four links"),
         CellResult::Failed(_) => (9, "failed"),
     };
     let counts = counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];
     if map.repeat {
         lines.push(format!(
-            "{} of them have another outcome in a repetition, if only rest instead of still rocking",
+            "another outcome in a repetition, including rest instead of still rocking: {} cells",
             cells.iter().filter(|cell| cell.is_doubtful()).count()
         ));
     }
@@ -117,7 +117,7 @@ impl Style {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
         if scenario.motion().hinges().has_joints() {
-            return Err("goes with four links and columns: free hinges have no p");
+            return Err("is for four links and columns: free hinges have no p");
         }
         let model = scenario.mechanisms();
         let scales = model

@@ -1,4 +1,4 @@
-//! Limits of the trust in a motion, in sentences that words, warnings and the verdict share.
+//! Limits of a computed motion, in sentences that words, warnings and the verdict share.
 
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::Model;
@@ -19,8 +19,8 @@ pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
     peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
 }
 
-/// Warnings about a run: unlikely numbers of its scenario, and limits of the trust in its history. Programs and the Python package issue
-/// them, so they name no options.
+/// Warnings about a run: unlikely numbers of its scenario, and limits of its history. Programs and the Python package issue them, so
+/// they name no options.
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
@@ -41,7 +41,7 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     warnings
 }
 
-/// Why an incomplete run has no verdict, and what to do; `None` for a complete one.
+/// Why an incomplete run has no verdict, and the remedy; `None` for a complete one.
 pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<String> {
     let (end_s, ground_s) = (history.end_s, scenario.ground_motion().end_s());
     let why = if end_s < ground_s {
@@ -55,7 +55,7 @@ pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<Strin
     is_incomplete.then(|| format!("NO VERDICT: {why}; give a longer duration_s in [simulation]"))
 }
 
-/// A coefficient of friction. One that no stone has stands for an almost unloaded joint.
+/// A coefficient of friction. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
     if friction > 10.0 {
         "more than 10".to_owned()
@@ -79,7 +79,7 @@ pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<St
     })
 }
 
-/// How well four links describe a motion whose line of thrust leaves the arch by this many thicknesses, after a conjunction.
+/// A conjunction and the quality of four links if the line of thrust leaves the arch by this many thicknesses.
 const fn grade(excess_ratio: f64) -> [&'static str; 2] {
     if excess_ratio <= EXCESS_LEVELS[0] {
         ["and", "four links suffice"]
@@ -99,8 +99,7 @@ pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<Strin
     Some(grade(thrust.largest_excess.value).join(" "))
 }
 
-/// How far the motion can be trusted to be that of four links, or of a column on its toe, in parts of a sentence, with advice where four links are not
-/// enough; `None` if it did not rock, empty for a column that the ground need not hold down.
+/// The limits of four links, or of a column on its toe, in parts of a sentence, with advice if four links are not enough; `None` if it did not rock, empty for a column that the ground need not hold down.
 pub(super) fn trust(
     history: &Summary,
     structure: &Structure,

@@ -1,4 +1,4 @@
-//! Several models of motion of one structure side by side: the result of each, which to believe, and how far the others differ.
+//! Several models of motion of one structure side by side: the result of each, the most reliable one, and the differences of the others.
 
 use std::fmt::Write as _;
 
@@ -47,7 +47,7 @@ fn ends(
     }
 }
 
-/// The model with the fewest assumptions, whether its outcome depends on its joints, and how the others differ from its answer.
+/// The model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other models.
 fn believed(runs: &[RunResults<'_>]) -> String {
     let trust = |run: &Run<'_>| run.scenario.motion().hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
@@ -68,7 +68,7 @@ fn believed(runs: &[RunResults<'_>]) -> String {
             happens(own)
         ),
         None if is_elastic && !all_agree(own, varied) => format!(
-            "  {} assume least, but how far the outcome depends on joint stiffness is not known\n",
+            "  {} assume least, but the dependence of the outcome on joint stiffness is unknown\n",
             best.name()
         ),
         None => {
@@ -101,7 +101,7 @@ fn believed(runs: &[RunResults<'_>]) -> String {
     text
 }
 
-/// With which other properties a motion ends otherwise, and how; `None` if with none.
+/// The other ending of a motion, and the properties with which it occurs; `None` if there are none.
 pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
     let (opposite, otherwise) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),

@@ -1,4 +1,4 @@
-//! How far feet that move differently go apart in a run.
+//! The displacement between feet that move differently in a run.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -6,21 +6,21 @@ use serde::Serialize;
 use crate::dynamics::history::Summary;
 use crate::scenario::Scenario;
 
-/// How far the right foot goes from where it was beside the left one, to the right and upwards.
+/// Displacements of the right foot relative to the left one, to the right and upwards.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FeetApart {
     /// When the history starts, in seconds: zero or negative.
     pub start_s: f64,
-    /// Where the right foot is when it is farthest away from where it was beside the left one, at output steps, in metres.
+    /// The largest displacement of the right foot relative to the left one, among output steps, in metres.
     pub feet_farthest_apart_m: Vector2<f64>,
-    /// When, in seconds.
+    /// Time of that displacement, in seconds.
     pub feet_farthest_apart_time_s: f64,
-    /// Where it is at the end of the run, in metres.
+    /// The displacement of the right foot relative to the left one at the end of the run, in metres.
     pub feet_apart_at_end_m: Vector2<f64>,
 }
 
 impl FeetApart {
-    /// Of a run; `None` where both feet move alike.
+    /// The displacements in a run; `None` if both feet move alike.
     pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;

@@ -1,4 +1,4 @@
-//! The frames of an animation: a history thinned to what the eye can see.
+//! The frames of an animation: a history thinned to a limited number of samples.
 
 use crate::dynamics::history::Sample;
 

@@ -62,7 +62,7 @@ const IMPACTS: &str = "impacts.csv";
 const PICTURE: &str = "history.svg";
 /// Written last: a folder that contains it is complete.
 const SUMMARY: &str = "summary.json";
-/// Several models of motion in one picture; it lies in the folder that contains theirs.
+/// Several models of motion in one picture, beside the folders of the models.
 pub const OVERLAY: &str = "overlay.svg";
 
 /// All files that a run may write, except the pictures of a film, in the order in which they are listed.
@@ -79,7 +79,7 @@ pub struct RunOptions {
     pub rotations: bool,
     /// Whether that file has dimensionless columns; for mechanisms only.
     pub dimensionless: bool,
-    /// Whether computations in steps are repeated, to see what depends on the steps.
+    /// Whether computations in steps are repeated, to find results that depend on the steps.
     pub repeat: bool,
     /// Whether to write a page with an animation of the structure.
     pub report: bool,
@@ -134,7 +134,7 @@ pub struct RunResults<'r> {
     pub summary: Value,
     /// The summary of the motion.
     pub history: History,
-    /// The motions with other properties that are as likely.
+    /// The motions with other properties that are equally likely.
     pub varied: Vec<Varied>,
     run: &'r Run<'r>,
     collected: Collected,
@@ -281,7 +281,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The structure with other properties that are as likely as its own; empty if `repeat` is off.
+    /// The structure with other properties that are as likely as its own; empty without `repeat`.
     fn variations(&self) -> Result<Vec<Variation>, RunError> {
         if !self.options.repeat {
             return Ok(Vec::new());
@@ -595,7 +595,7 @@ struct Recording<'r, 'f> {
 }
 
 impl Recording<'_, '_> {
-    fn go_on(&mut self, written: Result<(), OutputError>) -> ControlFlow<()> {
+    fn proceed(&mut self, written: Result<(), OutputError>) -> ControlFlow<()> {
         self.written = written;
         match self.written {
             Ok(()) => ControlFlow::Continue(()),
@@ -609,7 +609,7 @@ impl Recorder for Recording<'_, '_> {
         (self.watch)(Stage::Reached(sample.time_s));
         self.collected.sample(sample);
         let written = self.tables.sample(sample);
-        self.go_on(written)
+        self.proceed(written)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
@@ -619,7 +619,7 @@ impl Recorder for Recording<'_, '_> {
             return ControlFlow::Break(());
         }
         let written = self.tables.event(event);
-        self.go_on(written)
+        self.proceed(written)
     }
 
     fn wants_thrust_line(&self) -> bool {

@@ -91,7 +91,7 @@ impl Timeline {
         }
     }
 
-    /// Notes how far a half cycle goes, if it goes far.
+    /// Notes the unstable equilibrium of a half cycle that comes near it.
     fn note_if_far(&mut self, sample: &Sample) {
         if sample.phase != self.phase {
             (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);

@@ -38,7 +38,7 @@ const FRAME_BYTES: usize = 280_000;
 const MOST_FRAMES: usize = 1001;
 /// Smallest limit on the number of frames, whatever the number of blocks.
 const FEWEST_FRAMES: usize = 101;
-/// A fall has at most one frame for so many of its history.
+/// The largest number of frames of a history, over that of its fall.
 const FALL_SHARE: usize = 6;
 /// Number of columns to which a curve is thinned.
 const CURVE_COLUMNS: usize = 700;
@@ -54,7 +54,7 @@ pub struct Report {
     bodies: Vec<String>,
     gravity_m_s2: f64,
     film: Film,
-    /// The fall after a structure has overturned, and where it ends.
+    /// The fall after a structure has overturned, and its end.
     fall: Film,
     fall_end: Option<FallEnd>,
     energy: Envelope,
@@ -183,7 +183,7 @@ impl Report {
         let joints: Vec<_> = (0..).map_while(joint).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let sections = self.scene.sections.iter();
-        // As built, and where they have moved.
+        // As built, and as moved.
         let supports = [0.0, 1.0].map(|exaggeration| {
             let faces = self.scene.supports_m(exaggeration).into_iter();
             list(faces.map(flat))
@@ -344,7 +344,7 @@ impl Report {
     }
 }
 
-/// Numbers of a page that change from frame to frame: in base 64, multiples of a unit where there is one.
+/// Numbers of a page that change from frame to frame: in base 64, as multiples of a unit if there is one.
 #[derive(Serialize)]
 struct Frames {
     times_s: String,
@@ -377,7 +377,7 @@ fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
     [a.x, a.y, b.x, b.y]
 }
 
-/// When the page opens: where the structure is farthest from rest, or, if it falls, where it can no longer come back.
+/// The instant at which the page opens: the largest rotation, or overturning.
 fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;

@@ -29,7 +29,7 @@ const JOINT_COLUMNS: usize = 800;
 pub(super) struct RowTimeline {
     rotations_rad: Vec<Envelope>,
     energy: Envelope,
-    /// How far the right foot has gone, to the right and upwards, in millimetres.
+    /// Displacement of the right foot relative to the left one, to the right and upwards, in millimetres.
     feet_mm: [Envelope; 2],
     /// Slips in millimetres, if joints slip.
     slips_mm: Vec<Envelope>,

@@ -18,13 +18,13 @@ pub(super) struct Snapshots {
     exaggeration: f64,
     /// The requested times, in seconds, each with the nearest sample so far.
     taken: Vec<(f64, Option<Sample>)>,
-    /// Of a film: the time from picture to picture, and when the next is taken; minus infinity before the first sample.
+    /// For a film: the time from picture to picture, and the time of the next one; minus infinity before the first sample.
     film: Option<(f64, f64)>,
     /// When the history begins and ends, in seconds.
     span_s: [f64; 2],
 }
 
-/// A film has so many pictures, at most.
+/// Largest number of pictures of a film.
 const MOST_STILLS: usize = 9999;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
@@ -43,7 +43,7 @@ impl Snapshots {
         }
     }
 
-    /// Pictures of a film, at so many instants a second.
+    /// Pictures of a film, `a_second` of them for each second.
     pub(super) fn film(scene: Scene, a_second: f64, exaggeration: f64) -> Self {
         Self {
             film: Some((1.0 / a_second, f64::NEG_INFINITY)),
@@ -242,7 +242,7 @@ impl Snapshots {
     }
 }
 
-/// How much of a broken tie is drawn at either end.
+/// The part of a broken tie that is drawn at either end.
 const STUB_RATIO: f64 = 0.4;
 /// Height of the highest stress wedge, relative to the thickness of the thinnest joint.
 const WEDGE_RATIO: f64 = 0.6;

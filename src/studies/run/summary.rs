@@ -18,7 +18,7 @@ use crate::output::mechanisms::columns;
 use crate::output::summary::{Named, summary_of};
 use crate::scenario::{Ground, Scenario};
 
-/// A computed motion, and the motions that show how far it depends on what is uncertain.
+/// A computed motion, with its repetitions and variations.
 #[derive(Clone, Copy)]
 pub struct Evidence<'a> {
     /// The scenario.
@@ -27,14 +27,14 @@ pub struct Evidence<'a> {
     pub model: &'a dyn Model,
     /// The motion.
     pub history: &'a History,
-    /// The motion beside its repetitions; `None` if it was not repeated.
+    /// The comparison with its repetitions; `None` if it was not repeated.
     pub repeated: Option<&'a Result<Repeatability, RepeatabilityError>>,
-    /// The motions with other properties that are as likely.
+    /// The motions with other properties that are equally likely.
     pub varied: &'a [Varied],
 }
 
 impl<'a> Evidence<'a> {
-    /// The motion beside its repetitions, if these are known.
+    /// The comparison with its repetitions, if these are known.
     pub(super) fn repeatability(&self) -> Option<&'a Repeatability> {
         self.repeated.and_then(|repeated| repeated.as_ref().ok())
     }
@@ -64,7 +64,7 @@ pub struct Summary<'a> {
     pub record_checksums: Vec<String>,
     /// Whether the structure overturns, as far as this is known.
     pub verdict: Verdict,
-    /// Sentences about unlikely numbers of the scenario, and about limits of the trust in its history.
+    /// Sentences about unlikely numbers of the scenario, and about limits of its history.
     pub warnings: Vec<String>,
     /// How the motion ended.
     #[serde(flatten)]
@@ -84,13 +84,13 @@ pub struct Summary<'a> {
     pub friction: Option<FrictionDemand>,
     /// Number of steps.
     pub steps: u64,
-    /// Four links and columns only.
+    /// Results of four links and columns.
     #[serde(flatten)]
     pub mechanisms: Option<OfMechanisms>,
-    /// Rows of blocks only.
+    /// Results of rows of blocks.
     #[serde(flatten)]
     pub row: Option<OfRow<'a>>,
-    /// The motion beside its repetitions, if it was repeated.
+    /// The comparison of the motion with its repetitions, if it was repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeatability: Option<Repeated<'a>>,
     /// The ends of the motions with other stiffness and contact, and with rigid joints.
@@ -109,9 +109,9 @@ pub struct Summary<'a> {
 pub struct Ended {
     /// `never_moved`, `vibrates`, `rest`, `overturned`, `still_rocking` or `incomplete`.
     pub outcome: &'static str,
-    /// When, in seconds: of a structure that overturned, the last time at which it could still return.
+    /// Time of the outcome, in seconds: of a structure that overturned, the last time at which it could still return.
     pub outcome_time_s: f64,
-    /// The side to which it overturned.
+    /// The side to which it overturned; null unless it did.
     pub overturning_sway: Option<Sway>,
 }
 
@@ -121,7 +121,7 @@ pub struct FrictionDemand {
     /// Largest coefficient of friction that a motion without sliding needs, outside impacts. Joints with less than a hundredth of the weight do not
     /// count.
     pub largest_friction_demand: f64,
-    /// When, in seconds.
+    /// Time of the largest friction demand, in seconds.
     pub largest_friction_demand_time_s: f64,
 }
 
@@ -145,7 +145,7 @@ pub struct OfMechanisms {
 pub struct Dimensionless {
     /// Frequency parameter of the structure, in rad/s.
     pub p_rad_s: f64,
-    /// That times the duration of the pulse; null for records.
+    /// Frequency parameter times the duration of the pulse; null for records.
     pub p_t_p: Option<f64>,
     /// Largest acceleration of the ground over `g A_L` of the side to which it pushes.
     pub peak_acceleration_over_incipient: f64,
@@ -156,11 +156,11 @@ pub struct Dimensionless {
 pub struct Thrust {
     /// Largest excess of the line of thrust, over the thickness.
     pub largest_thrust_excess_ratio: f64,
-    /// When, in seconds.
+    /// Time of the largest excess, in seconds.
     pub largest_thrust_excess_time_s: f64,
     /// Share of the time in motion in which the excess is at most 0.01; null if it never moved.
     pub rocking_share_thrust_excess_below_0_01: Option<f64>,
-    /// The share for an excess of at most 0.05.
+    /// Share of the time in motion in which the excess is at most 0.05; null if it never moved.
     pub rocking_share_thrust_excess_below_0_05: Option<f64>,
 }
 
@@ -171,13 +171,13 @@ pub struct OfRow<'a> {
     pub largest_peak_rotation_rad: f64,
     /// Half cycles that peak at a thousandth of the largest rotation or more.
     pub half_cycles: Vec<HalfCycle>,
-    /// Elastic joints only.
+    /// Results of elastic joints.
     #[serde(flatten)]
     pub elastic: Option<&'a ElasticSummary>,
-    /// The other results.
+    /// The results of every row.
     #[serde(flatten)]
     pub row: &'a RowSummary,
-    /// Only where the feet move differently.
+    /// The displacement between the feet, if they move differently.
     #[serde(flatten)]
     pub feet: Option<FeetApart>,
     /// The coefficient of friction, if joints can slip.
@@ -187,11 +187,11 @@ pub struct OfRow<'a> {
     pub iterations: u64,
 }
 
-/// A motion beside its repetitions.
+/// The comparison of a motion with its repetitions.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Repeated<'a> {
-    /// All are known:
+    /// If all repetitions are known:
     Compared {
         /// Outcomes of the run itself (`own`) and of its repetitions by their names.
         outcomes: Named<&'static str>,
@@ -201,7 +201,7 @@ pub enum Repeated<'a> {
         #[serde(flatten)]
         repeatability: &'a Repeatability,
     },
-    /// A repetition failed:
+    /// If a repetition failed:
     Failed {
         /// The reason.
         failed: String,
@@ -222,9 +222,9 @@ pub struct OneVariation<'a> {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(untagged)]
 pub enum VariationEnd<'a> {
-    /// The motion is known:
+    /// If the motion is known:
     Ended {
-        /// How it ended.
+        /// The ending.
         #[serde(flatten)]
         ended: Ended,
         /// Peak of the first half cycle that rocks, in radians.
@@ -232,7 +232,7 @@ pub enum VariationEnd<'a> {
         /// Largest rotation of a block, in radians.
         largest_peak_rotation_rad: f64,
     },
-    /// There is none:
+    /// If it failed:
     Failed {
         /// The reason.
         failed: &'a str,
@@ -248,11 +248,11 @@ pub struct PointPeaks {
     pub y_m: f64,
     /// Largest displacement to the right, or negative to the left, in metres.
     pub peak_x_m: f64,
-    /// When, in seconds.
+    /// Time of the largest horizontal displacement, in seconds.
     pub peak_x_time_s: f64,
     /// Largest displacement upwards, or negative downwards, in metres.
     pub peak_y_m: f64,
-    /// When, in seconds.
+    /// Time of the largest vertical displacement, in seconds.
     pub peak_y_time_s: f64,
 }
 

@@ -13,8 +13,8 @@ use super::Scales;
 
 /// Columns of `rotations.csv`, one row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
 /// bodies; for mechanisms `thrust_excess_ratio`, for rows `open_joints`, because their line of thrust stays inside;
-/// `friction_demand`; the vertical acceleration if the ground has one; where the feet move differently, `right_foot_x_m` and `right_foot_y_m`,
-/// how far the right one has gone from where it was beside the left one, to the right and upwards.
+/// `friction_demand`; the vertical acceleration if the ground has one; if the feet move differently, `right_foot_x_m` and `right_foot_y_m`,
+/// the displacement of the right foot relative to the left one, to the right and upwards.
 ///
 /// With scales, three columns follow these: `p_t` (time times `p`), `acceleration_over_incipient`
 /// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]). Columns of

@@ -1,4 +1,4 @@
-//! The words of a run, from its summary and its motion: what happened, when, how that compares, and how sure it is.
+//! The words of a run, from its summary and its motion: outcome, times, comparisons and repeatability.
 
 use askama::Template;
 use nalgebra::Vector2;
@@ -34,13 +34,13 @@ pub fn heading(scenario: &Scenario) -> String {
     text
 }
 
-/// The verdict: what happens, how sure that is, and on what it depends.
+/// The verdict: the outcome, whether it is certain, and the properties that may change it.
 #[derive(Template)]
 #[template(path = "studies/run/words/verdict.txt")]
 pub(super) struct VerdictLine<'a>(pub Evidence<'a>);
 
 impl VerdictLine<'_> {
-    /// Names of the repetitions whose outcome is another one in this sense.
+    /// Names of the repetitions whose outcome `differs` from that of the motion.
     fn others(
         &self,
         repeated: &Repeatability,
@@ -71,7 +71,7 @@ impl VerdictLine<'_> {
         caveats::four_links(self.0.scenario, self.0.history)
     }
 
-    /// On what the outcome depends: friction that stone may not have, and properties that change the ending.
+    /// The conditions of the outcome: friction that stone may not have, and properties that change the ending.
     fn doubts(&self) -> Vec<String> {
         let Evidence {
             scenario,
@@ -115,7 +115,7 @@ struct Slip {
 }
 
 impl<'a> Words<'a> {
-    /// Whether nothing moved, as far as the run went.
+    /// Whether nothing moved until the end of the run.
     fn is_unmoved(&self) -> bool {
         let history = self.evidence.history;
         match history.outcome {
@@ -147,7 +147,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Those half cycles beside their repetitions: the certain ones, and the others.
+    /// Those half cycles compared with their repetitions: the certain ones, and the others.
     fn repeated<'r>(&self, all: &'r Repeatability) -> [Vec<&'r RepeatedHalfCycle>; 2] {
         let described = largest(&all.half_cycles, |cycle| cycle.own.peak_rad).into_iter();
         let (same, differ) = described.partition(|cycle| cycle.is_certain());
@@ -176,7 +176,7 @@ impl<'a> Words<'a> {
         ]
     }
 
-    /// The part of the energy that an impact keeps. One that takes energy does not read as if it took none.
+    /// The part of the energy that an impact keeps. It is printed as 1.0000 only if the impact takes no energy.
     fn kept(&self, impact: &Impact) -> String {
         match format!("{:.4}", impact.restitution) {
             all if impact.restitution < 1.0 && all == "1.0000" => "above 0.9999".to_owned(),
@@ -240,7 +240,7 @@ impl<'a> Words<'a> {
         slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
     }
 
-    /// The acceleration that starts the structure to either side, where both are equal.
+    /// The acceleration that starts the structure to either side; `None` unless both are equal.
     fn alike_g(&self) -> Option<f64> {
         let Sides { right, left } = self.summary.incipient_acceleration_g;
         right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
@@ -256,7 +256,7 @@ impl<'a> Words<'a> {
         ground.peaks_m_s2(*until_s).map(|peak| self.in_g(peak))
     }
 
-    /// The pushes of the ground to either side that there are, with the push that starts the structure to that side, in units of gravity.
+    /// Each side to which the ground pushes, with that push and the push that starts the structure to that side, in units of gravity.
     fn pushes_g(&self) -> Vec<(Sway, f64, Option<f64>)> {
         let ground = self.evidence.scenario.ground_motion();
         let [right, left] = ground.pushes_m_s2(self.evidence.history.end_s);
@@ -290,7 +290,7 @@ impl<'a> Words<'a> {
         feet.filter(|(_, at_s)| *at_s < ground.end_s()).collect()
     }
 
-    /// How far four links, or a column on its toe, can be trusted, in parts of a sentence; `None` where no friction is reported.
+    /// The limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
     fn trust(&self) -> Option<Vec<String>> {
         let Evidence {
             scenario,
@@ -301,7 +301,7 @@ impl<'a> Words<'a> {
         if model.as_mechanisms().is_none() {
             return self.sliding().is_none().then(Vec::new);
         }
-        // No advice to do what is already done.
+        // No advice to compare with free hinges if they are compared already.
         let compared = self.beside.contains(&Hinges::Free);
         let advice = (!compared).then_some("compare with --hinges both");
         caveats::trust(history, scenario.structure(), advice)

@@ -1,4 +1,4 @@
-//! How far a springing may move until the arch falls, and what push it bears on the way: see [`crate::mechanics::settling`].
+//! The movement of a springing at which the arch falls, and the pushes that it resists on the way: see [`crate::mechanics::settling`].
 
 mod picture;
 mod report;
@@ -28,11 +28,11 @@ use crate::scenario::Scenario;
 const STEPS: u32 = 20;
 /// Stages that words show.
 const PARTS: [usize; 5] = [0, 5, 10, 15, 20];
-/// A thrust of more times the weight is without meaning.
+/// Largest thrust with a meaning, over the weight of the arch.
 const LARGEST_THRUST: f64 = 1e5;
-/// Why a stage with such a thrust has no pushes.
+/// The reason why a stage with a larger thrust has no pushes.
 const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows beyond all bounds";
-/// No way is longer than so many clear spans.
+/// Length of the longest way, in clear spans.
 const LONGEST: f64 = 1.0;
 
 named! {
@@ -102,26 +102,26 @@ impl Way {
     }
 }
 
-/// The arch when a springing has moved so far.
+/// The arch at a movement of a springing.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stage {
     /// Movement of the springing, in metres.
     pub movement_m: f64,
-    /// Hinges; none where nothing has moved yet.
+    /// Hinges; none before the first movement.
     pub hinges: Vec<OpenHinge>,
-    /// Horizontal force between springings and arch, in N. `None` where nothing has moved yet, so that it is not determined, and where
-    /// three hinges lie on one line, so that it grows beyond all bounds.
+    /// Horizontal force between springings and arch, in N. `None` before the first movement, because it is not determined, and with
+    /// three hinges on one line, because it grows beyond all bounds.
     pub thrust_n: Option<f64>,
-    /// That force over the weight of the arch.
+    /// Horizontal force between springings and arch, over the weight of the arch.
     pub thrust_ratio: Option<f64>,
     /// Force of the right support on the arch, in N.
     pub right_support_force_n: Option<Vector2<f64>>,
     /// Coefficient of friction below which a joint slides.
     pub friction_demand: Option<f64>,
-    /// By how much the crown is lower than undeformed, in metres.
+    /// Drop of the crown from its undeformed position, in metres.
     pub crown_drop_m: f64,
-    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way; `None` where none does. With three hinges open
-    /// it is small, and says nothing of safety.
+    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way; `None` if none does. With three hinges open it
+    /// is small, and is not a safety margin.
     pub first_motion_g: Sides<Option<f64>>,
     /// The horizontal ground acceleration that makes the arch fall, in units of gravity.
     pub capacity_g: Sides<Option<f64>>,
@@ -158,7 +158,7 @@ named! {
 /// A push that was not found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NotFound {
-    /// Which push.
+    /// The push.
     pub push: Push,
     /// Its direction.
     #[serde(rename = "side")]
@@ -173,15 +173,15 @@ pub struct Path {
     /// The way.
     #[serde(flatten)]
     pub way: Way,
-    /// Movement at which the arch falls, in metres; `None`: not within the clear span, or not known.
+    /// Movement at which the arch falls, in metres; `None` if that is beyond the clear span or unknown.
     pub falls_at_m: Option<f64>,
-    /// That movement over the clear span.
+    /// Movement at which the arch falls, over the clear span.
     pub falls_at_part_of_clear_span: Option<f64>,
     /// Joints whose line of thrust reaches an edge at the fall, or that shut.
     pub falls_by: Vec<Pin>,
-    /// Why it was not followed beyond its last stage, if it neither fell nor came to the end of its way.
+    /// Why the path ends at its last stage, if the arch neither falls there nor reaches the end of its way.
     pub lost: Option<String>,
-    /// Where hinges gave way to others; the last one may be its fall.
+    /// The changes from hinges to others; the last one may be its fall.
     pub snaps: Vec<Snap>,
     /// The arch at equal parts of the way.
     pub stages: Vec<Stage>,
@@ -195,7 +195,7 @@ pub struct Summary {
     pub clear_span_m: f64,
     /// Weight of the arch, in N.
     pub weight_n: f64,
-    /// One for every way.
+    /// The path along each way.
     pub paths: Vec<Path>,
     /// The scenario with all defaults.
     pub scenario: Value,
@@ -218,10 +218,10 @@ pub enum NoSpread {
     Settling(#[from] SettlingError),
 }
 
-/// Moves a springing of the arch of a scenario along each of these ways, from where it was built or `[supports]` has it.
+/// Moves a springing of the arch of a scenario along each of these ways, from its position as built or as `[supports]` moves it.
 ///
 /// # Errors
-/// When it is no row of blocks between two supports, or does not stand. Ways on which it is lost end there.
+/// When it is no row of blocks between two supports, or does not stand. A path ends where the arch cannot be followed.
 pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     let row = scenario.structure().row()?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
@@ -242,7 +242,7 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     })
 }
 
-/// First how far it goes, then the stages on the way there.
+/// Finds the end of the path first, then its stages.
 fn path(
     row: &Row,
     settled: Movements,
@@ -252,14 +252,14 @@ fn path(
     let longest_m = LONGEST * clear_span_m;
     let movements = |movement_m: f64| settled + way.movements(movement_m);
     let mut start = Follower::new(row)?;
-    // That it stands there was seen when the scenario was read.
+    // The reader of the scenario has checked that it stands there.
     start.move_supports(|part| settled * part, 0.0, 1.0)?;
     let before = start.snaps.len();
     let mut scout = start.clone();
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
         Ok(Reached::Falls(at_m)) => (at_m, Some(at_m), None),
         Ok(Reached::End) => (longest_m, None, None),
-        // Where that is not known, the stages below end before it.
+        // If that is unknown, the stages below end before it.
         Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
     };
     let mut follower = start;
@@ -352,7 +352,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
 }
 
 impl Stage {
-    /// The lesser of a push to the right and one to the left; `None` where none moves the arch, or one of them was not found.
+    /// The lesser of a push to the right and one to the left; `None` if none moves the arch, or one of them was not found.
     fn least(&self, push: Push) -> Option<f64> {
         // Without its first motion a capacity is not sought.
         let mut missing = self.not_found.iter();

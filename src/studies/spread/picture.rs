@@ -1,4 +1,4 @@
-//! `spread.svg`: the pushes that are left against the movement, and the arch where it falls.
+//! `spread.svg`: the pushes that the arch resists against the movement, and the arch at the end of each way.
 
 use nalgebra::Vector2;
 
@@ -12,8 +12,9 @@ use crate::output::scene::Scene;
 use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 
-/// Pictures of the arch side by side, at most, and how wide they are at least.
+/// Largest number of pictures of the arch side by side.
 const COLUMNS: usize = 3;
+/// Least width of a picture.
 const LEAST_PX: f64 = 180.0;
 /// First motions are drawn thinner and dashed.
 const FIRST_MOTION_PX: f64 = 1.0;
@@ -171,7 +172,7 @@ impl<'a> Cell<'a> {
         drawing.label(below, Anchor::Middle, 0.0, text);
     }
 
-    /// The pose of the body whose face a joint lies on: the block after it, or where there is none the one before.
+    /// The pose of the body whose face a joint lies on: the block after it, or the last block.
     fn pose_at(&self, joint: usize) -> Pose {
         let poses = &self.stage.poses;
         poses[joint.min(poses.len() - 1)]

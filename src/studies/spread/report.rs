@@ -4,10 +4,9 @@ use super::picture::draw;
 use super::{Path, Stage, Summary};
 use crate::mechanics::sides::Sides;
 use crate::output::scene::Scene;
-use crate::output::summary::summary_of;
 use crate::output::table::{Cell, column, csv, several};
 use crate::output::template::render;
-use crate::output::{Figure, OutputError, pretty};
+use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 
@@ -25,18 +24,9 @@ pub fn report(
 ) -> Result<Results, OutputError> {
     let scene = Scene::of_row(&spread.row).of_structure(scenario.structure());
     let title = scenario.title().unwrap_or("Springings that move");
-    let json = summary_of(spread)?;
-    let contents = [
-        draw(figure, title, spread, &scene).into_bytes(),
-        table(spread)?,
-        pretty(&json).into_bytes(),
-    ];
-    Ok(Results {
-        files: FILES.into_iter().zip(contents).collect(),
-        words: render(spread),
-        summary: json,
-        ..Results::default()
-    })
+    let picture = draw(figure, title, spread, &scene);
+    let others = [picture.into_bytes(), table(spread)?];
+    Results::new(&FILES, spread, render(spread), others)
 }
 
 /// A row for each stage of every way.

@@ -1,4 +1,4 @@
-//! The scenario of a suite, as far as its report needs it.
+//! The parts of the scenario of a suite that its report needs.
 
 use serde_json::Value;
 
@@ -8,8 +8,8 @@ use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::scenario::{MODELS, Measure, Spacing, Spectral};
 
-/// The scenario of a suite in its report. The text of the resolved scenario is enough for that, so parts can be joined where the records
-/// are not at hand.
+/// The scenario of a suite in its report. It follows from the text of the resolved scenario, so parts can be joined without the record
+/// files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
     pub(super) scenario: Value,

@@ -150,7 +150,7 @@ pub struct Fractiles {
     pub peak_84: Option<f64>,
 }
 
-/// How far a case went, if its history is complete.
+/// The peak of a case, if its history is complete.
 fn peak(case: &CaseRow) -> Option<f64> {
     case.known_verdict()?;
     let peak = case.result.as_ref().ok()?.peak;
@@ -209,7 +209,7 @@ pub struct PeakUpTo {
     pub share: f64,
 }
 
-/// The distribution of the peaks of all cases that count, ascending; what overturned is beyond all, so that the share ends below 1.
+/// The distribution of the peaks of all cases that count, ascending. Overturned cases are beyond all others, so the share ends below 1.
 #[must_use]
 pub fn peaks(results: &SuiteFragility) -> Vec<PeakUpTo> {
     let mut cases = results.evidence();

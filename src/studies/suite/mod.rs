@@ -39,13 +39,14 @@ pub struct CaseRow {
     pub peak_g: f64,
     /// How its history ended, or why it could not be computed.
     pub result: Result<Ending, String>,
-    /// Where it overturns and the level below does not: the lowest level between the two that overturns, by bisection.
+    /// The lowest level that overturns between this level and the one below, by bisection; `None` unless this level overturns and the
+    /// one below does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edge: Option<f64>,
     /// Whether lower levels may overturn as well, since a level between the two has no verdict.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub edge_at_most: bool,
-    /// How strong the record is in its file.
+    /// Intensities of the unscaled record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
 }
@@ -79,7 +80,7 @@ impl CaseRow {
             .filter(|verdict| *verdict != Verdict::Incomplete)
     }
 
-    /// Whether it belongs to the record of another case, mirrored or not as that.
+    /// Whether it has the record of another case, with the same sign.
     fn has_shake_of(&self, other: &Self) -> bool {
         (&self.record, self.mirrored) == (&other.record, other.mirrored)
     }
@@ -118,7 +119,7 @@ pub struct RecordSuite<'a> {
     suite: &'a Suite,
     model: Box<dyn Model>,
     levels: Vec<f64>,
-    /// How strong each record is in its file.
+    /// Intensities of each unscaled record.
     strengths: Vec<Strength>,
 }
 
@@ -250,9 +251,8 @@ impl RecordSuite<'_> {
         (level, shake / self.signs(), shake % self.signs() == 1)
     }
 
-    /// The lowest level that overturns between the one below that of a case that does, by its number, and that of the case; `None` if
-    /// the one below overturns as well, unless it is known that it survives. Also whether the edge may lie lower: a level without a
-    /// verdict narrows the interval as one that survives.
+    /// The lowest level that overturns, between the level of a case that overturns and the level with the index `below`; `None` if that
+    /// overturns as well. Also whether the edge may lie lower: a level without a verdict narrows the interval as one that survives.
     fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<(f64, bool)> {
         let (level, record, mirrored) = self.place(index);
         let overturns = |level: f64| {
@@ -402,7 +402,7 @@ pub struct RecordSurvival<'a> {
 }
 
 /// The results of all cases together. Cases that are still rocking have not overturned; failed cases do not
-/// count. Uncertain cases are taken both ways: as survived, and as overturned.
+/// count. There are two curves if cases are uncertain: these count as survived in one, and as overturned in the other.
 ///
 /// Both signs of a record count, as cases of one record, which are not independent. If every mirrored case is exactly the
 /// mirror image of the other, as with four links on a symmetric structure, it adds no evidence and does not count.

@@ -213,7 +213,7 @@ impl Heading {
         lines.extend(incomplete.map(|words| format!("{words}; they do not count")));
         lines.extend(remarks.uncertain_in_words(FRAGILITY));
         let failed = remarks.failed_in_words(FRAGILITY);
-        lines.extend(failed.map(|words| format!("{words}; what failed does not count")));
+        lines.extend(failed.map(|words| format!("{words}; failed cases do not count")));
         lines.join("\n  ")
     }
 
@@ -369,8 +369,8 @@ impl SuiteFragility {
         }
     }
 
-    /// The curve in words, or why there is none, after how uncertain cases are counted: as survived, and if there are any, also as
-    /// overturned.
+    /// The curves in words, or why there is none, each after the treatment of uncertain cases: they count as survived, and if there are
+    /// any, in a second curve as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {
         let uncertain = Counts::of(&self.evidence()).uncertain;
         let curve = |fit: &Result<Fragility, NoFit>, how: &str| {
@@ -417,13 +417,13 @@ fn digits(error: f64) -> usize {
 /// Definition of the fitted curve, whose median is not that of the capacities.
 const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";
 
-/// The levels that were tried, and between which overturning was not searched for.
+/// The levels that were tried, and the limits of the search between them.
 fn searched(results: &SuiteFragility) -> String {
     let ends = [results.levels.first(), results.levels.last()];
     let [from, to] = ends.map(|level| rounded(level.map_or(0.0, |level| level.intensity)));
     let unit = unit(results.measure);
     format!(
-        "tried: {} levels from {from} to {to}{unit}; where a record first overturns is bisected between two of them, and lower ranges that \
+        "levels tried: {}, from {from} to {to}{unit}; the first edge of a record is bisected between two of them; lower ranges that \
          overturn, below the first level or between levels, were not searched for",
         results.levels.len()
     )

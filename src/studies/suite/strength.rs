@@ -1,8 +1,7 @@
-//! How strong a record is when it first overturns the structure, in several measures of intensity, and which of these tells that best.
+//! The intensity of each record that first overturns the structure, in several measures, and the efficiency of these measures.
 //!
-//! The capacity under a record is the lowest intensity that overturns. In a measure in which all records overturn at about the same
-//! intensity one number says nearly all of a ground motion: it is efficient (Luco and Cornell, Earthquake Spectra 23, 2007). The
-//! measure of its inefficiency is the dispersion of the capacities: the standard deviation of their logarithms.
+//! The capacity under a record is the lowest intensity that overturns. A measure is efficient if all records overturn at about the
+//! same intensity in it (Luco and Cornell, Earthquake Spectra 23, 2007). Its inefficiency is the dispersion of the capacities: the standard deviation of their logarithms.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +12,7 @@ use crate::scenario::{Series, Spectral};
 use crate::studies::ending::Verdict;
 use crate::studies::statistics::{bootstrap, interval};
 
-/// How strong a record is as it is in its file, in the measures that its peak does not tell.
+/// Intensities of an unscaled record in the measures that do not follow from its peak.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strength {
     /// Peak velocity, in m/s.
@@ -25,7 +24,7 @@ pub struct Strength {
 }
 
 impl Strength {
-    /// That of a record: the spectral acceleration is the pseudo-acceleration, `omega^2` times the largest displacement.
+    /// The intensities of a record. The spectral acceleration is the pseudo-acceleration, `omega^2` times the largest displacement.
     #[must_use]
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
@@ -59,7 +58,7 @@ pub struct Capacity<'a> {
     pub in_measures: [Option<f64>; 4],
 }
 
-/// The measures: their names in results, what they are called, and the power of the factor on a record with which they grow.
+/// The measures: their names in results, their names in words, and the power of the factor on a record with which they grow.
 pub const MEASURES: [(&str, &str, f64); 4] = [
     ("peak_g", "peak acceleration", 1.0),
     ("peak_velocity_m_s", "peak velocity", 1.0),
@@ -129,7 +128,7 @@ impl SuiteFragility {
     }
 }
 
-/// Fewest capacities that tell a dispersion.
+/// Least number of capacities for a dispersion.
 const LEAST_CAPACITIES: usize = 3;
 
 /// Distribution of the capacities in a measure.

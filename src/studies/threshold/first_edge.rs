@@ -9,7 +9,7 @@ use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, Verdict};
 
-/// Where a structure first overturns as its ground motion gets stronger.
+/// The least strength of a ground motion that overturns a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstEdge {
     /// The least factor that certainly overturns; `None` if none does.

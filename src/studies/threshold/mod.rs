@@ -138,9 +138,9 @@ pub struct FactorRange {
     pub from: f64,
     /// Its largest factor.
     pub to: f64,
-    /// Why it begins where it does.
+    /// Why it begins there.
     pub from_end: RangeEnd,
-    /// Why it ends where it does.
+    /// Why it ends there.
     pub to_end: RangeEnd,
 }
 
@@ -299,7 +299,7 @@ fn peak_g(scenario: &Scenario) -> f64 {
     scenario.ground_motion().peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
 
-/// The results for scenarios that differ only in their models of motion, with what each threshold depends on.
+/// The results for scenarios that differ only in their models of motion, with the thresholds of variations.
 ///
 /// # Errors
 /// When a scenario has no threshold, no history can be computed, or `watch` breaks.

@@ -21,7 +21,7 @@ const LABEL_ADVANCE: f64 = 15.0;
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
 const HATCH: Stroke = Stroke::new("#ffffff", 1.2, "");
-/// A band is so wide at least.
+/// Least width of a band, in pixels.
 const LEAST_PX: f64 = 1.5;
 /// Distance between the lines of a hatch, along the strip.
 const HATCH_PX: f64 = 6.0;
@@ -82,7 +82,7 @@ pub fn draw(
     for (threshold, stroke) in thresholds.iter().zip(curves()) {
         let faint = Stroke::new(stroke.color, 0.5, "2 3");
         marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
-        // Where it overturns there is no peak to show: the curve is interrupted.
+        // The curve is interrupted at overturning samples, which have no peak.
         let points = threshold.samples.iter().map(|sample| {
             let overturns = sample.verdict() == Some(Verdict::Overturns);
             let peak = peak(sample).filter(|_| !overturns);
@@ -107,7 +107,7 @@ pub fn draw(
     sheet.finish()
 }
 
-/// The looks of the curves of the models, in no colour of an outcome.
+/// Strokes for the curves of the models, in colours that no outcome has.
 fn curves() -> impl Iterator<Item = Stroke> {
     const CURVES: [Stroke; 3] = [
         Stroke::new(color::BLACK, 1.6, ""),
@@ -117,12 +117,12 @@ fn curves() -> impl Iterator<Item = Stroke> {
     CURVES.into_iter().cycle()
 }
 
-/// Narrower bands, in pixels, are hard to see: they are listed.
+/// Bands narrower than this, in pixels, are hard to see, so they are listed.
 const NARROW_PX: f64 = 4.0;
-/// So many of them, at most.
+/// Largest number of listed bands.
 const LISTED: usize = 8;
 
-/// The bands and uncertain ranges that are hardly seen in a strip, in words; empty without any.
+/// The bands and uncertain ranges too narrow to see in a strip, in words; empty without any.
 fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut listed = Vec::new();
@@ -222,7 +222,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);
         let to = next.map_or(axes.x.high, |next| border(last, &next[0]));
-        // A narrow one is seen all the same.
+        // Narrow bands are widened to remain visible.
         let (left, wide) = (place(from), place(to) - place(from));
         let frame = Frame {
             left: left + 0.5 * (wide - wide.max(LEAST_PX)),

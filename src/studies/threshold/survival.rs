@@ -1,10 +1,10 @@
-//! Which strengths of a ground motion a structure survives, in brief and in one line of words.
+//! The strengths of a ground motion that a structure survives, in brief and in one line of words.
 
 use super::Threshold;
 use super::digits::rounded;
 use crate::studies::ending::Verdict;
 
-/// Where a structure first overturns as its ground motion gets stronger, where it survives again, and where this is uncertain.
+/// The least strength that overturns a structure, and the ranges of strengths that it survives again or whose verdict is uncertain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survival {
     /// The least strength that certainly overturns; `None` if none does.
@@ -25,7 +25,7 @@ pub struct Survival {
 
 impl Survival {
     /// From ascending strengths, and whether each overturns, if its history is known. A range of survival or of uncertainty
-    /// goes from the first to the last strength tried in it.
+    /// extends from the first to the last strength tried in it.
     #[must_use]
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let known: Vec<(f64, Verdict)> = levels

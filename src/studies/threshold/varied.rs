@@ -18,15 +18,15 @@ use crate::studies::runner::{Progress, Runner, RunnerError};
 pub struct VariedThreshold {
     /// The difference, in words that follow "with".
     pub name: String,
-    /// The lowest factor that overturns it, found as that of the structure itself: from the same sampled factors. `None` if none of them
-    /// does, and the first of them if it overturns already. Or why it is unknown.
+    /// The lowest factor that overturns it, searched among the sampled factors of the structure itself: the first of them if it overturns
+    /// already, and `None` if none does. Or why it is unknown.
     pub factor: Result<Option<f64>, String>,
     /// Number of histories of the search that ended too early for a verdict.
     pub incomplete: usize,
 }
 
 impl VariedThreshold {
-    /// How many histories have no verdict, in words; `None` if all have one.
+    /// The number of histories without a verdict, in words; `None` if all have one.
     #[must_use]
     pub fn no_verdict(&self) -> Option<String> {
         let count = self.incomplete;

@@ -147,7 +147,7 @@ fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool
 }
 
 impl HistorySide {
-    /// Whether histories pass as they are and with FC, in words.
+    /// Whether histories pass without and with FC, in words.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.passed, self.passed_over_fc) {

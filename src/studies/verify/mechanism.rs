@@ -37,7 +37,7 @@ pub struct PlacedHinge {
 /// A rigid body of a mechanism, with its virtual displacement for one of the common centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Body {
-    /// Its mass and that of what it carries, in kg.
+    /// Its mass, with the fill and loads that it carries, in kg.
     pub mass_kg: f64,
     /// Its weight, in kN.
     pub weight_kn: f64,

@@ -2,8 +2,8 @@
 //!
 //! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and
 //! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and judgement;
-//! words, notes and the printed page are templates that read it. Where the text of the Circolare leaves a choice, the notes say
-//! which decision was taken.
+//! words, notes and the printed page are templates that read it. Where the text of the Circolare leaves a choice, the notes state
+//! the decision.
 
 mod histories;
 mod mechanism;
@@ -92,11 +92,11 @@ pub enum NoCheck {
 /// The ratio of capacity to demand.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// The ground acceleration that the structure can bear, as `a_g`, in g; `None` if a spectrum of points has no peak.
+    /// The ground acceleration that the structure resists, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub ag_capacity_g: Option<f64>,
     /// The ground acceleration demanded, in g.
     pub ag_g: Option<f64>,
-    /// The first over the second.
+    /// The capacity over the demand.
     pub zeta_e: f64,
     /// Whether the capacity reaches the demand.
     pub passed: bool,
@@ -142,7 +142,7 @@ pub struct Simplified {
 pub struct ByDisplacement {
     /// The fraction of the ultimate displacement that belongs to the state, in metres.
     pub reached_m: f64,
-    /// That displacement after division: displacement of the oscillator that may be reached, in metres.
+    /// `reached_m` after division: displacement of the oscillator that may be reached, in metres.
     pub capacity_m: f64,
     /// Acceleration at that displacement, after division, in g.
     pub acceleration_g: f64,
@@ -154,7 +154,7 @@ pub struct ByDisplacement {
     pub resonance_m: Option<f64>,
     /// Spectral acceleration at that period, in g.
     pub demand_acceleration_g: f64,
-    /// The ground acceleration that the structure can bear by displacements, as `a_g`, in g.
+    /// The ground acceleration that the structure resists by displacements, as `a_g`, in g.
     pub by_displacement_ag_g: Option<f64>,
     /// Whether motion starts only at a larger ground acceleration, which then counts.
     pub activation_governs: bool,
@@ -313,7 +313,7 @@ pub struct Summary {
     pub behaviour_factor: f64,
     /// The sides that are checked.
     pub sides: CheckedSides,
-    /// Period of the elastic vibration before motion, in seconds; `None`: walls hold the structure all along.
+    /// Period of the elastic vibration before motion, in seconds; `None` if walls hold the structure all along.
     pub t0_s: Option<f64>,
     /// Gravity, in m/s2.
     pub gravity_m_s2: f64,

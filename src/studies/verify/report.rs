@@ -19,9 +19,8 @@ use crate::dynamics::demand::damping_factor;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
-use crate::output::summary::summary_of;
 use crate::output::template::{filters, render};
-use crate::output::{Figure, OutputError, pretty};
+use crate::output::{Figure, OutputError};
 use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
 use crate::studies::remarks::no_verdict;
 use crate::studies::results::Results;
@@ -40,17 +39,10 @@ const MOST_POINTS: usize = 40;
 /// # Errors
 /// When a value is not finite.
 pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
-    let summary = summary_of(check)?;
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     let today = date_of(since.map_or(0, |since| since.as_secs() / 86_400));
     let page = page(scenario, check, &today);
-    let contents = [page.into_bytes(), pretty(&summary).into_bytes()];
-    Ok(Results {
-        files: FILES.into_iter().zip(contents).collect(),
-        words: words(check),
-        summary,
-        ..Results::default()
-    })
+    Results::new(&FILES, check, words(check), [page.into_bytes()])
 }
 
 /// The verdict in a sentence, then the result for each limit state, with the governing side.
@@ -304,7 +296,7 @@ pub(super) fn are_mirrored(
     let bodies = mirrored.bodies.iter_mut().map(|body| &mut body.x_m);
     hinges.chain(bodies).for_each(|x_m| *x_m = -*x_m);
     let mut own = right.clone();
-    // The position of a hinge says which joint or angle it is.
+    // The positions of hinges identify their joints or angles.
     for hinge in own.hinges.iter_mut().chain(&mut mirrored.hinges) {
         hinge.hinge = Hinge::Toe(Sway::Right);
     }

@@ -1,4 +1,4 @@
-//! The report of cells of samples: a map of probability, where levels are reached, and the influence of the uncertain numbers.
+//! The report of cells of samples: a map of probability, the crossings of its levels, and the influence of the uncertain numbers.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -235,7 +235,7 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
     }
 }
 
-/// How many cells overturn with each probability, and those of the scenario itself.
+/// The number of cells that overturn with each probability, and in the scenario itself.
 fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellRow]) -> String {
     let at_least = |level: f64| {
         let cells = counts
@@ -251,7 +251,7 @@ fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellR
         .filter(|(cell, own)| survives(own) && cell.probability() >= Some(LEVELS[0]));
     let own = match samples.own {
         Ok(share) => format!(
-            "the scenario itself overturns in {}, and in {} that it survives the probability is at least 5 %",
+            "the scenario itself overturns in {}, and in {} of the others the probability is at least 5 %",
             share.count,
             in_doubt.count()
         ),
@@ -264,7 +264,7 @@ fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellR
     )
 }
 
-/// Where the probability is reached, in words, at the ends and in the middle of the map.
+/// The crossings in words, at the ends and in the middle of the map.
 fn at_columns(study: &CellsOfSamples<'_>, crossings: &[Crossing]) -> Vec<String> {
     let [x, y] = study.map.axes.map(|axis| axis.key.as_str());
     let last = crossings.len() - 1;

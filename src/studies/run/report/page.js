@@ -12,7 +12,7 @@ function follow(source) {
 }
 
 function addPlot(label, tall, xs, curves, legend) {
-  // What never differs from zero would only take room.
+  // Curves that are zero throughout are left out.
   if (curves.every(({ values }) => farthest(values) === 0)) return;
   const holder = document.createElement("div");
   holder.className = "plot";
@@ -38,7 +38,7 @@ function addPlot(label, tall, xs, curves, legend) {
           dash,
           width: thick ?? 1.6,
           points: { show: false },
-          // What overturns leaves the plot, rather than making all else small.
+          // Curves that overturn leave the plot instead of making all others small.
           auto: !beyond,
           value: (_, v) => (v == null ? "" : Number(v.toPrecision(5)).toString()),
         })),
@@ -64,7 +64,7 @@ function addPlot(label, tall, xs, curves, legend) {
   plots.push(plot);
 }
 
-/** The legend of a plot: each curve with its value at the instant, or of many only some names. Returns what shows the values. */
+/** The legend of a plot: each curve with its value at the instant, or of many only some names. Returns a function that shows the values. */
 function explain(holder, xs, curves, names) {
   const list = document.createElement("p");
   list.className = "legend";
@@ -193,7 +193,7 @@ function play(on) {
   if (starts) requestAnimationFrame(tick);
 }
 
-/** So many frames on or back. */
+/** Moves by a number of frames. */
 function stepBy(steps) {
   play(false);
   const { frame } = moment(time + 1e-9);
@@ -215,7 +215,7 @@ find("exaggeration").addEventListener("input", () => exaggerate(find("exaggerati
 find("thrust").addEventListener("change", draw);
 find("ride").addEventListener("change", draw);
 find("sizes").addEventListener("change", draw);
-// What had turned far enough as it overturned has no fall to follow.
+// A structure that had rotated far enough as it overturned has no fall.
 find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
 find("fall-from").textContent = Number(historyEnd.toFixed(3));
 find("fall-end").textContent = data.fall_end ?? "";
@@ -253,7 +253,7 @@ window.addEventListener("resize", () => {
   for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
   seek(time);
 });
-// On paper all is on one sheet: the structure and the plots share what the words leave.
+// On paper all is on one sheet: the structure and the plots share the room that the words leave.
 const SHEET_PX = { width: 715, height: 1030 };
 const LEAST_PX = { stage: 200, plot: 70 };
 // Title and legend of a plot.
@@ -306,7 +306,7 @@ function visible(at) {
 exaggerate(visible(moment(data.opens_s)));
 seek(data.opens_s);
 
-// For scripts: what the page shows, and ways to change it.
+// For scripts: the state of the page, and functions that change it.
 window.archrock = {
   data,
   seek,

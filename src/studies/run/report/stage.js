@@ -13,7 +13,7 @@ const shifts = new Int16Array(buffer(frames.shifts));
 const layoutOf = new Uint16Array(buffer(frames.layouts));
 const groundM = new Float32Array(buffer(frames.ground_m));
 const groundG = new Float32Array(buffer(frames.ground_g));
-// Where the feet move differently: how far the right one has gone from the left one.
+// If the feet move differently: the displacement of the right one relative to the left one.
 const rightFootM = frames.right_foot_m && new Float32Array(buffer(frames.right_foot_m));
 const thrust = new Int16Array(buffer(frames.thrust));
 const joints = new Uint8Array(buffer(frames.joints));
@@ -22,7 +22,7 @@ const states = new Uint8Array(buffer(frames.states));
 const count = times.length;
 const start = times[0];
 const end = times[count - 1];
-// The history ends before the fall that the page goes on to show.
+// The history ends before the fall, which the page shows too.
 const historyEnd = data.end_s;
 const historyCount = times.filter((t) => t <= historyEnd).length;
 const STATES = ["at rest", "sways right", "sways left", "overturned"];
@@ -71,7 +71,7 @@ function moved(body, x, y, poses, exaggeration) {
   return [x + (nowX - x) * exaggeration, y + (nowY - y) * exaggeration];
 }
 
-/** A number with so many decimals, zero without a sign. */
+/** A number with this many decimals, zero without a sign. */
 function fixed(value, decimals) {
   const text = value.toFixed(decimals);
   return Number(text) === 0 ? text.replace("-", "") : text;
@@ -94,7 +94,7 @@ function roundStep(rough) {
 
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
-// A pulse may leave the ground with a velocity: where it goes far, the eye goes with it.
+// A pulse may leave the ground with a velocity: if it moves far, the view follows.
 find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);
 
 function draw() {
@@ -403,7 +403,7 @@ function hingesAt(frame) {
   return open.concat(layouts[layoutOf[frame]].hinges);
 }
 
-/** Stresses at the ends of what presses of a joint, in Pa, and where those are, from 0 at the intrados to 1 at the extrados. */
+/** Stresses in Pa at the ends of the closed part of a joint, and the places of these ends, from 0 at the intrados to 1 at the extrados. */
 function pressure(frame, joint) {
   const first = 3 * (frame * data.joints.length + joint);
   const [inner, outer, contact] = Array.from(pressed.subarray(first, first + 3), (part) => part / 255);

@@ -115,7 +115,7 @@ impl<'a> Along<'a> {
         check(scenario)?;
         if options.no_impact && scenario.motion().hinges().has_joints() {
             return Err(
-                "--no-impact goes with four links and columns, whose hinges close all at once: leave it out, or give --hinges four"
+                "--no-impact is for four links and columns, whose hinges close all at once: leave it out, or give --hinges four"
                     .to_owned(),
             );
         }
