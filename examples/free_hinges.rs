@@ -1,4 +1,4 @@
-//! The same arch with free hinges: any joint opens and shuts. Run with `cargo run --release --example free_hinges`.
+//! An arch with free hinges: any joint opens and closes. Run with `cargo run --release --example free_hinges`.
 
 #![allow(clippy::print_stdout, reason = "an example prints its results")]
 

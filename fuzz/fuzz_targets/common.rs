@@ -1,4 +1,4 @@
-//! What holds for the readers of all record files.
+//! Properties of the readers of all record files.
 
 use archrock::scenario::{Contents, Layout};
 

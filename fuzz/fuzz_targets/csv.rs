@@ -1,4 +1,4 @@
-//! The reader of tables. The bits of the first byte choose how it is read; the contents follow.
+//! The reader of tables. The bits of the first byte choose the layout; the contents follow.
 #![no_main]
 
 mod common;

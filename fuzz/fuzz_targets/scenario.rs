@@ -6,7 +6,7 @@ use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {
     match Scenario::parse(text, "s.toml") {
-        // What is valid reads back the same.
+        // A valid scenario reads back the same.
         Ok(scenario) => assert_eq!(Scenario::parse(&scenario.to_toml(), "s.toml"), Ok(scenario)),
         Err(errors) => {
             assert!(!errors.as_slice().is_empty());

@@ -1,7 +1,7 @@
 //! The native part of the Python package `archrock`: the library's own types behind handles, text and arrays.
 //!
 //! It computes nothing itself. Structures, ground motions and scenarios come in as the TOML text of a scenario, so that
-//! the library's reader checks them and explains what is wrong. Small results go out as the JSON of the program's
+//! the library's reader checks them and explains errors. Small results go out as the JSON of the program's
 //! results, tables as the program's files, and histories as arrays, which are moved out of Rust and not copied.
 //! The classes that people use are in `package/archrock`.
 
@@ -16,6 +16,7 @@ use pyo3::prelude::*;
 /// The module `archrock._native`.
 #[pymodule]
 mod _native {
+    use archrock::scenario::MODELS;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -25,9 +26,10 @@ mod _native {
     #[pymodule_export]
     use crate::studies::{compute_part, merge, save, study};
 
-    /// Memory that a history may take by default, in units of 1e9 bytes.
+    /// Names of the models of motion, and the memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]
     fn constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("MODELS", MODELS.map(|model| model.name))?;
         module.add("MEMORY_GB", archrock::MEMORY_BYTES as f64 / 1e9)
     }
 }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::scenario::{Assignment, Changes, Hinges, ScenarioErrors, Source};
+use archrock::scenario::{Assignment, Changes, Hinges, MODELS, ScenarioErrors, Source};
 use archrock::studies::{impact, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
@@ -122,19 +122,17 @@ impl Scenario {
         model.as_ref().map_err(refused)
     }
 
-    /// Asks `tell` about the scenario's mechanisms, even if the scenario uses another model.
+    /// Applies `read` to the scenario's mechanisms, even if the scenario uses another model.
     fn of_mechanisms<T: Send>(
         &self,
         py: Python<'_>,
-        tell: impl FnOnce(&dyn MechanismModel) -> T + Send,
+        read: impl FnOnce(&dyn MechanismModel) -> T + Send,
     ) -> PyResult<T> {
-        let own = match self.inner.motion().hinges() {
-            Hinges::Four => Some(self.model(py)?),
-            Hinges::Free | Hinges::Elastic => None,
-        };
+        let has_joints = self.inner.motion().hinges().has_joints();
+        let own = (!has_joints).then(|| self.model(py)).transpose()?;
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
-            Some(model) => Ok(tell(model)),
-            None => Ok(tell(
+            Some(model) => Ok(read(model)),
+            None => Ok(read(
                 &*self.inner.mechanisms().map_err(|error| error.to_string())?,
             )),
         })
@@ -149,9 +147,8 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
     let mut known = Hinges::ALL.iter();
     let found = known.find(|hinges| hinges.model().name == name);
     found.copied().map(Some).ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "`model = {name:?}` is not one of \"four_links\", \"free_hinges\" and \"elastic_joints\""
-        ))
+        let names = MODELS.map(|model| model.name).join(", ");
+        PyValueError::new_err(format!("`model = {name:?}` is not one of {names}"))
     })
 }
 

@@ -20,7 +20,7 @@ const TICK: Duration = Duration::from_millis(50);
 /// background, and their results are discarded.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Receives the progress of the work ten times a second, and tells whether to continue.
+/// Receives the progress of the work ten times a second; a break cancels the work.
 pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// Does the work on a thread of its own, while this thread waits for signals and calls `progress(done, all)`.
@@ -58,13 +58,13 @@ pub fn watched<T: Send + 'static>(
             receiver.recv_timeout(time)
         })
     };
-    let mut told = None;
-    let mut tell = || {
+    let mut reported = None;
+    let mut report = || {
         let now = *latest.lock().unwrap_or_else(PoisonError::into_inner);
         if let (Some(progress), Some(Progress { done, all })) = (&progress, now)
-            && told != now
+            && reported != now
         {
-            told = now;
+            reported = now;
             progress.call1(py, (done, all))?;
         }
         py.check_signals()
@@ -73,7 +73,7 @@ pub fn watched<T: Send + 'static>(
         match wait(TICK) {
             Ok(Ok(done)) => {
                 let done = done?;
-                tell()?;
+                report()?;
                 return Ok(done);
             }
             Ok(Err(panic)) => return Err(panicked(&*panic)),
@@ -81,7 +81,7 @@ pub fn watched<T: Send + 'static>(
                 return Err(PyRuntimeError::new_err("the work ended without a result"));
             }
             Err(RecvTimeoutError::Timeout) => {
-                if let Err(error) = tell() {
+                if let Err(error) = report() {
                     cancelled.store(true, Ordering::Relaxed);
                     let _ = wait(PATIENCE);
                     return Err(error);

@@ -1,4 +1,4 @@
-"""What the tests share: the program, with whose results those of the package are compared."""
+"""Shared by the tests: the program, whose results are compared with those of the package."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def issued(compute: Callable[[], Any]) -> list[str]:
 
 
 def run_by(program: Program, scenario: Scenario, folder: Path) -> subprocess.CompletedProcess[str]:
-    """What the program prints about a scenario, whose file and records it finds in ``folder`` and whose results it writes to ``o`` there."""
+    """The finished run of a scenario by the program, with files in ``folder`` and results in ``o`` there."""
     (folder / "s.toml").write_text(scenario.to_toml())
     for name, contents in scenario.files.items():
         (folder / name).write_bytes(contents)

@@ -125,9 +125,9 @@ def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
     data = pickle.dumps((scenario, history))
     for record in records:
         record.unlink()
-    sent, told = pickle.loads(data)
-    assert sent == scenario and told == history and sent.run() == history
-    assert told.report_html() == history.report_html()
+    sent, restored = pickle.loads(data)
+    assert sent == scenario and restored == history and sent.run() == history
+    assert restored.report_html() == history.report_html()
 
 
 def test_units_are_those_of_the_header(tmp_path: Path) -> None:
@@ -184,7 +184,7 @@ def test_descriptions_are_values(described: Any) -> None:
         assert same == described and hash(same) == hash(described) and repr(same) == repr(described)
     tables = described.tables
     tables.clear()
-    assert described.tables, "what is handed out is a copy"
+    assert described.tables, "the property returns a copy"
     assert described != 3 and described is not None
 
 
@@ -203,11 +203,11 @@ def test_different_things_differ(arch: Arch, pulse: Pulse) -> None:
 
 def test_histories_are_sent_whole(arch: Arch, pulse: Pulse) -> None:
     history = simulate(arch, pulse)
-    told = pickle.loads(pickle.dumps(history))
-    assert told == history and repr(told) == repr(history)
-    assert told.rotations.tobytes() == history.rotations.tobytes() and not told.rotations.flags.writeable
-    assert told.events == history.events and told.scenario.run() == history
-    assert told.to_pandas().equals(history.to_pandas())
+    restored = pickle.loads(pickle.dumps(history))
+    assert restored == history and repr(restored) == repr(history)
+    assert restored.rotations.tobytes() == history.rotations.tobytes() and not restored.rotations.flags.writeable
+    assert restored.events == history.events and restored.scenario.run() == history
+    assert restored.to_pandas().equals(history.to_pandas())
 
 
 def test_a_trace_of_obspy_is_a_record() -> None:
@@ -263,8 +263,8 @@ def test_what_is_not_allowed_is_said_in_the_words_of_the_library(make: Any, word
 
 
 def test_numbers_of_numpy_are_numbers(arch: Arch, pulse: Pulse) -> None:
-    told = simulate(arch, pulse, duration_s=np.float64(1.0), output_step_s=np.float32(0.25))
-    assert told == simulate(arch, pulse, duration_s=1.0, output_step_s=0.25)
+    simulated = simulate(arch, pulse, duration_s=np.float64(1.0), output_step_s=np.float32(0.25))
+    assert simulated == simulate(arch, pulse, duration_s=1.0, output_step_s=0.25)
     assert Arch(np.int64(5), np.float64(0.15), 180) == arch
 
 
@@ -382,7 +382,7 @@ def test_tables_for_pandas(arch: Arch, pulse: Pulse) -> None:
 
 
 def test_feet_springings_and_ties() -> None:
-    """What is given as keywords is what a file says: the right foot by a table or a record, springings that have moved, ties."""
+    """Keywords give the same scenario as a file: the right foot by a table or a record, moved springings, ties."""
     arch = Structure(
         arch={"mean_radius_m": 5.0, "thickness_ratio": 0.15, "embrace_deg": 180.0, "voussoirs": 12},
         tie=[{"height_m": 2.0, "stiffness_n_m": 1e7, "prestress_n": 1e3}],
@@ -420,7 +420,7 @@ def test_feet_springings_and_ties() -> None:
     assert two.tables["ground"]["right"]["record"]["file"] == "right-record"
     assert np.abs(two.run().feet_apart).max() > 1e-4
     assert np.array_equal(simulate(arch, left, right=right, **joints).rotations, two.run().rotations)
-    # What the right foot does keeps its own files, whatever those of the left one are called.
+    # The record of the right foot keeps its own file, for any name of the left one.
     up, down = (Record(time, [0.0, peak, 0.0], unit="g") for peak in (0.02, -0.03))
     left, right = (
         Record(time, [0.0, peak, 0.0], unit="g", vertical=vertical) for peak, vertical in ((0.1, up), (0.05, down))

@@ -57,10 +57,10 @@ def test_a_history_that_ends_too_early_has_no_verdict(late: Record, model: Any, 
         lambda: Scenario.of(ARCH, late, model=model, duration_s=duration_s).run(),
     ]
     for compute in histories:
-        (told,) = (one for one in issued(compute) if one.startswith("NO VERDICT"))
-        assert f"the run ends at {duration_s:.4f} s and the ground moves until 12.2200 s" in told
+        (warned,) = (one for one in issued(compute) if one.startswith("NO VERDICT"))
+        assert f"the run ends at {duration_s:.4f} s and the ground moves until 12.2200 s" in warned
         history = compute()
-        assert told in history.summary["warnings"]
+        assert warned in history.summary["warnings"]
         assert (history.outcome, history.summary["verdict"]) == ("incomplete", "incomplete")
         assert history.overturning_sway is None and "incomplete at" in repr(history)
         assert "survives" not in history.report_html()
@@ -74,17 +74,17 @@ def test_studies_warn_of_histories_without_a_verdict(late: Record, arch: Arch) -
     whole = factors(None)
     assert whole.lowest_factor is not None and whole.lowest_factor < 1.0 and whole.incomplete == []
     assert not any("no verdict" in one for one in issued(lambda: factors(None)))
-    (told,) = (one for one in issued(lambda: factors(10.0)) if "no verdict" in one)
+    (warned,) = (one for one in issued(lambda: factors(10.0)) if "no verdict" in one)
     cut = factors(10.0)
-    assert told in cut.summary["warnings"] and told.startswith("no verdict from ")
+    assert warned in cut.summary["warnings"] and warned.startswith("no verdict from ")
     assert cut.lowest_factor is None and cut.bands == []
     assert [(one["from"], one["to"]) for one in cut.incomplete] == [(0.3, 1.5)]
 
     # After 1 s the arch of the second cell still has more than a quarter of the energy that overturns it.
     pulse = Pulse.rectangular(amplitude_g=0.3, duration_s=0.2)
     axes = {"duration_s": [0.2], "amplitude_g": [0.1, 0.3]}
-    (told,) = (one for one in issued(lambda: overturning_map(arch, pulse, axes, duration_s=1.0)) if "no verdict" in one)
-    assert told.startswith("no verdict from 1 of 2 histories")
+    (warned,) = (one for one in issued(lambda: overturning_map(arch, pulse, axes, duration_s=1.0)) if "no verdict" in one)
+    assert warned.startswith("no verdict from 1 of 2 histories")
     assert overturning_map(arch, pulse, axes, duration_s=1.0).outcome.tolist() == [["never_moved", "incomplete"]]
     assert not any("no verdict" in one for one in issued(lambda: overturning_map(arch, pulse, axes)))
 

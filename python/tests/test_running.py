@@ -117,7 +117,7 @@ def resident_bytes() -> int:
         return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
 
-@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="tells memory on Linux")
+@pytest.mark.skipif(not os.path.exists("/proc/self/statm"), reason="memory is read from /proc")
 def test_memory_is_steady_over_ten_thousand_calls() -> None:
     column, pulse = Column(4.0, 0.8), Pulse.half_sine(0.5, 0.5)
 

@@ -123,8 +123,8 @@ def assert_same(history: History, folder: Path, name: str) -> None:
             assert cells == list(table["state"]), name
         else:
             # Equal as 64-bit numbers, including the signs of zeros.
-            told = np.array([float(cell) for cell in cells])
-            assert told.tobytes() == np.asarray(table[column], dtype=float).tobytes(), (name, column)
+            printed = np.array([float(cell) for cell in cells])
+            assert printed.tobytes() == np.asarray(table[column], dtype=float).tobytes(), (name, column)
             compared += 1
     assert compared >= 6
 
@@ -201,24 +201,24 @@ def test_poses_are_those_of_the_program(program: Program, tmp_path: Path, arch: 
         for part, unit, place in (("rotation", "rad", 0), ("x", "m", 1), ("y", "m", 2)):
             names = [name for name in rows[0] if body in name and part in name and name.endswith(unit)]
             assert len(names) == 1, (names, list(rows[0]))
-            told = [float(row[names[0]]) for row in rows]
-            assert told == history.poses[:, index, place].tolist()
+            printed = [float(row[names[0]]) for row in rows]
+            assert printed == history.poses[:, index, place].tolist()
 
 
 def test_limit_and_chain_are_those_of_the_program(program: Program, tmp_path: Path, arch: Arch, pulse: Pulse) -> None:
     path = tmp_path / "arch.toml"
     path.write_text(Scenario.of(arch, pulse).to_toml())
-    told = json.loads(program("limit", path, "--format", "json").stdout)
+    printed = json.loads(program("limit", path, "--format", "json").stdout)
     limit = arch.limit()
-    assert limit.details == told
-    assert limit.right.acceleration_g == told["incipient_acceleration_g"]["right"]
+    assert limit.details == printed
+    assert limit.right.acceleration_g == printed["incipient_acceleration_g"]["right"]
     hinges = [(hinge.angle_deg, hinge.edge) for hinge in limit.right.hinges]
-    assert hinges == [(one["angle_deg"], one["edge"]) for one in told["mechanism"]["right"]]
+    assert hinges == [(one["angle_deg"], one["edge"]) for one in printed["mechanism"]["right"]]
 
     chain = arch.chain(7)
-    told = json.loads(program("impact", path, "--count", 7, "--format", "json").stdout)["impacts"]
-    assert [link.restitution for link in chain] == [one["restitution"] for one in told]
-    for link, one in zip(chain, told):
+    printed = json.loads(program("impact", path, "--count", 7, "--format", "json").stdout)["impacts"]
+    assert [link.restitution for link in chain] == [one["restitution"] for one in printed]
+    for link, one in zip(chain, printed):
         assert (link.index, link.before.sway, link.after.sway) == (
             one["index"],
             one["before"]["sway"],

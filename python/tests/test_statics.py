@@ -61,8 +61,8 @@ def answers(scenario: Scenario) -> tuple[Limit, Capacity | None]:
 def test_limit_and_capacity_are_those_of_the_program(path: Path, program: Program, tmp_path: Path) -> None:
     scenario = Scenario.read(path)
     limit, curves = answers(scenario)
-    told = json.loads(program("limit", path, "--format", "json").stdout)
-    assert limit.details == told
+    printed = json.loads(program("limit", path, "--format", "json").stdout)
+    assert limit.details == printed
     if curves is not None:
         assert program("capacity", path, "--out", tmp_path / "o").returncode == 0
         for name, contents in curves.files.items():
@@ -75,8 +75,8 @@ def test_limit_and_capacity_are_those_of_the_program(path: Path, program: Progra
 def test_whatever_moves_the_structure_raises_the_error_of_the_program(path: Path, program: Program, tmp_path: Path) -> None:
     scenario = Scenario.read(path)
     sent = pickle.loads(pickle.dumps(scenario))
-    told = program("run", path, "--out", tmp_path / "o").stderr.removeprefix("error: ").strip()
-    assert told.startswith(f"{path}:")
+    printed = program("run", path, "--out", tmp_path / "o").stderr.removeprefix("error: ").strip()
+    assert printed.startswith(f"{path}:")
     moves: list[Callable[[Scenario], Any]] = [
         Scenario.run,
         Scenario.memory_gb,
@@ -90,7 +90,7 @@ def test_whatever_moves_the_structure_raises_the_error_of_the_program(path: Path
         for of in (scenario, sent):
             with pytest.raises(ValueError) as caught:
                 move(of)
-            assert str(caught.value) == told
+            assert str(caught.value) == printed
 
 
 def test_what_concerns_statics_is_refused_when_it_is_read(tmp_path: Path) -> None:
@@ -127,7 +127,7 @@ def test_objects_need_no_motion(pulse: Pulse) -> None:
 
 
 def test_moved_springings_are_not_ignored() -> None:
-    """Capacity and check are those of the structure as it was built."""
+    """Capacity and check are those of the undeformed structure."""
     moved = Scenario.parse(ARCH + SITE + "[free_hinges]\n[supports.right]\nspread_m = 0.02\n")
     answers: list[Callable[[Scenario], Any]] = [capacity, verify]
     for answer in answers:

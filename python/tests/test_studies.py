@@ -246,9 +246,9 @@ def test_parts_of_a_map_under_a_record_join_where_its_file_is_not(tmp_path: Path
 
 
 def test_progress_is_told_and_may_end_the_work(arch: Arch) -> None:
-    told: list[tuple[int, int]] = []
-    overturning_map(arch, COSINE, AXES, duration_s=20.0, progress=lambda *at: told.append(at))
-    assert told[-1] == (30, 30) and told == sorted(told)
+    seen: list[tuple[int, int]] = []
+    overturning_map(arch, COSINE, AXES, duration_s=20.0, progress=lambda *at: seen.append(at))
+    assert seen[-1] == (30, 30) and seen == sorted(seen)
 
     def stop(done: int, of_all: int) -> None:
         raise LookupError(f"enough at {done} of {of_all}")
@@ -310,8 +310,8 @@ def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, progr
     assert issued(lambda: found.save(folder)) == []
     assert {path.name for path in folder.iterdir()} == names == set(found.files)
 
-    (told,) = issued(lambda: capacity(arch).save(folder))
-    assert told.startswith(f"{folder} holds results of `archrock map` from another scenario")
+    (warned,) = issued(lambda: capacity(arch).save(folder))
+    assert warned.startswith(f"{folder} holds results of `archrock map` from another scenario")
     assert {path.name for path in folder.iterdir()} == names | set(capacity(arch).files)
     assert issued(lambda: capacity(column).save(tmp_path / "other")) == []
 

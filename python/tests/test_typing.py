@@ -9,8 +9,11 @@ import inspect
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import archrock
+from archrock._native import MODELS
+from archrock._structure import Model
 
 PYTHON = Path(__file__).resolve().parents[1]
 
@@ -19,6 +22,10 @@ def test_mypy_is_content() -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "package/archrock", "tests", "examples"]
     checked = subprocess.run(command, cwd=PYTHON, capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_models_have_the_names_of_the_library() -> None:
+    assert list(get_args(Model)) == MODELS
 
 
 def test_docstrings_say_what_is_true() -> None:

@@ -1,4 +1,4 @@
-"""Warnings: what the program prints about unlikely numbers and about the trust in results, Python issues as warnings."""
+"""Python issues the warnings that the program prints about unlikely numbers and about the trust in results."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ def test_unlikely_numbers_are_warned_of(program: Program, tmp_path: Path) -> Non
     scenario = Scenario.of(arch, STRONG)
     runs: list[Callable[[], History]] = [lambda: simulate(arch, STRONG), scenario.run]
     for compute in runs:
-        told = issued(compute)
-        assert told[:3] == unlikely
+        warned = issued(compute)
+        assert warned[:3] == unlikely
         history = compute()
-        assert history.summary["warnings"] == told
+        assert history.summary["warnings"] == warned
         # A history that is restored was warned of before.
         assert issued(lambda: pickle.loads(pickle.dumps(history))) == []
     assert issued(lambda: threshold(arch, STRONG, from_factor=0.5, to_factor=1.0, stride=0.5))[:3] == unlikely
@@ -61,9 +61,9 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
     column = Column(height_m=4.0, width_m=0.8)
     assert issued(lambda: simulate(column, WEAK)) == []
     history = simulate(arch, pulse)
-    (told, *others) = issued(lambda: simulate(arch, pulse))
-    assert told.startswith(f"{GUIDE}: the thrust line leaves the arch by up to ")
-    assert history.summary["warnings"] == [told, *others]
+    (warned, *others) = issued(lambda: simulate(arch, pulse))
+    assert warned.startswith(f"{GUIDE}: the thrust line leaves the arch by up to ")
+    assert history.summary["warnings"] == [warned, *others]
     axes = {"duration_s": [0.4, 0.8], "amplitude_g": [0.2, 0.6]}
     records = [Record.read(ROOT / "scenarios" / "records" / "wave-1.at2")]
     studies: list[Callable[[Any], Any]] = [
@@ -73,13 +73,13 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
         lambda of: suite(of, records, peaks_g=[0.2, 0.8], duration_s=60.0),
     ]
     for study in studies:
-        (told,) = issued(lambda: study(arch))
-        assert told.startswith(GUIDE)
-        assert study(arch).summary["warnings"] == [told]
+        (warned,) = issued(lambda: study(arch))
+        assert warned.startswith(GUIDE)
+        assert study(arch).summary["warnings"] == [warned]
         assert issued(lambda: study(column)) == []
     unknown = {"samples": 2, "arch.thickness_ratio": {"deviation": 0.001}}
-    (told,) = issued(lambda: ensemble(Scenario.of(arch, WEAK, uncertain=unknown)))
-    assert told.startswith(GUIDE)
+    (warned,) = issued(lambda: ensemble(Scenario.of(arch, WEAK, uncertain=unknown)))
+    assert warned.startswith(GUIDE)
 
 
 def test_warnings_can_be_errors(arch: Arch) -> None:
@@ -92,8 +92,8 @@ def test_warnings_can_be_errors(arch: Arch) -> None:
 def test_messages_name_no_options_of_the_program(arch: Arch, pulse: Pulse) -> None:
     history = simulate(arch, pulse)
     study = overturning_map(arch, pulse, {"duration_s": [0.4, 0.8], "amplitude_g": [0.2, 0.6]})
-    told = [*history.summary["warnings"], *study.summary["warnings"]]
-    assert len(told) >= 2 and all("compare with free hinges" in one for one in told if GUIDE in one)
+    warned = [*history.summary["warnings"], *study.summary["warnings"]]
+    assert len(warned) >= 2 and all("compare with free hinges" in one for one in warned if GUIDE in one)
     late: dict[str, Any] = {"right": {"delay_s": 0.1}}
     wrong: list[Callable[[], Any]] = [
         lambda: simulate(arch, pulse, **late),
@@ -103,8 +103,8 @@ def test_messages_name_no_options_of_the_program(arch: Arch, pulse: Pulse) -> No
     for make in wrong:
         with pytest.raises(ValueError) as caught:
             make()
-        told.append(str(caught.value))
-    assert not any("--" in one or "archrock " in one for one in told), told
+        warned.append(str(caught.value))
+    assert not any("--" in one or "archrock " in one for one in warned), warned
     with pytest.raises(ValueError) as caught:
         Scenario.parse(Scenario.of(arch).to_toml(), changes=["arch.thickness_ratio=5"])
     assert str(caught.value).startswith('changes "arch.thickness_ratio=5": `thickness_ratio = 5`'), caught.value

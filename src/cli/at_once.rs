@@ -14,7 +14,7 @@ use super::progress::say;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
 
-/// Options of these commands.
+/// Options of commands without long histories.
 #[derive(clap::Args)]
 pub struct CommonArguments {
     #[command(flatten)]
@@ -35,7 +35,7 @@ pub fn at_once(
     options: &Options,
 ) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    // Only the check needs a structure that can be moved.
+    // Only `verify` needs a model of motion.
     let scenario = match kind == VERIFY {
         true => input.read(None)?,
         false => input.read_statics()?,

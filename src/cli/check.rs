@@ -1,4 +1,4 @@
-//! The command `check`: tells what a scenario or a record file holds.
+//! The command `check`: prints the contents of a scenario or a record file.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ pub struct Arguments {
     figure: FigureOption,
 }
 
-/// Gravity, when there is no scenario to give it.
+/// Gravity for record files without a scenario.
 const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments) -> Result<(), Failure> {
@@ -90,7 +90,7 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
     ))
 }
 
-/// The scenario; with a warning also one that holds enough for statics alone.
+/// Reads the scenario. If its only faults concern motion, warns of them and reads it for static analysis.
 fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     let wrong = match input.read(None) {
         Err(Failure::Input(wrong)) => wrong,
@@ -105,8 +105,8 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// The blocks of the structure, as its model of motion has them where that has any; on supports that have moved, where they stand as time
-/// begins.
+/// The blocks of the model of motion, or the structure itself if the model has none. If supports have moved, blocks are drawn in their
+/// positions at time 0.
 fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let joints = scenario.motion().hinges().has_joints();
     let Some(row) = scenario.structure().row().ok().filter(|_| joints) else {
@@ -134,7 +134,7 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
         .standing(poses, hinges))
 }
 
-/// Whether a key given with `--set` shows that the file is a record.
+/// True if `--set` gives the key `format`, so the file is a record.
 fn is_format_given(arguments: &Arguments) -> bool {
     let mut keys = arguments.set.assignments().iter();
     keys.any(|assignment| assignment.key() == "format")
@@ -142,7 +142,7 @@ fn is_format_given(arguments: &Arguments) -> bool {
 
 /// The contents of a record file, as text and as JSON.
 fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
-    // Beside tables there may be files of other formats, which do not have their keys.
+    // Files of other formats may be among the tables; keys of tables do not apply to them.
     let is_table = |file: &Path| match Format::of_file(file) {
         Some(format) => format == Format::Csv,
         None => is_format_given(arguments),

@@ -4,6 +4,7 @@ use archrock::output::figure::{Figure, Height, Panel};
 use archrock::output::print::PictureFormat;
 
 use super::Failure;
+use super::number::number;
 use super::scenario_file::Destination;
 
 /// The options of every command that draws.
@@ -70,7 +71,6 @@ impl PanelsOption {
 }
 
 fn text_pt(text: &str) -> Result<f64, String> {
-    let size = text.trim_end_matches("pt").trim().parse().ok();
-    let size = size.filter(|text_pt| (5.0..=14.0).contains(text_pt));
-    size.ok_or_else(|| "give a size from 5 to 14 points, such as 7".to_owned())
+    let remedy = "give a size from 5 to 14 points, such as 7";
+    number(text.trim_end_matches("pt").trim(), 5.0..=14.0, remedy)
 }

@@ -1,4 +1,4 @@
-//! The side to which a structure sways first.
+//! The option `--first`: the side to which a structure sways first.
 
 use archrock::mechanics::sway::Sway;
 use clap::ValueEnum;

@@ -45,33 +45,22 @@ const SCHEMA: &str = "archrock.schema.json";
 const RECORD: (&str, &str) = ("record.csv", include_str!("init/record.csv"));
 
 impl Kind {
-    const fn text(self) -> &'static str {
+    /// Name and text of the scenario, the command that runs it, and true if it has a record.
+    const fn about(self) -> (&'static str, &'static str, &'static str, bool) {
         match self {
-            Self::Arch => include_str!("init/arch.toml"),
-            Self::Column => include_str!("init/column.toml"),
-            Self::Record => include_str!("init/record.toml"),
-            Self::Map => include_str!("init/map.toml"),
-            Self::Suite => include_str!("init/suite.toml"),
-            Self::Verify => include_str!("init/verify.toml"),
-        }
-    }
-
-    /// The name of the scenario, the command that runs it, and whether it has a record.
-    const fn about(self) -> (&'static str, &'static str, bool) {
-        match self {
-            Self::Arch => ("arch", "run", false),
-            Self::Column => ("column", "run", false),
-            Self::Record => ("record", "run", true),
-            Self::Map => ("map", "map", false),
-            Self::Suite => ("suite", "suite", true),
-            Self::Verify => ("verify", "verify", false),
+            Self::Arch => ("arch", include_str!("init/arch.toml"), "run", false),
+            Self::Column => ("column", include_str!("init/column.toml"), "run", false),
+            Self::Record => ("record", include_str!("init/record.toml"), "run", true),
+            Self::Map => ("map", include_str!("init/map.toml"), "map", false),
+            Self::Suite => ("suite", include_str!("init/suite.toml"), "suite", true),
+            Self::Verify => ("verify", include_str!("init/verify.toml"), "verify", false),
         }
     }
 }
 
 pub fn init(arguments: &Arguments) -> Result<(), Failure> {
-    let (name, command, has_record) = arguments.kind.about();
-    let text = format!("#:schema ./{SCHEMA}\n{}", arguments.kind.text());
+    let (name, text, command, has_record) = arguments.kind.about();
+    let text = format!("#:schema ./{SCHEMA}\n{text}");
     let default = || PathBuf::from(name).with_extension("toml");
     let file = arguments.file.clone().unwrap_or_else(default);
     if is_stdin(&file) {
@@ -86,7 +75,7 @@ pub fn init(arguments: &Arguments) -> Result<(), Failure> {
     if has_record {
         let (name, record) = RECORD;
         let path = file.with_file_name(name);
-        // A second scenario in the same folder may share the record that the first one brought.
+        // Scenarios in the same folder may share the record.
         if !path.exists() {
             write_new(&path, record)?;
             written += &format!(" and {}", path.display());

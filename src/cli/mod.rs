@@ -13,6 +13,7 @@ mod first;
 mod impact;
 mod init;
 mod models;
+mod number;
 mod progress;
 mod run;
 mod scenario_file;
@@ -112,7 +113,7 @@ enum Command {
     },
 }
 
-/// How a result is printed.
+/// Format of a printed result.
 #[derive(Clone, Copy, Default, ValueEnum)]
 enum Format {
     /// For people.
@@ -122,7 +123,7 @@ enum Format {
     Json,
 }
 
-/// Why a command ended without its result.
+/// Error of a command.
 enum Failure {
     /// The input is wrong: exit code 2.
     Input(String),
@@ -213,7 +214,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(code)
 }
 
-/// Commands and options of earlier versions, and what replaces them.
+/// Commands and options of earlier versions, and their replacements.
 const REPLACED: [(&str, &str); 4] = [
     (
         "chart",
@@ -230,7 +231,7 @@ const REPLACED: [(&str, &str); 4] = [
     ),
 ];
 
-/// Names what replaces a command or an option of earlier versions, and the command that was probably meant by a mistyped one; two swapped
+/// Adds to the error the replacement of a command or option of earlier versions, or the command that was probably meant; two swapped
 /// letters count as one mistake.
 fn likely(mut error: clap::Error) -> clap::Error {
     for kind in [ContextKind::InvalidSubcommand, ContextKind::InvalidArg] {
@@ -238,7 +239,7 @@ fn likely(mut error: clap::Error) -> clap::Error {
             continue;
         };
         if let Some((name, successor)) = REPLACED.iter().find(|(name, _)| name == given) {
-            let message = format!("`{name}` {successor}\n");
+            let message = format!("`{name}` {successor}");
             return Arguments::command().error(error.kind(), message);
         }
     }

@@ -1,4 +1,4 @@
-//! The models of motion that are chosen by `--hinges`.
+//! The option `--hinges`, which chooses models of motion.
 
 use archrock::scenario::{Hinges, Scenario};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
@@ -14,7 +14,7 @@ fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
     let names = Hinges::ALL.iter().map(|hinges| hinges.name());
     PossibleValuesParser::new(names.chain([BOTH])).map(|name| {
         let chosen = |hinges: &Hinges| match name.as_str() {
-            BOTH => *hinges != Hinges::Elastic,
+            BOTH => hinges.model().is_rigid,
             name => hinges.name() == name,
         };
         Hinges::ALL.iter().copied().filter(chosen).collect()
@@ -24,14 +24,14 @@ fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
 /// The option of commands that compute several models of motion.
 #[derive(clap::Args, Clone)]
 pub struct ModelsOption {
-    /// Models of motion. Each of several writes to a folder named after it, and a comparison lies beside these folders [default:
+    /// Models of motion. Several models write to one folder each, named after the model, with a comparison beside them [default:
     /// elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
     #[arg(long, value_name = "MODELS", value_delimiter = ',', value_parser = parser())]
     hinges: Vec<Vec<Hinges>>,
 }
 
 impl ModelsOption {
-    /// Reads the scenario once for each model that is chosen, or else with the model that it chooses itself.
+    /// Reads the scenario once for each chosen model; without a choice, with the model of its tables.
     pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
         let mut models: Vec<Hinges> = Vec::new();
         for hinges in self.hinges.iter().flatten() {

@@ -49,10 +49,10 @@ pub fn say_always(text: &str) {
 /// Progress: a bar on a terminal, a line a minute elsewhere.
 pub struct Display {
     bar: ProgressBar,
-    /// The number of cases done before this start: they do not count in the pace.
+    /// Number of cases done before this start; they do not count in the pace.
     before: usize,
     begun: Instant,
-    /// When the last line was printed; `None` when no lines are.
+    /// Time of the last line; `None`: no lines are printed.
     said: Option<Instant>,
 }
 
@@ -106,13 +106,13 @@ impl Display {
         self.bar.finish_and_clear();
     }
 
-    /// Leaves the bar where it is.
+    /// Ends the progress without removing the bar.
     pub fn abandon(&self) {
         self.bar.abandon();
     }
 }
 
-/// "12 a second, 3 minutes left", from the mean of all cases so far: a moving mean would let one slow case spoil the estimate.
+/// "12 a second, 3 minutes left", from the mean of all finished cases: with a moving mean one slow case would spoil the estimate.
 fn pace(done: usize, left: usize, elapsed: Duration) -> String {
     if done == 0 {
         return "none finished yet".to_owned();

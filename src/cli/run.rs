@@ -20,6 +20,7 @@ use serde_json::Map;
 use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
+use super::number::{number, point_m};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::studies::compare;
 use super::study::{ITSELF, Pending, Session, Work};
@@ -63,10 +64,10 @@ pub struct Arguments {
     /// rotations.
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', value_parser = time_s, allow_negative_numbers = true)]
     snapshots: Vec<f64>,
-    /// Draw the deformed structure so many times a second, as numbered pictures in the folder film.
+    /// Draw the deformed structure at this rate per second, as numbered pictures in the folder film.
     #[arg(long, value_name = "FPS", value_parser = a_second, allow_negative_numbers = true)]
     film: Option<f64>,
-    /// Displacements in snapshots and film are drawn so many times as large.
+    /// Factor on the displacements in snapshots and film.
     #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
     exaggerate: Option<f64>,
     /// Write position and rotation of every body to poses.csv.
@@ -208,7 +209,7 @@ impl Job {
         Ok(())
     }
 
-    /// Runs the job and reports what happened.
+    /// Runs the job and returns its report.
     fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Results, Failure> {
         let session = Session {
             input: None,
@@ -366,13 +367,13 @@ impl Arguments {
     }
 }
 
-/// Where results go.
+/// The place of results: a folder, standard output, or both.
 struct Place {
-    /// The folder, if files are written.
+    /// The folder; `None`: no files are written.
     results: Option<Destination>,
-    /// The folder that is locked for it until it is: itself, or the one around the folders of a suite's records.
+    /// Folder to lock, which may be around those of a suite's records; `None` once it is locked.
     root: Option<Destination>,
-    /// Whether the rotations go to standard output.
+    /// True: the rotations go to standard output.
     to_stdout: bool,
     /// The name of an option that needs a folder.
     of_files: Option<&'static str>,
@@ -401,7 +402,7 @@ impl Place {
         })
     }
 
-    /// Place of the results of one of several models, inside this one.
+    /// The folder inside this one for one of several models.
     fn within(&self, name: &str) -> Self {
         Self {
             results: self.results.as_ref().map(|results| results.within(name)),
@@ -453,31 +454,19 @@ impl From<RunError> for Failure {
 }
 
 fn time_s(text: &str) -> Result<f64, String> {
-    let time_s = text.parse().ok().filter(|time_s: &f64| time_s.abs() <= 1e9);
-    time_s.ok_or_else(|| "give times in seconds, such as 0.2,0.5,1.0".to_owned())
+    number(
+        text,
+        -1e9..=1e9,
+        "give times in seconds, such as 0.2,0.5,1.0",
+    )
 }
 
 fn a_second(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok();
-    let number = number.filter(|number| (0.1..=1000.0).contains(number));
-    number
-        .ok_or_else(|| "give a number of pictures a second from 0.1 to 1000, such as 25".to_owned())
-}
-
-fn point_m(text: &str) -> Result<Vector2<f64>, String> {
-    let mut coordinates = text.split(',').map(|text| text.trim().parse::<f64>());
-    let point_m = match (coordinates.next(), coordinates.next(), coordinates.next()) {
-        (Some(Ok(x)), Some(Ok(y)), None) => Some(Vector2::new(x, y)),
-        _ => None,
-    };
-    let finite = point_m.filter(|point_m| point_m.iter().all(|x| x.abs() < 1e9));
-    finite.ok_or_else(|| "give two coordinates in metres, such as 0,4.2".to_owned())
+    let remedy = "give a number of pictures a second from 0.1 to 1000, such as 25";
+    number(text, 0.1..=1e3, remedy)
 }
 
 fn factor(text: &str) -> Result<f64, String> {
-    let factor = text
-        .parse()
-        .ok()
-        .filter(|factor| (1e-3..=1e6).contains(factor));
-    factor.ok_or_else(|| "give a factor from 0.001 to 1000000, such as 10".to_owned())
+    let remedy = "give a factor from 0.001 to 1000000, such as 10";
+    number(text, 1e-3..=1e6, remedy)
 }

@@ -1,4 +1,4 @@
-//! The scenario of a command: where it is read from, which options change it, and where its results go.
+//! The scenario of a command: its file, the options that change it, and the folder of its results.
 
 use std::collections::BTreeMap;
 use std::env;
@@ -63,7 +63,7 @@ impl SetOption {
     }
 }
 
-/// Whether the records of the suite are to shake the scenario.
+/// The option to run the records of the suite.
 #[derive(clap::Args, Clone, Copy)]
 pub struct SuiteOption {
     /// Run once for each record of [suite], unscaled, instead of [ground]; results go to a folder each.
@@ -71,12 +71,12 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// Scenarios that differ only in their model of motion, and the record of the suite that shakes them, if any.
+/// The record of the suite that shakes the scenarios, if any; scenarios that differ only in their model of motion.
 pub type Shaken = (Option<String>, Vec<Scenario>);
 
 impl SuiteOption {
-    /// Returns the scenarios, which differ in their model of motion, once as they are; or, with `--suite`, once for each
-    /// record of the suite.
+    /// Returns the scenarios, which differ in their model of motion. With `--suite`, returns them once for each record of the suite,
+    /// shaken by it.
     pub fn choose(self, models: Vec<Scenario>) -> Result<Vec<Shaken>, Failure> {
         if !self.suite {
             return Ok(vec![(None, models)]);
@@ -112,7 +112,7 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// The scenario with this model of motion; with `None`, the one that it chooses itself.
+    /// Reads the scenario with this model of motion; `None`: its tables choose the model.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
         self.read_for(hinges, false)
     }
@@ -136,12 +136,12 @@ impl Input<'_> {
         })
     }
 
-    /// The scenario for what is computed of a structure as it was built.
+    /// Reads the scenario for computations on the undeformed structure; refuses moved springings.
     pub fn read_as_built(&self) -> Result<Scenario, Failure> {
         self.as_built(self.read(None)?)
     }
 
-    /// The scenario, unless its springings have moved.
+    /// Refuses a scenario whose springings have moved.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();
         built.map_err(|message| self.wrong(message))?;
@@ -169,7 +169,7 @@ impl Input<'_> {
         Path::new(self.path.file_stem().unwrap_or_default())
     }
 
-    /// Where the results go: to `out`, or else to a folder named after the scenario file. That folder is refused if it holds
+    /// The folder for results: `out`, or else a folder named after the scenario file. That folder is refused if it holds
     /// results of another scenario file of the same name.
     pub fn results(&self, out: Option<&Path>) -> Result<Destination, Failure> {
         if let Some(out) = out {
@@ -189,11 +189,11 @@ fn origin(path: &Path) -> String {
     below.unwrap_or(&own).display().to_string()
 }
 
-/// Where results go.
+/// The folder for results.
 #[derive(Clone)]
 pub struct Destination {
     path: PathBuf,
-    /// The scenario file after which the folder is named.
+    /// The scenario file that names the folder; `None` with `--out`.
     origin: Option<String>,
     /// The format of pictures beside SVG.
     pictures: Option<PictureFormat>,
@@ -377,7 +377,7 @@ impl Destination {
     }
 }
 
-/// A folder that cannot be used.
+/// Error for a folder that cannot be used.
 fn elsewhere(error: OutputError) -> Failure {
     Failure::Input(format!("{error}; choose another folder with --out"))
 }

@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use super::Failure;
 use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
+use super::number::number;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -30,10 +31,8 @@ enum Side {
 }
 
 fn angle(text: &str) -> Result<f64, String> {
-    let angle: Option<f64> = text.trim().parse().ok();
-    angle
-        .filter(|angle| (-180.0..=180.0).contains(angle))
-        .ok_or_else(|| "give a direction in degrees, from -180 to 180".to_owned())
+    let remedy = "give a direction in degrees, from -180 to 180";
+    number(text.trim(), -180.0..=180.0, remedy)
 }
 
 pub fn spread(arguments: &Arguments) -> Result<(), Failure> {

@@ -70,12 +70,12 @@ impl MapOption {
     /// The style of a map.
     fn style(self, scenario: &Scenario, figure: Figure) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
-        let free_hinges = scenario.motion().hinges().has_joints();
-        if by_peak && free_hinges {
-            return Err(
-                "--color peak goes with four links and columns: free hinges have no critical rotation"
-                    .to_owned(),
-            );
+        let model = scenario.motion().hinges().model();
+        if by_peak && model.has_joints {
+            return Err(format!(
+                "--color peak goes with four links and columns: {} have no critical rotation",
+                model.words
+            ));
         }
         let factors = self.dimensionless.then(|| Style::dimensionless(scenario));
         Ok(Style {

@@ -1,4 +1,4 @@
-//! How every command computes a study of a scenario, and the study of its samples.
+//! Computes a study of a scenario, and the study of its samples, for all commands.
 
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -40,7 +40,7 @@ pub struct StudyArguments {
     pub format: Format,
 }
 
-/// How a long computation is done.
+/// Options of long computations.
 #[derive(clap::Args, Clone, Copy)]
 pub struct Work {
     /// Number of threads [default: number of processors].
@@ -106,7 +106,7 @@ impl Work {
         }
     }
 
-    /// Whether only a part is requested.
+    /// True if only a part is requested.
     pub const fn is_part(self) -> bool {
         self.shard.is_some()
     }
@@ -148,7 +148,7 @@ impl Pending {
     }
 }
 
-/// How a command computes its studies.
+/// Common settings of the studies of a command.
 #[derive(Clone, Copy)]
 pub struct Session<'s> {
     /// The scenario file, which errors about the scenario name.
@@ -161,8 +161,8 @@ pub struct Session<'s> {
 pub const ITSELF: &str = "the scenario itself:\n";
 
 impl Session<'_> {
-    /// Calls `compute` with a function that shows the progress, and that ends the program at Ctrl-C with what `interrupted` says of
-    /// the progress.
+    /// Calls `compute` with a function that shows the progress. At Ctrl-C that function prints the message of `interrupted` and ends the
+    /// program.
     pub fn watch<T>(
         self,
         interrupted: impl Fn(Progress) -> String,
@@ -172,7 +172,7 @@ impl Session<'_> {
         let mut display = None;
         let done = compute(&mut |progress| {
             let display = display.get_or_insert_with(|| Display::new(progress));
-            // All rows so far are in the file and none is being written, so it is safe to exit.
+            // All finished rows are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.abandon();
                 say_always(&interrupted(progress));

@@ -3,7 +3,7 @@
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, Structure};
 
-/// Whether a value of this key varies along the axes of a picture. The table of a pulse is called `pulse`.
+/// True if a value of this key varies along the axes of a picture. The table of a pulse is called `pulse`.
 type Varies<'a> = &'a dyn Fn(&str) -> bool;
 
 /// The caption. It leaves out what varies along the axes.
@@ -95,7 +95,7 @@ fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// How the ground moves: the pulse, or the record with its scale; and how the right foot moves.
+/// The ground motion: the pulse, or the record with its scale; and the motion of the right foot.
 #[must_use]
 pub fn ground_in_words(scenario: &Scenario) -> String {
     let words = ground(scenario, &|_| false);

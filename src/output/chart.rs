@@ -16,7 +16,7 @@ pub(crate) const BELOW_PX: f64 = 56.0;
 pub(crate) struct Chart {
     /// Height of its plot on the screen.
     pub(crate) height_px: f64,
-    /// Label and scale along the lower side; without a label there are only ticks.
+    /// Label and scale along the lower side; an empty label leaves only ticks.
     pub(crate) x: (String, Scale),
     /// Label and scale along the left side.
     pub(crate) y: (String, Scale),
@@ -31,7 +31,7 @@ pub(crate) struct Chart {
 }
 
 impl Chart {
-    /// A chart with axes, so far without marks.
+    /// A chart with axes and no marks.
     pub(crate) fn new(height_px: f64, x: (&str, Scale), y: (&str, Scale)) -> Self {
         Self {
             height_px,

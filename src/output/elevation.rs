@@ -16,7 +16,7 @@ pub(crate) const STONE: &str = "#f3efe6";
 /// Colour of fill.
 pub(crate) const FILL: &str = "#e3d5bd";
 const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
-/// Its outline.
+/// Outline of fill.
 pub(crate) const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
 const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
@@ -24,16 +24,16 @@ const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
 pub(crate) const BODIES: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
 /// A tie.
 pub(crate) const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
-/// The outline of displaced blocks as they were built.
+/// The undeformed outline of displaced blocks.
 const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
 /// An open hinge, and the radius of its circle.
 pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
 pub(crate) const HINGE_PX: f64 = 3.2;
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 
-/// From the structure to the first line of dimensions.
+/// Distance from the structure to the first line of dimensions.
 const BESIDE_PX: f64 = 34.0;
-/// From one to the next.
+/// Distance from one line of dimensions to the next.
 const APART_PX: f64 = 26.0;
 /// Length of the arrow of a load.
 const ARROW_PX: f64 = 30.0;
@@ -57,8 +57,8 @@ impl Place {
     }
 }
 
-/// Draws a structure at rest with its dimensions and the numbers of its joints, and a text below. On supports that have moved, it is
-/// drawn displaced, and dashed as it was built, to which its dimensions refer.
+/// Draws a structure at rest with its dimensions and the numbers of its joints, and a text below. On moved supports it is drawn
+/// displaced; dashed lines show the undeformed structure, to which the dimensions refer.
 #[must_use]
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
@@ -112,7 +112,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
 pub(crate) struct View<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) place: Place,
-    /// Poses of its bodies; empty: as it was built.
+    /// Poses of the bodies; empty: undeformed.
     pub(crate) poses: &'a [Pose],
     /// Its open hinges.
     pub(crate) hinges: &'a [OpenHinge],
@@ -131,7 +131,7 @@ impl View<'_> {
         corners.map(|corner| self.place.px(corner))
     }
 
-    /// Draws dashed how the blocks were built.
+    /// Draws the undeformed blocks dashed.
     pub(crate) fn draw_built(&self, drawing: &mut Drawing, name: &str) {
         for piece in self.scene.pieces(&[]) {
             let outline = piece.outline_m.iter().map(|corner| self.place.px(*corner));
@@ -197,7 +197,7 @@ impl View<'_> {
             if text_above.is_some() {
                 let text = Text::from(mass_in_words(load.mass_kg));
                 let half = 0.5 * text.px();
-                // Beside the last one, or not at all: the words below have it.
+                // Beside the last one if there is room; the words below have it anyway.
                 if foot.x - half > farthest {
                     farthest = foot.x + half + 8.0;
                     let at = tail - Vector2::new(0.0, 6.0);

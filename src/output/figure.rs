@@ -11,9 +11,9 @@ use super::text::TEXT_PX;
 pub struct Figure {
     /// Width in pixels.
     pub(crate) width_px: f64,
-    /// Width in print, where that is given.
+    /// Width in print; `None`: for the screen.
     pub(crate) width_mm: Option<f64>,
-    /// Height in print, where that is given: plots are stretched or squeezed to reach it, as far as their text allows.
+    /// Height in print; `None`: the natural height. Plots are stretched or squeezed to reach it, as far as their text allows.
     pub height: Option<Height>,
     /// Whether a title is drawn.
     pub has_title: bool,
@@ -47,7 +47,7 @@ named! {
         Slip = "slip",
         /// Displacements of watched points.
         Points = "points",
-        /// Energy, over the barrier where that is known.
+        /// Energy, over the barrier if that is known.
         Energy = "energy",
         /// Distance of the line of thrust outside the structure.
         Thrust = "thrust",

@@ -161,7 +161,7 @@ impl Batch {
 }
 
 impl Inner {
-    /// Creates a folder and those around it, as far as they are missing.
+    /// Creates a folder and missing folders around it.
     fn make(&mut self, path: &Path) -> Result<(), OutputError> {
         for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
             if ancestor.as_os_str().is_empty() || ancestor.exists() {

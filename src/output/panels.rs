@@ -10,7 +10,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::State;
 use crate::mechanics::sway::Sway;
 
-/// Bands narrower than this, in pixels, cannot be told apart.
+/// Bands narrower than this, in pixels, cannot be distinguished.
 const NARROWEST_PX: f64 = 1.0;
 
 /// Gap between panels.
@@ -49,7 +49,7 @@ pub(crate) struct Panels {
     panels: Vec<Chart>,
     /// Entries of the legend that only this picture has.
     pub(crate) keys: Vec<Key>,
-    /// Whether there were hops too short to tell apart.
+    /// True if there are hops too short to distinguish.
     hops: bool,
     /// Whether the accelerations that start the structure are drawn.
     incipient: bool,
@@ -193,7 +193,7 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
-/// The shades of the states of the structure, and whether there are hops too short to tell apart.
+/// The shades of the states of the structure; true if there are hops too short to distinguish.
 /// A sequence of such hops gets one common shade.
 fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
     let (start_s, end_s) = (x.low, x.high);

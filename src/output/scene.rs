@@ -18,13 +18,13 @@ use crate::scenario::{Dimension, Structure, metres};
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(super) outline: Outline,
-    /// Whether the blocks between two hinges form one body, and those outside the hinges stand still.
+    /// True: the blocks between two hinges form one body, and those outside the hinges stand still.
     linked: bool,
     /// The sections at which the position of the line of thrust is known.
     pub sections: Vec<Section>,
     /// Poses of the left and the right support of an arch.
     supports: [Pose; 2],
-    /// Poses and hinges of a picture at rest; empty if the structure stands as it was built.
+    /// Poses and hinges of a picture at rest; empty if the structure is undeformed.
     pub stands: (Vec<Pose>, Vec<OpenHinge>),
     ties: Vec<Tie>,
     /// The fill on blocks: blocks and outlines.
@@ -297,7 +297,7 @@ impl Scene {
         loads.collect()
     }
 
-    /// Its dimensions and loads in words, for pictures that have no room to draw them; empty where there are none.
+    /// Dimensions and loads in words, for pictures without room to draw them; may be empty.
     #[must_use]
     pub fn sizes_in_words(&self) -> String {
         let lengths = self.dimensions.iter();
@@ -307,8 +307,7 @@ impl Scene {
         lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 
-    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres, where the structure stands; none where
-    /// hinges open anywhere.
+    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres; empty if hinges may open anywhere.
     #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
         match &self.outline {

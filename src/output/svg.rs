@@ -9,7 +9,7 @@ use nalgebra::Vector2;
 
 use super::text::{FONTS, TEXT_PX, Text, escaped};
 
-/// Colours that colour-blind people can tell apart (Okabe and Ito), the dark ones.
+/// Dark colours that colour-blind people can distinguish (Okabe and Ito).
 pub mod color {
     /// Blue.
     pub const BLUE: &str = "#0072b2";
@@ -29,7 +29,7 @@ pub mod color {
     pub const GREY: &str = "#999999";
 }
 
-/// Colours and dashes of the curves of a chart; either is enough to tell them apart.
+/// Colours and dashes of the curves of a chart; either is enough to distinguish them.
 pub const CURVES: [Stroke; 6] = [
     Stroke::new(color::BLUE, 1.6, ""),
     Stroke::new(color::VERMILION, 1.6, "7 3"),
@@ -39,7 +39,7 @@ pub const CURVES: [Stroke; 6] = [
     Stroke::new(color::BLACK, 1.6, "4 2 1 2"),
 ];
 
-/// How a line is drawn.
+/// Stroke of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// Colour.
@@ -58,7 +58,7 @@ impl Stroke {
     }
 }
 
-/// How a text is aligned to its point.
+/// Alignment of a text to its point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// It begins at the point.

@@ -13,16 +13,16 @@ use super::toml_text::quoted;
 /// table of that name. Entries of lists are counted from 1: `load.2.mass_kg=800`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
-    /// As the user wrote it.
+    /// The text of the user.
     pub(super) given: String,
-    /// In TOML.
+    /// The assignment in TOML.
     pub(super) text: String,
     /// Number of parts of its key.
     pub(super) depth: usize,
 }
 
 impl Assignment {
-    /// Its key, as the user wrote it.
+    /// The key in the text of the user.
     #[must_use]
     pub fn key(&self) -> &str {
         self.given.split('=').next().unwrap_or_default().trim()

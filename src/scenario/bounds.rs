@@ -17,5 +17,5 @@ pub(super) const VOUSSOIRS: Count = Count {
     range: arch::VOUSSOIRS,
     why: "four hinges need four joints",
 };
-/// A full circle in radians is less than this; as degrees that is almost nothing.
+/// Smaller embrace angles are probably in radians: a full circle in radians is less than this.
 pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;

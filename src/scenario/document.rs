@@ -133,7 +133,7 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a text.
     ///
-    /// A syntax error hides what follows it and causes other errors. So the first error is recorded, its line is blanked out, and the rest
+    /// A syntax error hides later ones and causes others. So the first error is recorded, its line is blanked out, and the rest
     /// is parsed again.
     ///
     /// # Errors

@@ -63,7 +63,7 @@ pub struct ElasticTable {
     pub contact_points: Option<usize>,
     /// The longest time step.
     pub longest_step_s: Option<f64>,
-    /// Where the supports have gone before time begins, by `[supports]`.
+    /// Movements of the supports before time 0, from `[supports]`.
     #[serde(skip)]
     pub supports: Movements,
 }
@@ -139,7 +139,7 @@ impl ElasticTable {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
         let row = structure.row().ok();
-        // Anything else that is wrong with the row is reported where the row is used.
+        // Other faults of the row are reported by its users.
         let Some(joints) = row.and_then(|row| ElasticStructure::of_row(&row, &properties).ok())
         else {
             return Ok(());

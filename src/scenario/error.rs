@@ -1,18 +1,18 @@
-//! What is wrong with a scenario, and where.
+//! Errors of scenarios, with their places.
 
 use std::fmt;
 
 use super::assignment::Assignment;
 use super::shown;
 
-/// One thing that is wrong with a scenario.
+/// An error of a scenario.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScenarioError {
     /// Name of the file, as the caller gave it, or the assignment after `--set`.
     pub file: String,
-    /// Where in the file; `None` if the file could not be read, and for an assignment.
+    /// Place in the file; `None` for an assignment, and if the file could not be read.
     pub place: Option<Place>,
-    /// The offending key and value, and what is allowed instead.
+    /// The wrong key and value, and the allowed values.
     pub message: String,
 }
 
@@ -38,9 +38,9 @@ impl fmt::Display for ScenarioError {
 
 impl std::error::Error for ScenarioError {}
 
-/// Everything that is wrong with a scenario: at least one error, in the order of the file.
+/// All errors of a scenario, at least one, in the order of the file.
 ///
-/// Displayed one a line.
+/// Displayed with one error per line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ScenarioErrors(Vec<ScenarioError>);
 
@@ -126,14 +126,14 @@ impl fmt::Display for ScenarioErrors {
 
 impl std::error::Error for ScenarioErrors {}
 
-/// An error as it is found, with its byte offset in a text of the document.
+/// An error with its byte offset in a text of the document.
 #[derive(Debug)]
 pub(super) struct Fault {
     /// The text, as in [`Span`](super::document::Span).
     pub(super) text: usize,
     pub(super) offset: usize,
     pub(super) message: String,
-    /// Whether it is the contents of a file that the text names, or its absence.
+    /// True if a file that the text names is missing or faulty.
     pub(super) of_file: bool,
 }
 

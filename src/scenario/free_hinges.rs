@@ -1,4 +1,4 @@
-//! Free hinges, joints that may open, shut and slip anywhere: `[free_hinges]`.
+//! Free hinges, joints that may open, close and slip anywhere: `[free_hinges]`.
 
 use super::rule::within;
 use super::structure::Structure;
@@ -14,7 +14,7 @@ use crate::mechanics::settling::Movements;
 pub struct FreeTable {
     /// `[free_hinges]`.
     pub options: RowOptions,
-    /// Where the supports have gone before time begins, by `[supports]`.
+    /// Movements of the supports before time 0, from `[supports]`.
     pub supports: Movements,
 }
 
@@ -49,14 +49,14 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
-/// Refuses friction that does not hold the structure where its springings have gone; whether it does as it was built is asked before.
+/// Refuses friction that does not hold the structure on its moved springings; [`carries`] checks the undeformed structure.
 pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTable) -> Reading<()> {
     match free.model(structure) {
         Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
             let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
             Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
         }
-        // Anything else is reported where it is used.
+        // Other faults of the row are reported by its users.
         _ => Ok(()),
     }
 }
@@ -71,7 +71,7 @@ pub(super) fn carries(
     let Some(coefficient) = coefficient else {
         return Ok(());
     };
-    // Anything else that is wrong with the row is reported where the row is used.
+    // Other faults of the row are reported by its users.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
     };

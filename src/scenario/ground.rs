@@ -1,4 +1,4 @@
-//! How the ground moves: `[ground.<kind>]`.
+//! The ground motion: `[ground.<kind>]`.
 
 use nalgebra::Vector2;
 use serde::{Serialize, Serializer};
@@ -20,12 +20,12 @@ pub(super) const FREQUENCY_HZ: Number = within(&(1e-6..=1e6));
 /// At 1 the envelope of the velocity pulse is one period long; at 100 it is no longer a pulse.
 const GAMMA: Number = above(1.0, 100.0);
 const CYCLES: Number = within(&(1.0..=100.0));
-/// Why a pulse that was checked is always valid.
+/// Reason why a checked pulse is always valid.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
 /// The kind of ground motion that is read from files.
 const RECORD: &str = "record";
 
-/// How the ground moves.
+/// Ground motion of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ground {
     /// A single pulse.
@@ -39,7 +39,7 @@ impl Ground {
     /// This gravity decides whether the motion is too strong.
     ///
     /// # Errors
-    /// Everything that is wrong with the text and with its records.
+    /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
         table::read_text((&source.text, &source.folder), &[], |table| {
             let ground = table.given_table("ground", |table| {
@@ -72,8 +72,8 @@ impl Ground {
         }
     }
 
-    /// Reads `[ground]` and builds the motion; `known` records are not read from their files again. `[ground]` holds one table, named after its kind; a key for the kind would not
-    /// keep the keys of different kinds apart.
+    /// Reads `[ground]` and builds the motion; `known` records are not read from their files again.
+    /// `[ground]` holds one table, named after its kind, so that different kinds may have different keys.
     pub(super) fn read(
         table: &mut Table<'_>,
         known: &[Series],

@@ -3,27 +3,31 @@
 named! {
     /// A model of motion.
     pub enum Hinges {
-        /// Mechanisms with one degree of freedom, one after another: four links, or Housner's column.
+        /// One mechanism of one degree of freedom at a time: four links, or Housner's column.
         Four = "four",
-        /// A row of blocks whose joints open and shut anywhere.
+        /// A row of rigid blocks whose joints open and close anywhere.
         Free = "free",
         /// A row of blocks with elastic joints.
         Elastic = "elastic",
     }
 }
 
-/// Names and words of a model of motion.
+/// Names and properties of a model of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelEntry {
-    /// Its name in results; four links of a column are called `column`.
+    /// Name in results; for a column, four links are named `column`.
     pub name: &'static str,
-    /// The table of the scenario with its options.
+    /// Scenario table with the options of the model.
     pub table: &'static str,
-    /// Its name in sentences.
+    /// Name in sentences.
     pub words: &'static str,
-    /// Whether it moves a row of blocks that open at their joints.
+    /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
     pub has_joints: bool,
-    /// Why its outcome is believed if no other model that was run is more trustworthy.
+    /// True: blocks and joints are rigid. False: joints have a stiffness.
+    pub is_rigid: bool,
+    /// Message about a table that the model ignores; `None`: it ignores none.
+    pub ignored: Option<&'static str>,
+    /// Reason to trust its outcome; printed if all other models of the run are less trustworthy.
     pub trusted_because: &'static str,
 }
 
@@ -34,6 +38,8 @@ pub const MODELS: [ModelEntry; 3] = [
         table: "impact",
         words: "four links",
         has_joints: false,
+        is_rigid: true,
+        ignored: None,
         trusted_because: "it is the only one",
     },
     ModelEntry {
@@ -41,6 +47,8 @@ pub const MODELS: [ModelEntry; 3] = [
         table: "free_hinges",
         words: "free hinges",
         has_joints: true,
+        is_rigid: true,
+        ignored: Some("[impact] is ignored: with free hinges impacts follow from the blocks"),
         trusted_because: "hinges open at any joint",
     },
     ModelEntry {
@@ -48,18 +56,20 @@ pub const MODELS: [ModelEntry; 3] = [
         table: "elastic_joints",
         words: "elastic joints",
         has_joints: true,
+        is_rigid: false,
+        ignored: Some("[impact] is ignored: elastic joints have no impacts"),
         trusted_because: "the outcome is the same with the other stiffnesses and contact",
     },
 ];
 
 impl Hinges {
-    /// Its entry in the table of models.
+    /// Entry of the model in [`MODELS`].
     #[must_use]
     pub const fn model(self) -> &'static ModelEntry {
         &MODELS[self as usize]
     }
 
-    /// Whether it moves a row of blocks that open at their joints.
+    /// True for free hinges and elastic joints: see [`ModelEntry::has_joints`].
     #[must_use]
     pub const fn has_joints(self) -> bool {
         self.model().has_joints

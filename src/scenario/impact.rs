@@ -1,4 +1,4 @@
-//! What happens when hinges close: `[impact]`.
+//! The impact law of four links: `[impact]`.
 
 use serde_json::{Value, json};
 

@@ -19,7 +19,7 @@ pub(super) fn read(
     structure: Option<&Structure>,
     hinges: Hinges,
 ) -> Reading<Initial> {
-    if hinges == Hinges::Elastic {
+    if !hinges.model().is_rigid {
         return Err(table.wrong_itself(
             "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
              [initial] out",

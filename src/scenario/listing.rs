@@ -1,4 +1,4 @@
-//! Records that a table names by files or by patterns of file names, with the keys that tell how tables are read.
+//! Records that a table names by files or by patterns of file names, with the keys that describe them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component as PathPart, Path, PathBuf};
@@ -78,7 +78,7 @@ impl Listing {
     }
 }
 
-/// The keys that tell how these records are read.
+/// The keys of the layout of these records, with their values.
 pub(super) fn layout_keys<'a>(
     records: impl Iterator<Item = &'a Series> + Clone,
 ) -> Map<String, Value> {
@@ -92,7 +92,7 @@ pub(super) fn layout_keys<'a>(
     let mut keys = keys
         .and_then(|keys| keys.as_object().cloned())
         .unwrap_or_default();
-    // If the formats differ, the file extensions told them apart.
+    // Formats that differ come from the file extensions.
     if layouts.any(|layout| layout.format != telling.format) {
         keys.shift_remove("format");
     }
@@ -142,7 +142,7 @@ fn list(
     listed.collect()
 }
 
-/// The files that match a pattern, relative to the folder; or why there are none, as words that continue the pattern.
+/// The files that match a pattern, relative to the folder. The error continues the pattern.
 fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     // If a file has a name that looks like a pattern, that file is meant; so a resolved scenario reads back the
     // same.

@@ -204,7 +204,7 @@ impl Map {
     }
 }
 
-/// Refuses ground motion that goes on when the simulation ends.
+/// Refuses ground motion that lasts longer than the simulation.
 fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), String> {
     let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
     if end_s <= duration_s {

@@ -310,7 +310,10 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
     let one = |table: &mut Table<'_>| {
         let mut number = |key, both: Option<f64>| match both {
             Some(both) => table.or(key, &MAGNITUDE, both),
-            None => table.required(key, &MAGNITUDE),
+            None => {
+                let own = table.optional(key, &MAGNITUDE);
+                table.needed(key, &MAGNITUDE, own)
+            }
         };
         Ok(Pier {
             height_m: number("height_m", both[0]),
@@ -369,7 +372,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
     })
 }
 
-/// Reports that the masonry falls under its own weight, and what would hold it.
+/// Reports that the masonry falls under its own weight, and suggests remedies.
 fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
     let shape = masonry.shape.name();
     let falls = format!(

@@ -1,7 +1,7 @@
-//! The scenario: what stands, how the ground moves, and how the motion is computed.
+//! The scenario: the structure, the ground motion, and the options of the computation.
 //!
 //! A scenario is read from a TOML text. Every value is checked, and all errors are reported
-//! together, each with its line, its column and what is allowed instead:
+//! together, each with its line, its column and the allowed values:
 //!
 //! ```
 //! use archrock::scenario::Scenario;
@@ -107,16 +107,15 @@ pub use verify::{
 
 /// Changes that are made to a scenario while it is read.
 ///
-/// If free hinges are asked for, the steps are those of `[free_hinges]` if it is given, and `[impact]` is not
-/// needed. If four links are asked for, `[free_hinges]` is not needed.
+/// A model that is set here reads its own table only: free hinges ignore `[impact]`, and four links `[free_hinges]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Changes<'a> {
-    /// The model of motion; `None`: the one that the scenario itself chooses.
+    /// The model of motion; `None`: the tables of the scenario choose it.
     pub hinges: Option<Hinges>,
     /// Values that replace those in the text. If one key is set twice, the later value counts.
     pub set: &'a [Assignment],
-    /// True if nothing is to move: the files of `[ground]` may then be missing or faulty, which leaves the ground still, and drums or moved
-    /// springings without a model of motion are free hinges.
+    /// True for static analysis. If files of `[ground]` are missing or faulty, the ground stays still; drums and moved springings need no
+    /// table of a model.
     pub statics: bool,
 }
 
@@ -128,15 +127,15 @@ pub struct Changes<'a> {
 pub struct Scenario {
     title: Option<String>,
     structure: Structure,
-    /// Its ties, as they are given.
+    /// Ties of the structure, with the keys of the file.
     pub ties: Vec<TieTable>,
     motion: Motion,
-    /// Whether the text has an `[impact]` that is ignored.
+    /// True if the model of motion ignores an `[impact]` of the text.
     ignores_impact: bool,
     ground: Option<Ground>,
-    /// `[ground]` as it was given, if its files are missing or faulty and nothing is to move.
+    /// `[ground]` with the keys of the text, if its files are missing or faulty in static analysis.
     unread_ground: Option<Value>,
-    /// How the right foot moves, if not with the ground.
+    /// Motion of the right foot; `None`: that of the left foot.
     pub right_foot: Option<RightFoot>,
     /// The initial state of the motion; `None`: rest.
     pub initial: Option<Initial>,
@@ -151,10 +150,10 @@ pub struct Scenario {
     /// The options of a check; `None`: the defaults.
     pub verify: Option<Verify>,
     uncertain: Option<Uncertain>,
-    /// Tables that are written as they were given, because they give an uncertain number that is resolved to others.
+    /// Tables that keep the keys of the text, because resolving them would replace an uncertain number.
     as_given: Entries,
     files: InputFiles,
-    /// Keys of the shape of a circular arch as they were given, if the file gives its span.
+    /// Shape of a circular arch by the keys of the text, if the text gives its span.
     given_shape: Entries,
     /// The motion of `ground`, and of the right foot, built when they were read.
     ground_motion: Arc<GroundMotion>,
@@ -237,14 +236,11 @@ impl Scenario {
         self.simulation.gravity_m_s2
     }
 
-    /// Reports a table that the text gives but the model of motion ignores, if there is one.
+    /// Message about a table of the file that the model of motion ignores; `None`: it uses all tables.
     #[must_use]
     pub fn ignored(&self) -> Option<&'static str> {
-        let why = match self.motion().hinges() {
-            Hinges::Elastic => "[impact] is ignored: elastic joints have no impacts",
-            _ => "[impact] is ignored: with free hinges impacts follow from the blocks",
-        };
-        self.ignores_impact.then_some(why)
+        let message = self.motion.hinges().model().ignored;
+        message.filter(|_| self.ignores_impact)
     }
 }
 
@@ -254,8 +250,7 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// Everything that is wrong with the text and with its records. After twenty lines that are not TOML, the search
-    /// stops.
+    /// All faults of the text and of its records. After twenty lines that are not TOML, the search stops.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
         Self::of(&Source::of_text(text, name), &Changes::default())
     }
@@ -269,10 +264,10 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &Changes::default())
     }
 
-    /// The JSON schema of scenarios, for editors: all tables and keys with their rules and defaults, as they are read.
+    /// The JSON schema of scenarios, for editors: all tables and keys of the reader with their rules and defaults.
     #[must_use]
     pub fn schema() -> Value {
-        // With a chosen model, the tables of several may stand side by side.
+        // Tables of several models are allowed together if a model is set.
         let changes = Changes {
             hinges: Some(Hinges::Four),
             ..Changes::default()
@@ -313,9 +308,8 @@ impl Scenario {
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let shaking = Shaking::read(table, known, gravity_m_s2, changes.statics);
         let motion = motion.complete(table);
-        if let Ok(Some(right_foot)) = shaking.as_ref().map(|it| &it.right_foot) {
-            right_foot.suits(table, structure, hinges)?;
-        }
+        let right_foot = shaking.as_ref().ok().and_then(|it| it.right_foot.as_ref());
+        let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
         let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
         let moved_by = motion.as_ref().ok().map(|(motion, _)| motion);
         let map = table.given_table("map", |table| {
@@ -326,11 +320,9 @@ impl Scenario {
         });
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
         let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
-        let demand = table.given_table("demand", |table| {
-            Demand::read(table, options.confidence_factor)
-        });
+        let demand = Demand::read_given(table, options.confidence_factor);
         let uncertain = table.given_table("uncertain", Uncertain::read);
-        let (verify, demand) = (verify?, demand?);
+        let (verify, demand, ()) = (verify?, demand?, suits?);
         if let Some(verify) = &verify {
             verify.suits(table, demand.as_ref())?;
         }
@@ -405,7 +397,7 @@ impl Scenario {
         shaken
     }
 
-    /// This motion of the ground under its left foot, and what that makes of the right one.
+    /// The motion of both feet for a motion of the left one.
     pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
         let Some(right) = &self.right_foot else {
             return left;
@@ -468,7 +460,7 @@ impl Scenario {
         self.structure.model(self.motion.impact())
     }
 
-    /// Refuses a scenario that does not start from rest; the histories of `what` always do.
+    /// Refuses `[initial]` for a study named `what`, whose histories start from rest.
     ///
     /// # Errors
     /// Explains what to change.
@@ -549,7 +541,7 @@ impl Scenario {
         }
     }
 
-    /// The request for a history of a structure from rest on a ground motion, whatever `[initial]` says.
+    /// The request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
     #[must_use]
     pub(crate) fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
         Request {
@@ -562,7 +554,7 @@ impl Scenario {
         }
     }
 
-    /// The request from rest, whatever `[initial]` contains; studies use it for their histories.
+    /// The request for the histories of studies, from rest; `[initial]` is ignored.
     #[must_use]
     pub fn request_from_rest(&self) -> Request {
         self.request_on(&self.ground_motion, &self.structure)
@@ -656,7 +648,7 @@ struct Shaking {
     right_foot: Option<RightFoot>,
     /// The motion under the left foot.
     motion: GroundMotion,
-    /// The table as it was given, if its files are missing or faulty and nothing is to move.
+    /// `[ground]` with the keys of the text, if its files are missing or faulty in static analysis.
     unread: Option<Value>,
 }
 

@@ -27,7 +27,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Which model it is.
+    /// Name of the model.
     #[must_use]
     pub const fn hinges(&self) -> Hinges {
         match self {
@@ -37,13 +37,13 @@ impl Motion {
         }
     }
 
-    /// Whether its models compute several motions faster together: [`Model::is_faster_together`].
+    /// True if the model computes several motions faster together: see [`Model::is_faster_together`].
     #[must_use]
     pub const fn is_faster_together(&self) -> bool {
         matches!(self, Self::ElasticJoints(_))
     }
 
-    /// Its name in sentences.
+    /// Name of the model in sentences.
     #[must_use]
     pub const fn words(&self) -> &'static str {
         self.hinges().model().words
@@ -69,7 +69,7 @@ impl Motion {
         })
     }
 
-    /// The structure with other properties that are as likely as its own; for elastic joints, also with rigid joints.
+    /// Models of a structure with other properties that are equally likely; for elastic joints, also one with rigid joints.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -169,7 +169,7 @@ impl Motion {
         }
     }
 
-    /// Where the supports have gone before time begins; `None` where they stand as they were built.
+    /// Movements of the supports before time 0; `None` if they have not moved.
     #[must_use]
     pub fn supports(&self) -> Option<Movements> {
         let supports = match self {
@@ -189,13 +189,13 @@ impl Motion {
         }
     }
 
-    /// The name of its table.
+    /// Name of the scenario table of the model.
     #[must_use]
     pub const fn table_name(&self) -> &'static str {
         self.hinges().model().table
     }
 
-    /// The contents of its table.
+    /// Contents of the scenario table of the model.
     pub(super) fn table(&self) -> Value {
         match self {
             Self::FourLinks(law) => impact::to_json(law),
@@ -205,7 +205,7 @@ impl Motion {
     }
 }
 
-/// Tables of different models of motion.
+/// Relations between the tables of different models of motion.
 const ALONE: &[Relation<'_>] = &[
     Excludes(
         "elastic_joints",
@@ -224,7 +224,7 @@ const ALONE: &[Relation<'_>] = &[
     ),
 ];
 
-/// Whether the scenario gives a structure that only models with joints can move: on springings that have moved, or of drums.
+/// True if only models with joints can move the structure: it has drums, or its springings have moved.
 fn needs_joints(table: &Table<'_>) -> bool {
     table.gives("supports") || DRUM_KEYS.iter().any(|key| table.gives_in("column", key))
 }
@@ -232,16 +232,17 @@ fn needs_joints(table: &Table<'_>) -> bool {
 /// The tables of a scenario that concern its model of motion.
 pub(super) struct Tables {
     pub(super) hinges: Hinges,
-    asked: bool,
+    /// True: the user chose the model, so tables of other models are ignored.
+    is_set: bool,
     free_hinges: Reading<Option<RowOptions>>,
     elastic_joints: Reading<Option<ElasticTable>>,
     supports: Reading<Option<Movements>>,
 }
 
 impl Tables {
-    /// Reads the tables of rows of blocks, which decide the model unless one is `asked` for. For statics, drums and moved springings need none
-    /// of them: they are free hinges.
-    pub(super) fn read(table: &mut Table<'_>, asked: Option<Hinges>, statics: bool) -> Self {
+    /// Reads the tables of rows of blocks, which choose the model unless it is `set`. For statics, drums and moved springings need no such
+    /// table: their model is free hinges.
+    pub(super) fn read(table: &mut Table<'_>, set: Option<Hinges>, statics: bool) -> Self {
         let free_hinges = table.given_table("free_hinges", free_hinges::read);
         let elastic_joints = table.given_table("elastic_joints", ElasticTable::read);
         let supports = table.given_table("supports", supports::read);
@@ -253,18 +254,18 @@ impl Tables {
             Hinges::Four
         };
         Self {
-            hinges: asked.unwrap_or(chosen),
-            asked: asked.is_some(),
+            hinges: set.unwrap_or(chosen),
+            is_set: set.is_some(),
             free_hinges,
             elastic_joints,
             supports,
         }
     }
 
-    /// Reads the impact law. Returns the model, and whether there is an `[impact]` that is ignored.
+    /// Reads the impact law. Returns the model, and true if the model ignores an `[impact]`.
     pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
-        if !self.asked {
+        if !self.is_set {
             table.relate(ALONE)?;
         }
         let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);

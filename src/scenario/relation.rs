@@ -8,13 +8,13 @@ use super::table::{Reading, Reported, Table};
 pub(super) enum Relation<'a> {
     /// Exactly one of these keys. The text replaces the message if there is none.
     OneOf(&'a [&'a str], Option<&'a str>),
-    /// At most one of these keys. The text says what to do if there are two.
+    /// At most one of these keys. The text is the remedy for two.
     AtMostOne(&'a [&'a str], &'a str),
     /// All of these keys or none.
     Together(&'a [&'a str]),
-    /// The first key needs the second. The text says why, or what else to do.
+    /// The first key needs the second. The text gives the reason or another remedy; it follows the second.
     Requires(&'a str, &'a str, &'a str),
-    /// The first key excludes the second. The text says why and what to do; it follows the second.
+    /// The first key excludes the second. The text gives the reason and the remedy; it follows the second.
     Excludes(&'a str, &'a str, &'a str),
 }
 
@@ -42,7 +42,7 @@ impl Relation<'_> {
         }
     }
 
-    /// Reports where a table breaks the relation.
+    /// Reports the keys of a table that break the relation.
     fn check(&self, table: &mut Table<'_>) {
         match self {
             OneOf(keys, message) => {
@@ -87,7 +87,7 @@ impl Relation<'_> {
     }
 }
 
-/// Reports all keys but the first in the file if more than one of them is given, and returns whether any is.
+/// Reports all given keys but the first in the file. Returns true if any is given.
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
     let mut given: Vec<_> = keys
         .iter()

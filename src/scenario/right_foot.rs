@@ -24,17 +24,17 @@ use crate::dynamics::model::FEET_NEED_JOINTS;
 const SLOWEST_M_S: f64 = 1.0;
 const RECORD: &str = "record";
 
-/// How the ground under the right foot moves.
+/// Motion of the ground under the right foot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum RightFoot {
-    /// As the left foot, later by this time in seconds. Negative: the right foot starts earlier.
+    /// Motion of the left foot, delayed by this time in s. Negative: the right foot starts earlier.
     #[serde(rename = "delay_s")]
     Late(f64),
-    /// As the left foot, later by the distance between the feet over this velocity in m/s. Negative: the wave travels to the left, and the right
-    /// foot starts earlier.
+    /// Motion of the left foot, delayed by the distance between the feet over this velocity in m/s. Negative: the wave travels to the left,
+    /// and the right foot starts earlier.
     #[serde(rename = "apparent_velocity_m_s")]
     Wave(f64),
-    /// By a record of its own.
+    /// A record of its own.
     #[serde(rename = "record")]
     Record(Box<Record>),
 }
@@ -55,20 +55,20 @@ impl RightFoot {
         let right = late.or(velocity_m_s.map(Self::Wave)).or(record);
         let right = right.ok_or(Reported)?;
         if velocity_m_s.is_some_and(|velocity_m_s| velocity_m_s.abs() < SLOWEST_M_S) {
-            let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that goes to the left";
+            let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that travels to the left";
             return Err(table.wrong("apparent_velocity_m_s", wrong));
         }
         Ok(right)
     }
 
-    /// Refuses it where feet cannot move differently, or where a study shakes them in its own way; `outer` is the whole scenario.
+    /// Refuses feet that the structure, the model or a study cannot move differently; `outer` is the whole scenario.
     pub(super) fn suits(
         &self,
         outer: &mut Table<'_>,
         structure: Option<&Structure>,
         hinges: Hinges,
     ) -> Reading<()> {
-        if hinges == Hinges::Four {
+        if !hinges.has_joints() {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );
@@ -90,7 +90,7 @@ impl RightFoot {
         Ok(())
     }
 
-    /// Its own record, if it has one.
+    /// Record of the right foot; `None`: the motion of the left foot, delayed.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match self {
@@ -99,12 +99,12 @@ impl RightFoot {
         }
     }
 
-    /// Its files.
+    /// Series of the record of the right foot.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         self.record().into_iter().flat_map(Record::series)
     }
 
-    /// By how much it is late in s, between feet that are so far apart in m; `None` if it moves by a record of its own.
+    /// Delay in s for feet that are `apart_m` apart; `None` if the right foot has its own record.
     #[must_use]
     pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
         match self {
@@ -114,9 +114,9 @@ impl RightFoot {
         }
     }
 
-    /// The motion of both feet, of which this is that of the left one; by waves, of feet that are so far apart in m.
+    /// The motion of both feet, from that of the left one and the distance between them.
     ///
-    /// Of two records, the foot whose record is shorter stays where it is at its end.
+    /// With two records, the foot with the shorter record stops at its end.
     pub(super) fn beside(
         &self,
         left: GroundMotion,

@@ -1,4 +1,4 @@
-//! Rules for single values: what a key takes, in words, as a reader and as a JSON schema.
+//! Rules for single values: the allowed values of a key, in words, as a reader and as a JSON schema.
 
 use std::ops::{Bound, RangeBounds as _, RangeInclusive};
 
@@ -11,11 +11,11 @@ use crate::argument::short;
 
 /// A rule for a value.
 pub(super) trait Rule {
-    /// The type it is read as.
+    /// Type of the value in the program.
     type Read: Serialize;
     /// The rule in words.
     fn allowed(&self) -> String;
-    /// The value, or what is wrong with it.
+    /// Reads a value; the error continues a sentence about it.
     fn read(&self, value: &Value) -> Result<Self::Read, String>;
     /// The rule as a JSON schema.
     fn schema(&self) -> Value;

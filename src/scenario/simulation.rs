@@ -1,4 +1,4 @@
-//! How the motion is computed: `[simulation]`.
+//! Options of the computation of motion: `[simulation]`.
 
 use serde::Serialize;
 
@@ -7,7 +7,7 @@ use super::table::{Reading, Table};
 use crate::argument::plain;
 use crate::dynamics::model::Request;
 
-/// How the motion is computed.
+/// Options of the computation of motion.
 ///
 /// The output has at least one step and at most 1e7 of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -57,9 +57,9 @@ impl Simulation {
         })
     }
 
-    /// When a history ends at the latest, in seconds: at `duration_s`, or by default after the end of the ground motion, by the
-    /// larger of 10 s and 20 times the square root of size over gravity, but after ten million output steps at the latest. In that time a structure that survives comes to rest, or
-    /// nearly so. The size is that of [`Structure::size_m`](super::Structure::size_m).
+    /// Latest end of a history, in seconds: `duration_s`. By default it is later than the end of the ground motion by the larger of 10 s
+    /// and 20 times the square root of size over gravity, at most ten million output steps. In that time a surviving structure comes
+    /// to rest, or nearly so. The size is that of [`Structure::size_m`](super::Structure::size_m).
     #[must_use]
     pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
         let after_s = AFTER_RATIO * (size_m / self.gravity_m_s2).sqrt();

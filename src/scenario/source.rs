@@ -1,4 +1,4 @@
-//! Where the text of a scenario comes from.
+//! The text of a scenario, from a file, a reader or a program.
 
 use std::fs::File;
 use std::io::Read;

@@ -27,7 +27,7 @@ use crate::argument::{plain, short};
 named! {
     /// The measure of the levels of a suite, named by its key in `[suite]`.
     pub enum Measure {
-        /// Factors of the records.
+        /// Factors on the records.
         Scale = "scales",
         /// Peak accelerations to which the records are scaled, in units of gravity.
         PeakG = "peaks_g",
@@ -64,10 +64,10 @@ impl Measure {
     }
 }
 
-/// Which records shake the structure, and how strongly.
+/// The records of a suite and the levels to which they are scaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suite {
-    /// The records as they are in their files, sorted by file name; at least one.
+    /// Unscaled records, sorted by file name; at least one.
     pub records: Vec<Series>,
     /// Intensity measure of the levels.
     pub measure: Measure,
@@ -92,7 +92,7 @@ const SPECTRAL_PERIOD_S: &str = "spectral_period_s";
 const SPECTRAL_DAMPING_PERCENT: &str = "spectral_damping_percent";
 
 impl Spectral {
-    /// Without keys: 1 s, and the 5 % of codes.
+    /// Oscillator of a suite that sets neither key: 1 s, and the 5 % of codes.
     pub(crate) const DEFAULT: Self = Self {
         period_s: 1.0,
         damping_percent: 5.0,

@@ -1,4 +1,4 @@
-//! Where the springings have gone before time begins: `[supports]`.
+//! Movements of the springings before time 0: `[supports]`.
 
 use super::rule::{Number, within};
 use super::structure::Structure;
@@ -32,7 +32,7 @@ pub(super) fn check(
     structure: &Structure,
     movements: &Movements,
 ) -> Reading<()> {
-    // Whatever is wrong with the row is told where it is used.
+    // Other faults of the row are reported by its users.
     let Ok(row) = structure.row() else {
         return Ok(());
     };
@@ -59,7 +59,7 @@ pub(super) fn check(
     match follower.move_supports(|part| *movements * part, 0.0, 1.0) {
         Ok(Reached::Falls(part)) => wrong(format!(
             "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
-             `archrock spread` tells how far they may go",
+             `archrock spread` finds how far they may move",
             1e2 * part
         )),
         Ok(Reached::End) => match follower.stance.broken_tie() {

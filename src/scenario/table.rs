@@ -72,7 +72,7 @@ struct Description {
 }
 
 impl Description {
-    /// Adds what a key takes; a key that is read in two ways takes either.
+    /// Adds the allowed values of a key; if the key is read in two ways, both are allowed.
     fn add(&mut self, key: &str, schema: Value) {
         let dotted = key.contains('.');
         let known = self.properties.get_mut(key);
@@ -107,7 +107,7 @@ impl Description {
 
 /// A table of the file, and the faults found in it.
 ///
-/// It remembers the keys that were read: these are the allowed keys.
+/// The keys that have been read are the allowed keys.
 pub(super) struct Table<'a> {
     /// Its name in messages.
     name: String,
@@ -121,7 +121,7 @@ pub(super) struct Table<'a> {
     known: Vec<(String, bool)>,
     faults: Vec<Fault>,
     files: Vec<InputFile>,
-    /// Whether a value is unknown though it has no fault: its line may be one that is not TOML.
+    /// True if a value is unknown without a fault: its line may be one that is not TOML.
     is_partial: bool,
     description: Option<Description>,
 }
@@ -159,7 +159,7 @@ impl<'a> Table<'a> {
         self.folder().join(file)
     }
 
-    /// The files noted so far, of this table and those in it.
+    /// Takes the noted files, of this table and of the tables in it.
     pub(super) fn noted_files(&mut self) -> Vec<InputFile> {
         std::mem::take(&mut self.files)
     }
@@ -169,7 +169,7 @@ impl<'a> Table<'a> {
         name.clone_into(&mut self.name);
     }
 
-    /// Whether all values read so far are those of the file.
+    /// Succeeds if all values that have been read are those of the file.
     pub(super) fn sound(&self) -> Reading<()> {
         if self.faults.is_empty() && !self.is_partial && self.description.is_none() {
             return Ok(());
@@ -368,12 +368,12 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// How many faults were found so far.
+    /// Number of faults that have been found.
     pub(super) fn faults(&self) -> usize {
         self.faults.len()
     }
 
-    /// Takes back the faults found since there were so many, if all of them are faults of files that the text names; false where they are not.
+    /// Removes the faults after the first `since`, if all of them are faults of files that the text names. Returns false otherwise.
     pub(super) fn forgives_files(&mut self, since: usize) -> bool {
         let forgives = self.faults[since..].iter().all(|fault| fault.of_file);
         if forgives {
@@ -510,7 +510,7 @@ impl<'a> Table<'a> {
     }
 
     fn reject_unknown_keys(&mut self) {
-        // A reader that refused the whole table has not asked for its keys.
+        // A reader that refuses the whole table reads no keys.
         if self.known.is_empty() && !self.faults.is_empty() {
             return;
         }
@@ -537,7 +537,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Keys of earlier versions, by their table, and what replaces them.
+/// Keys of earlier versions, by their table, and their replacements.
 const REPLACED: [(&str, &str, &str); 2] = [
     (
         "the scenario",

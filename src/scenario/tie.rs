@@ -38,41 +38,41 @@ const BLOCK: Count = Count {
 const NEAR_RATIO: f64 = 0.01;
 
 named! {
-    /// Between what a tie is, by name.
+    /// Named ends of a tie.
     pub enum Between {
         /// The intrados corners of the springings.
         Springings = "springings",
     }
 }
 
-/// A tie as `[[tie]]` gives it, in the units of its keys.
+/// The contents of `[[tie]]`, in the units of its keys.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieTable {
-    /// Between what it is, where that has a name.
+    /// Named ends; `None` if the ends are given by coordinates or height.
     pub between: Option<Between>,
-    /// At which height, if it is level between the intrados on both sides.
+    /// Height of a level tie between the intrados on both sides.
     pub height_m: Option<f64>,
-    /// Its first end, where both are given.
+    /// Coordinates of the first end.
     pub from_m: Option<[f64; 2]>,
-    /// The block of that end, from 1 on; 0 is the ground.
+    /// Block of the first end, from 1; 0 is the ground.
     pub from_block: Option<usize>,
-    /// Its second end.
+    /// Coordinates of the second end.
     pub to_m: Option<[f64; 2]>,
-    /// The block of that end.
+    /// Block of the second end, from 1; 0 is the ground.
     pub to_block: Option<usize>,
     /// Area of its section.
     pub area_mm2: Option<f64>,
     /// Young's modulus.
     pub modulus_gpa: Option<f64>,
-    /// Force for each metre that it is stretched, instead of both.
+    /// Force per metre of extension, instead of area and modulus.
     pub stiffness_n_m: Option<f64>,
-    /// Its force in the undeformed structure.
+    /// Force in the undeformed structure.
     pub prestress_n: f64,
-    /// The largest force with which it pulls.
+    /// Force at which the tie yields.
     pub yield_force_n: Option<f64>,
-    /// The stress at which it yields.
+    /// Stress at which the tie yields.
     pub yield_stress_mpa: Option<f64>,
-    /// Strain at which it breaks.
+    /// Strain at which the tie breaks.
     pub breaks_at_strain: Option<f64>,
 }
 
@@ -125,7 +125,7 @@ impl TieTable {
     /// The tie in a row of blocks, where its springings are these joints.
     ///
     /// # Errors
-    /// In words, what to change.
+    /// Explains what to change.
     fn placed(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<Tie, String> {
         let ends = self.ends(row, springings)?;
         let [first, second] = ends.map(|end| end.at_m);
@@ -155,7 +155,7 @@ impl TieTable {
         match tie.check(row.blocks.len(), row.size_m) {
             Ok(()) => Ok(tie),
             Err(TieError::OnSupports) if self.between.is_some() => Err(
-                "is between springings that both stand on rigid ground, which moves as it is told whatever a tie does: give [piers], or \
+                "is between springings that both stand on rigid ground, which a tie cannot move: give [piers], or \
                  tie voussoirs with `height_m`"
                     .to_owned(),
             ),
@@ -164,7 +164,7 @@ impl TieTable {
                 block + 1
             )),
             Err(TieError::OnSupports) => Err(
-                "has both ends on the ground, which moves as it is told, whatever a tie does: give one of them on a block".to_owned(),
+                "has both ends on the ground, which a tie cannot move: give one of them on a block".to_owned(),
             ),
             Err(TieError::NoLength) => {
                 Err("has both ends at one point: give two points that are apart".to_owned())
@@ -214,7 +214,7 @@ fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
     None
 }
 
-/// A point of a block, or of the ground where that is said.
+/// A point of a block, or of the ground if the block is 0.
 fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
     let at_m = Vector2::from(point_m);
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
@@ -256,7 +256,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
         ref these => {
             let numbers: Vec<String> = these.iter().map(|index| (index + 1).to_string()).collect();
             Err(format!(
-                "holds on at {point}, which is on the edge of blocks {}: say of which with `{end}_block`",
+                "holds on at {point}, which is on the edge of blocks {}: choose one of them by `{end}_block`",
                 numbers.join(" and ")
             ))
         }

@@ -33,7 +33,7 @@ named! {
     }
 }
 
-/// How the values of a number are spread.
+/// Distribution of an uncertain number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Spread {
@@ -63,7 +63,7 @@ pub const MOST_DEVIATIONS: f64 = 3.0;
 pub struct UncertainKey {
     /// Its key, as `table.key`.
     pub key: String,
-    /// How its values are spread.
+    /// Distribution of its values.
     pub spread: Spread,
     /// The scenario's own value, if it has one.
     pub own: Option<f64>,
@@ -76,7 +76,7 @@ pub struct Uncertain {
     pub samples: usize,
     /// The seed of the scrambling.
     pub seed: u32,
-    /// Whether total indices are asked for, which take further samples.
+    /// True: total indices are computed, which takes further samples.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub total_indices: bool,
     /// The numbers, at least one, in the order of the file.
@@ -212,8 +212,8 @@ impl Uncertain {
         })
     }
 
-    /// The tables with uncertain numbers whose numbers are resolved to others, as span and rise of an arch are: they stay as the file
-    /// gives them, so that what it gives varies, and what else it gives does not.
+    /// Tables with uncertain numbers that resolving would replace, such as span and rise of an arch. They keep the keys of the file: the
+    /// uncertain numbers vary, and the other given numbers do not.
     pub(super) fn as_given(&self, table: &Table<'_>, resolved: &Value) -> Map<String, Value> {
         let mut kept = Map::new();
         for key in &self.keys {
@@ -253,7 +253,7 @@ impl Uncertain {
             }
         }
         faulty?;
-        // Reading a scenario takes time: what all keys may do together, each may do.
+        // Reading a scenario takes time: if all keys are allowed together, each is.
         let all_at = |part: &f64| {
             let keys = self.keys.iter();
             keys.map(|key| (&*key.key, key.at(*part)))
@@ -326,8 +326,8 @@ impl Uncertain {
         Ok(())
     }
 
-    /// The number of samples with those of total indices: then each sample is followed, behind all others, by one for each key, in
-    /// which that key alone has another value.
+    /// Number of cases. With total indices, behind all samples, each sample has one more case for each key, in which only that key
+    /// has another value.
     #[must_use]
     pub fn cases(&self) -> usize {
         let keys = if self.total_indices {
@@ -342,7 +342,7 @@ impl Uncertain {
     #[must_use]
     pub fn point(&self, sample: usize) -> Vec<f64> {
         let keys = self.keys.len();
-        // Of those behind the samples: which of them it is like, but for this key.
+        // A case behind the samples has the values of sample `like`, except for the key `other`.
         let (like, other) = match sample.checked_sub(self.samples) {
             Some(behind) if self.total_indices => (behind / keys, Some(behind % keys)),
             _ => (sample, None),

@@ -32,7 +32,7 @@ const STEPS: f64 = 1e7;
 const DURATION_S: f64 = 1e5;
 
 impl Scenario {
-    /// The unlikely values, a sentence each, with a suggestion what was meant.
+    /// Sentences about unlikely values, each with the probably intended value.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
         self.unlikely_with(|| starts_g(&*self.model().ok()?))
@@ -163,7 +163,7 @@ fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
 }
 
 impl Series {
-    /// The unlikely values of a record, a sentence each, with a suggestion what was meant.
+    /// Sentences about unlikely values of a record, each with the probably intended value.
     #[must_use]
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
         let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));

@@ -13,7 +13,7 @@ impl Scenario {
     /// of a record stay the same.
     ///
     /// # Errors
-    /// Explains what is wrong with the keys or with the changed scenario.
+    /// Explains the fault of the keys or of the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
         let mut resolved = self.resolved();
         if let Value::Object(tables) = &mut resolved {
@@ -80,7 +80,7 @@ pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     }
 }
 
-/// Keys that give one quantity in two ways: where one is given, the other goes.
+/// Pairs of keys for one quantity: setting one removes the other.
 const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/arch", "thickness_m", "thickness_ratio"],
     ["/arch", "rise_m", "embrace_deg"],
@@ -88,8 +88,8 @@ const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/ground/right/record", "scale", "peak_g"],
 ];
 
-/// Changes what has to go with other numbers in a resolved scenario: of an arch either the thickness is there or its ratio, its last
-/// joint is at the other springing, and the drums of a column add up to its height.
+/// Changes values that depend on the new ones: an arch keeps either its thickness or its ratio, its last joint is at the other
+/// springing, and the drums of a column add up to its height.
 fn make_room(table: &mut Value, values: &[(&str, f64)]) {
     let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
     let given = |wanted: [&str; 2]| {
@@ -157,7 +157,7 @@ fn fit_drums(table: &mut Value, values: &[(&str, f64)], height_m: Option<f64>, d
             let sum_m: f64 = drums_m.iter().sum();
             column.insert("height_m".to_owned(), Value::from(sum_m));
         }
-        // Both: they say different things, unless they add up.
+        // If both are given, the reader checks that they add up.
         _ => {}
     }
 }

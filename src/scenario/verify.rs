@@ -263,10 +263,7 @@ impl Verify {
             }
             let asked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
             if !asked {
-                let wrong = format!(
-                    "needs [demand.{}], which tells what is allowed",
-                    state.name()
-                );
+                let wrong = format!("needs [demand.{}], which sets the limits", state.name());
                 return Err(table.wrong_in(&["verify"], key, wrong));
             }
             if self.sides != CheckedSides::Both {
@@ -368,7 +365,7 @@ impl Relief {
     }
 }
 
-/// The building at a height of which the mechanism stands.
+/// The building in which the mechanism stands.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Height {
     /// The building's modes.
@@ -387,7 +384,7 @@ pub struct BuildingMode {
     pub states: ByState<ModeState>,
 }
 
-/// How a mode of the building vibrates.
+/// Vibration of a mode of the building at a limit state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ModeState {
     /// Period, in seconds.
@@ -457,26 +454,35 @@ const DIVIDE: Number = within(&(1.0..=10.0));
 const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "height"];
 
 impl Demand {
-    /// Reads `[demand]`, whose files are relative to `folder`.
-    pub(super) fn read(table: &mut Table<'_>, confidence_factor: f64) -> Reading<Self> {
-        let mut states = LimitState::ALL.iter().map(|state| state.name());
-        let by_points = states.any(|state| table.gives_in(state, "spectrum"));
+    /// Reads `[demand]` of the scenario.
+    pub(super) fn read_given(
+        outer: &mut Table<'_>,
+        confidence_factor: f64,
+    ) -> Reading<Option<Self>> {
         let points = |table: &mut Table<'_>| {
-            read_by_state(table, |table, state| {
+            Ok(read_by_state(table, |table, state| {
                 PointDemand::read(table, state, confidence_factor)
-            })
+            }))
         };
-        if table.describes() {
-            points(table);
+        if outer.describes() {
+            outer.table("demand", points);
         }
-        let demand = if by_points {
+        outer.given_table("demand", |table| Self::read(table, points))
+    }
+
+    fn read(
+        table: &mut Table<'_>,
+        points: impl Fn(&mut Table<'_>) -> Reading<ByState<PointDemand>>,
+    ) -> Reading<Self> {
+        let mut states = LimitState::ALL.iter().map(|state| state.name());
+        let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
             for key in CODE_KEYS {
                 if table.gives(key) {
                     let wrong = "goes with ag_g, f0 and tc_star_s; spectra from files are taken as they are: leave it out";
                     return Err(table.wrong(key, wrong));
                 }
             }
-            Self::Points(points(table))
+            Self::Points(points(table)?)
         } else {
             Self::Code(CodeDemand::read(table)?)
         };
@@ -633,7 +639,7 @@ impl StateRule {
     }
 }
 
-/// Reads the points of a spectrum from a file, or explains what is wrong with it.
+/// Reads the points of a spectrum from a file; the error explains the fault in the file.
 fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, String> {
     let rows = read_numbers::<2>(path)?;
     let points = rows

@@ -6,6 +6,7 @@ pub mod motions;
 pub mod program;
 pub mod prose;
 pub mod results;
+pub mod schema;
 
 use archrock::dynamics::ground::Pulse;
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};

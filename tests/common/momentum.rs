@@ -1,4 +1,4 @@
-//! The momentum theorems of the paper, solved as they are printed.
+//! The momentum theorems of the paper, solved in their printed form.
 
 use archrock::mechanics::four_link::mechanism::FourLink;
 use archrock::mechanics::geometry::field::{Field, Momentum};

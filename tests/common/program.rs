@@ -25,20 +25,20 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
-/// What the program printed; it must have succeeded.
+/// Standard output of a run that must have succeeded.
 #[track_caller]
 pub fn stdout(output: &Output) -> String {
     assert_eq!(output.status.code(), Some(0), "{}", stderr(output));
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
-/// What the program prints; it must succeed.
+/// Standard output of a command that must succeed.
 #[track_caller]
 pub fn printed(folder: &Path, arguments: &[&str]) -> String {
     stdout(&archrock(folder, arguments))
 }
 
-/// What the program reports while it works; it must succeed, and no study prints anything.
+/// Standard error of a command that must succeed; studies must print nothing on standard output.
 #[track_caller]
 pub fn done(folder: &Path, arguments: &[&str]) -> String {
     let output = archrock(folder, arguments);
@@ -48,7 +48,7 @@ pub fn done(folder: &Path, arguments: &[&str]) -> String {
     stderr(&output)
 }
 
-/// What the program says about wrong input; it must have printed nothing.
+/// Message of a run that must have refused its input without printing anything.
 #[track_caller]
 pub fn refusal(output: &Output) -> String {
     let said = stderr(output);
@@ -57,7 +57,7 @@ pub fn refusal(output: &Output) -> String {
     said
 }
 
-/// What the program says about wrong input, including these words; it must print nothing.
+/// Message of a command that must refuse its input with these words, without printing anything.
 #[track_caller]
 pub fn refused(folder: &Path, arguments: &[&str], words: &[&str]) -> String {
     let said = refusal(&archrock(folder, arguments));

@@ -1,4 +1,4 @@
-//! Reads back what the program writes: tables, JSON, data of pages, pictures.
+//! Reads results of the program: tables, JSON, data of pages, pictures.
 
 use std::fs;
 use std::ops::Index;

@@ -63,7 +63,7 @@ fn four_links_are_a_rough_guide_in_every_study() {
     }
 }
 
-/// A run follows the line of thrust, and its summary has what the words and the warnings say.
+/// A run follows the line of thrust, and its summary has the numbers of the words and the warnings.
 #[test]
 fn the_summary_lists_the_warnings() {
     let folder = tempfile::tempdir().unwrap();

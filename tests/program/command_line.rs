@@ -58,7 +58,7 @@ fn the_readme_scenario_comes_to_rest() {
     }
     assert_eq!(time(last), summary["outcome_time_s"].as_f64().unwrap());
     assert_eq!(&last[3], "rest");
-    // The largest row may be below the peak of the summary by what happens within half a step.
+    // The largest row may be below the peak of the summary by the change within half a step.
     let magnitudes = regular
         .iter()
         .map(|row| row[6].parse::<f64>().unwrap().abs());
@@ -215,7 +215,7 @@ fn faulty(text: &[u8]) -> String {
     message
 }
 
-/// Whatever is asked of a faulty scenario, or of one that lacks what the command needs.
+/// Every command on a faulty scenario, or on one that lacks a table that the command needs.
 #[test]
 fn every_command_refuses_wrong_input_with_exit_code_two() {
     let folder = tempfile::tempdir().unwrap();

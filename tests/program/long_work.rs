@@ -57,7 +57,7 @@ fn bash(folder: &Path, script: &str, variables: &[(&str, &str)]) {
     assert!(output.status.success(), "{stderr}");
 }
 
-/// Asserts that the joined parts are what the program gives in one go.
+/// Asserts that the joined parts equal the results of a single run.
 #[track_caller]
 fn assert_whole(folder: &Path) {
     bash(

@@ -196,7 +196,7 @@ fn one_module_is_hidden_from_users() {
             read += 1;
             let path = path.strip_prefix(root).unwrap().to_path_buf();
             hidden.extend(text.matches("doc(hidden)").map(|_| path.clone()));
-            // Examples need what the root of the crate shows, and no more.
+            // Examples need only names that the root of the crate exports.
             let deeper = ["studies", "dynamics", "mechanics", "scenario", "output"];
             let deeper = deeper.map(|module| format!("archrock::{module}"));
             let example = path.starts_with("examples");

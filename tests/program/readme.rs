@@ -1,4 +1,4 @@
-//! The README: its pictures are those that the program draws, its printed output is the program's, its links lead somewhere.
+//! The README and other pages: pictures are those that the program draws, printed output is the program's, links lead somewhere.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -60,6 +60,35 @@ fn what_it_quotes_is_what_run_says() {
         assert!(lines.any(|own| own == line), "{line}\n{said}");
     }
     assert!(quoted.count() > 5);
+}
+
+/// Below a paragraph of these pages with a command on a scenario are lines that the command prints, in their order.
+#[test]
+fn pages_quote_what_their_commands_print() {
+    for (page, outputs) in [("docs/example.md", 3), ("docs/models.md", 1)] {
+        let page = fs::read_to_string(repository().join(page)).unwrap();
+        let mut blocks = page.split("\n\n").peekable();
+        let mut quoted = 0;
+        while let Some(paragraph) = blocks.next() {
+            let paragraph = paragraph.replace('\n', " ");
+            let mut code = paragraph.split('`').skip(1).step_by(2);
+            let Some(command) = code.find(|code| code.contains(" scenarios/")) else {
+                continue;
+            };
+            let folder = scenarios().display().to_string();
+            let command = command.replace("scenarios", &folder);
+            let said = run(&command.split(' ').skip(1).collect::<Vec<_>>());
+            let mut lines = said.lines();
+            assert!(blocks.peek().is_some_and(|next| next.starts_with("    ")));
+            while let Some(output) = blocks.next_if(|next| next.starts_with("    ")) {
+                for line in output.lines().filter_map(|line| line.strip_prefix("    ")) {
+                    assert!(lines.any(|own| own == line), "{line}\n{said}");
+                }
+            }
+            quoted += 1;
+        }
+        assert_eq!(quoted, outputs);
+    }
 }
 
 #[test]

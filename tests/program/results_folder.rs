@@ -1,4 +1,4 @@
-//! A results folder holds one scenario: its lock, what a command removes and keeps, and its warnings.
+//! A results folder holds one scenario: its lock, the files that a command removes and keeps, and its warnings.
 #![cfg(unix)]
 
 use std::fs;
@@ -144,7 +144,7 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
         all_are_of(&at.join("o"), 0.05);
         assert!(kept.iter().all(|name| at.join("o").join(name).exists()));
     }
-    // A run that fails leaves the last results as they are.
+    // A run that fails leaves the last results unchanged.
     let before = below(&at.join("o"));
     let wrong = archrock(at, &["run", "weak.toml", "--point", "90,90", "--out", "o"]);
     assert_eq!(wrong.status.code(), Some(2));
@@ -294,7 +294,7 @@ fn results_of_other_commands_stay_and_other_scenarios_are_warned_of() {
         let mut expected: Vec<_> = kind.files.to_vec();
         expected.sort_unstable();
         assert_eq!(names(&samples), expected);
-        // What a command removes of its own is all of it, and nothing else.
+        // A command removes all of its own files, and no others.
         let others = |name: &&String| !name.starts_with(&format!("{}/", kind.name));
         let before = below(&at.join("o"));
         succeeds(at, &[&arguments[..], &["--no-uncertain"]].concat());

@@ -120,7 +120,7 @@ fn a_killed_run_leaves_complete_results_or_none() {
         }
     }
     assert!(killed > 5, "{killed} killed, {finished} finished");
-    // The next run removes what they left.
+    // The next run removes the files that they left.
     assert!(spawn(0).wait().unwrap().success());
     assert!(check_results(&folder, 40.0));
     assert_eq!(names(&folder), crate::common::program::RUN_FILES);
@@ -406,7 +406,7 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
     );
 }
 
-/// What a terminal shows for a command; `None` if no terminal can be emulated.
+/// Text that a terminal shows for a command; `None` if no terminal can be emulated.
 fn on_a_terminal(folder: &Path, command: &str) -> Option<String> {
     let ran = Command::new("script")
         .args(["--quiet", "--return", "--command", command, "/dev/null"])

@@ -61,7 +61,7 @@ fn the_tour_says_what_it_shows() {
     assert!(page.contains(&format!("```toml\n{scenario}```")));
     let commands = says_what_it_shows("docs/tour.md", folder.path());
     assert!((2..=4).contains(&commands));
-    // The files that the reader is told to look at.
+    // The files to which the page refers.
     for record in ["nga1.at2", "station.csv"] {
         let results = folder.path().join("results/tour").join(record);
         for file in [

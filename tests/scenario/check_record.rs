@@ -192,7 +192,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.starts_with("g.AT2: ") && said.contains("\ncomma.csv: table"),
         "{said}"
     );
-    // What is left out of a file with a unit of its own is said.
+    // Keys that are ignored for a file with its own unit cause a warning.
     let output = check(&two);
     assert!(
         stderr(&output).contains("g.AT2: `unit` is for the tables among the files"),
@@ -479,7 +479,7 @@ fn the_name_of_a_column_gives_the_unit_of_times() {
         );
         assert!(!warnings.contains(asks) || warnings.contains("are its times in milliseconds?"));
     }
-    // The step that a key gives is asked about as well.
+    // The step of a key is checked as well.
     fs::write(folder.path().join("one.csv"), "0\n1\n0\n").unwrap();
     let arguments = ["check", "one.csv", "--set", "unit=m/s2", "--set", "dt_s=5"];
     let said = stderr(&archrock(folder.path(), &arguments));

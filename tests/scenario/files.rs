@@ -1,5 +1,6 @@
-//! Scenario files: what is read, what is refused and where, and how a scenario is written back.
+//! Scenario files: their contents, errors with places, and scenarios written back as text.
 
+use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::FreeTable;
@@ -38,19 +39,38 @@ fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &
 /// The defaults of Python's keyword arguments are those of a scenario.
 #[test]
 fn defaults_are_those_of_python() {
-    let json = parse(ARCH).unwrap().to_json();
-    let settings = json["simulation"].as_object().unwrap();
+    let scenario = parse(ARCH).unwrap();
+    let mut settings = scenario.to_json()["simulation"].clone();
+    settings["impact"] = json!(ImpactModel::MaxRestitution.name());
+    settings["model"] = scenario.model_name().into();
+    let ground = Scenario::schema()["properties"]["ground"]["properties"].clone();
+    let mut trains = json!({});
+    for kind in ["gabor", "windowed_sine"] {
+        for (key, schema) in ground[kind]["properties"].as_object().unwrap() {
+            if let Some(default) = schema.get("default") {
+                trains[key] = default.clone();
+            }
+        }
+    }
     let package = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("python/package/archrock");
-    let sources = ["_settings.py", "_scenario.py"];
-    let sources = sources.map(|name| std::fs::read_to_string(package.join(name)).unwrap());
-    for (source, (key, default)) in sources
-        .iter()
-        .flat_map(|source| settings.iter().map(move |setting| (source, setting)))
-    {
-        let keyword = format!("    {key}: float = ");
-        let said = source.lines().find_map(|line| line.strip_prefix(&keyword));
-        let said = said.map(|value| value.trim_end_matches(','));
-        assert_eq!(said, Some(default.to_string().as_str()), "{key}");
+    for (name, defaults) in [
+        ("_settings.py", &settings),
+        ("_scenario.py", &settings),
+        ("_ground.py", &trains),
+    ] {
+        let source = std::fs::read_to_string(package.join(name)).unwrap();
+        for (key, default) in defaults.as_object().unwrap() {
+            let keyword = format!("{key}: ");
+            let lines = source.lines().map(str::trim_start);
+            let given = lines.filter_map(|line| line.strip_prefix(&keyword)?.split_once(" = "));
+            let given = given.map(|(_, value)| value.trim_end_matches(','));
+            let given: Vec<_> = given.filter(|value| *value != "None").collect();
+            assert!(!given.is_empty(), "{key} in {name}");
+            assert!(
+                given.iter().all(|value| *value == default.to_string()),
+                "{key} in {name}"
+            );
+        }
     }
 }
 
@@ -260,7 +280,7 @@ duration_s = { from = 0.1, to = 1.0, count = 3, spacing = "linear" }
 amplitude_g = [1.0, 2.0]
 "#
     );
-    // The resolved scenario is written, not only what was given.
+    // The resolved scenario is written, not only the given keys.
     assert_eq!(scenario.title(), Some("all of it"));
     let arch = Arch::new(10.0, 0.15, 157.5)
         .and_then(|arch| arch.with_depth_m(2.0))
@@ -826,6 +846,7 @@ proptest! {
         let scenario = parse(&[title, structure, ground, initial, simulation].concat()).unwrap();
         let text = scenario.to_toml();
         let json: serde_json::Value = toml::from_str(&text).unwrap();
+        prop_assert_eq!(violations(&Scenario::schema(), &json, ""), [""; 0]);
         prop_assert_eq!(json, scenario.to_json());
         prop_assert_eq!(parse(&text), Ok(scenario));
     }

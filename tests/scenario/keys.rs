@@ -1,5 +1,7 @@
 //! The keys that a scenario allows, as the reader describes them, and their description in the documents.
 
+use crate::common::schema::violations;
+use crate::common::{ARCH, COLUMN};
 use archrock::Scenario;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -227,37 +229,244 @@ fn the_reference_has_the_defaults_and_bounds_that_are_read() {
     assert!(ranges >= 8, "{ranges} ranges");
 }
 
-/// All scenarios of the repository follow the schema, as an editor checks them: no key is unknown, and all required ones are there.
+/// All scenarios of the repository, and those to start from, are valid by the schema that editors use.
 #[test]
 fn scenarios_follow_the_schema() {
-    let tables = tables();
-    let check = |table: &toml::Table, name: &str| {
-        let (keys, required) = &tables[name];
-        for key in table.keys().filter(|key| !key.contains('.')) {
-            assert!(keys.contains_key(key), "`{key}` of [{name}]");
-        }
-        if !matches!(name, "demand" | "demand.slv" | "demand.slc" | "demand.sld") {
-            assert!(
-                required.iter().all(|key| table.contains_key(key)),
-                "[{name}]"
-            );
-        }
-    };
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
+    let schema = Scenario::schema();
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut checked = 0;
-    for file in fs::read_dir(folder).unwrap() {
-        let path = file.unwrap().path();
-        if path.extension().is_some_and(|ending| ending == "toml") {
-            let text = fs::read_to_string(&path).unwrap();
-            let root: toml::Table = toml::from_str(&text).unwrap();
-            check(&root, "");
-            for (name, value) in &root {
-                if let Some(table) = value.as_table() {
-                    check(table, name);
-                }
+    for folder in [
+        "scenarios",
+        "scenarios/tour",
+        "scenarios/uncertain",
+        "src/cli/init",
+    ] {
+        for file in fs::read_dir(repository.join(folder)).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_some_and(|ending| ending == "toml") {
+                let text = fs::read_to_string(&path).unwrap();
+                let value: Value = toml::from_str(&text).unwrap();
+                let place = path.display().to_string();
+                assert_eq!(violations(&schema, &value, &place), [""; 0]);
+                checked += 1;
             }
-            checked += 1;
         }
     }
-    assert!(checked > 10);
+    assert!(checked >= 25, "{checked}");
+}
+
+/// Scenarios that the reader accepts and that give some keys in a rare place are valid by the schema as well.
+#[test]
+fn the_schema_allows_all_ways_to_give_a_table() {
+    let schema = Scenario::schema();
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("slv.csv"), "0,0.2\n0.5,0.4\n4,0.1\n").unwrap();
+    for more in [
+        "[demand.slv]\nspectrum = 'slv.csv'\n",
+        "[piers]\nwidth_m = 2.0\n[piers.left]\nheight_m = 3.0\n[piers.right]\nheight_m = 2.0\n[free_hinges]\n",
+    ] {
+        let text = format!("{ARCH}voussoirs = 9\n{more}");
+        let name = folder.path().join("s.toml");
+        Scenario::parse(&text, name.to_str().unwrap()).unwrap();
+        let value = toml::from_str(&text).unwrap();
+        assert_eq!(violations(&schema, &value, ""), [""; 0]);
+    }
+}
+
+/// A text that breaks one relation between keys is refused by the reader in these words, and by the schema.
+#[test]
+fn every_relation_between_keys_is_checked() {
+    let schema = Scenario::schema();
+    let refused = |text: &str, words: &str| {
+        let errors = Scenario::parse(text, "s.toml").unwrap_err().to_string();
+        assert!(errors.contains(words), "{words:?} is not in: {errors}");
+        let value = toml::from_str(text).unwrap();
+        assert!(!violations(&schema, &value, "").is_empty(), "{text}");
+    };
+    let one = "needs exactly one of the";
+    let not_with = |key: &str, other: &str| format!("`{key}` cannot be combined with `{other}`");
+    let needs = |other: &str| format!("needs `{other}`");
+    refused("", one);
+    refused(&format!("{ARCH}{COLUMN}"), &not_with("column", "arch"));
+    let drums = "drums = 2\ndrum_heights_m = [2, 2]\n[free_hinges]\n";
+    refused(
+        &format!("{COLUMN}{drums}"),
+        &not_with("drum_heights_m", "drums"),
+    );
+    let shape = "[arch]\nthickness_ratio = 0.15\n";
+    for (keys, words) in [
+        ("embrace_deg = 180.0\n", "lacks `mean_radius_m`: give"),
+        (
+            "mean_radius_m = 5\nspan_m = 10\nmeasured_at = 'mean'\nrise_m = 5\n",
+            &not_with("span_m", "mean_radius_m"),
+        ),
+        ("mean_radius_m = 5\n", one),
+        (
+            "span_m = 10\nmeasured_at = 'mean'\nrise_m = 5\nembrace_deg = 180.0\n",
+            &not_with("embrace_deg", "rise_m"),
+        ),
+        ("mean_radius_m = 5\nrise_m = 5\n", &needs("span_m")),
+        (
+            "mean_radius_m = 5\nembrace_deg = 180.0\nmeasured_at = 'mean'\n",
+            &needs("span_m"),
+        ),
+        ("span_m = 10\nrise_m = 5\n", &needs("measured_at")),
+        (
+            "mean_radius_m = 5\nembrace_deg = 180.0\nthickness_m = 1\n",
+            &not_with("thickness_m", "thickness_ratio"),
+        ),
+        (
+            "mean_radius_m = 5\nembrace_deg = 180.0\nvoussoirs = 9\njoints_deg = [0, 90, 180]\n",
+            &not_with("joints_deg", "voussoirs"),
+        ),
+    ] {
+        refused(&format!("{shape}{keys}"), words);
+    }
+    let arch = format!("{ARCH}voussoirs = 9\n");
+    let tie = "from_m = [0, 1]\nto_m = [1, 1]\n";
+    let bar = "height_m = 2\narea_mm2 = 400\nmodulus_gpa = 200\n";
+    for (keys, words) in [
+        ("stiffness_n_m = 1e6\n", one),
+        (
+            &format!("{bar}between = 'springings'\n"),
+            &not_with("between", "height_m"),
+        ),
+        (
+            &format!("{bar}from_m = [0, 1]\n"),
+            &not_with("from_m", "height_m"),
+        ),
+        ("from_m = [0, 1]\nstiffness_n_m = 1e6\n", &needs("to_m")),
+        (&format!("{bar}from_block = 1\n"), &needs("from_m")),
+        (&format!("{bar}to_block = 1\n"), &needs("to_m")),
+        (tie, one),
+        (
+            &format!("{bar}stiffness_n_m = 1e6\n"),
+            &not_with("stiffness_n_m", "area_mm2"),
+        ),
+        (&format!("{tie}area_mm2 = 400\n"), &needs("modulus_gpa")),
+        (
+            &format!("{tie}stiffness_n_m = 1e6\nmodulus_gpa = 200\n"),
+            &needs("area_mm2"),
+        ),
+        (
+            &format!("{bar}yield_force_n = 1e5\nyield_stress_mpa = 200\n"),
+            &not_with("yield_stress_mpa", "yield_force_n"),
+        ),
+        (
+            &format!("{tie}stiffness_n_m = 1e6\nyield_stress_mpa = 200\n"),
+            &needs("area_mm2"),
+        ),
+    ] {
+        refused(&format!("{arch}[[tie]]\n{keys}"), words);
+    }
+    let (normal, stone) = ("normal_stiffness_gpa_m = 10\n", "stone_modulus_gpa = 10\n");
+    for (keys, words) in [
+        ("", "lacks a stiffness"),
+        (
+            &format!("{normal}{stone}"),
+            &not_with("stone_modulus_gpa", "normal_stiffness_gpa_m"),
+        ),
+        (
+            &format!("{stone}shear_stiffness_gpa_m = 4\n"),
+            "goes with `normal_stiffness_gpa_m`",
+        ),
+        (
+            &format!("{stone}mortar_modulus_gpa = 1\n"),
+            &needs("mortar_thickness_m"),
+        ),
+        (
+            &format!("{stone}mortar_thickness_m = 0.01\n"),
+            &needs("mortar_modulus_gpa"),
+        ),
+        (
+            &format!("{normal}mortar_modulus_gpa = 1\nmortar_thickness_m = 0.01\n"),
+            "goes with `stone_modulus_gpa`",
+        ),
+        (
+            &format!(
+                "{normal}damping_time_s = 1e-4\ndamping_ratio = 0.1\ndamping_frequency_hz = 10\n"
+            ),
+            &not_with("damping_ratio", "damping_time_s"),
+        ),
+        (
+            &format!(
+                "{normal}damping_time_s = 1e-4\ndamping_ratio = 0.1\ndamping_frequency_hz = 10\n"
+            ),
+            &not_with("damping_frequency_hz", "damping_time_s"),
+        ),
+        (
+            &format!("{normal}damping_ratio = 0.1\n"),
+            &needs("damping_frequency_hz"),
+        ),
+        (
+            &format!("{normal}damping_frequency_hz = 10\n"),
+            &needs("damping_ratio"),
+        ),
+        (
+            &format!("{normal}contact = 'continuous'\ncontact_points = 3\n"),
+            &not_with("contact_points", "contact"),
+        ),
+    ] {
+        refused(&format!("{arch}[elastic_joints]\n{keys}"), words);
+    }
+    let uncertain = |spread: &str| format!("[uncertain]\n\"arch.depth_m\" = {{ {spread} }}\n");
+    let (code, state) = (
+        "[demand]\nsoil = 'B'\n",
+        "[demand.slv]\nag_g = 0.2\nf0 = 2.4\ntc_star_s = 0.3\n",
+    );
+    let (half, sine) = (
+        "[ground.half_sine]\n",
+        "amplitude_g = 0.1\nduration_s = 1\n",
+    );
+    let record = "[ground.record]\nfile = 'a.at2'\n";
+    for (tables, words) in [
+        (uncertain("distribution = 'normal'"), "must be a range"),
+        (uncertain("from = 1, to = 2, deviation = 0.1"), &not_with("deviation", "from")),
+        (uncertain("from = 1"), &needs("to")),
+        (uncertain("deviation = 0.1, spacing = 'linear'"), &needs("from")),
+        (uncertain("from = 1, to = 2, distribution = 'normal'"), &needs("deviation")),
+        (uncertain("from = 1, to = 2, distribution = 'normal'"), &not_with("distribution", "from")),
+        (format!("{code}{state}"), one),
+        (format!("{code}topography = 'T1'\ntopographic_factor = 1.1\n{state}"), &not_with("topographic_factor", "topography")),
+        ("[verify.free_standing]\n".to_owned(), one),
+        ("[verify]\nfree_standing = { t0_s = 0.1, kappa = 6.2, length_m = 4, thickness_m = 0.8, modulus_gpa = 1 }\n".to_owned(), &not_with("kappa", "t0_s")),
+        ("[verify]\nfree_standing = { kappa = 6.2, thickness_m = 0.8, modulus_gpa = 1 }\n".to_owned(), &needs("length_m")),
+        ("[fill]\ndensity_kg_m3 = 1800\n".to_owned(), one),
+        ("[fill]\ndensity_kg_m3 = 1800\nheight_m = 6\nabove_crown_m = 0.5\n".to_owned(), &not_with("above_crown_m", "height_m")),
+        ("[ground]\n".to_owned(), one),
+        (format!("{half}{sine}[ground.ricker]\n{sine}"), &not_with("ricker", "half_sine")),
+        (format!("{half}{sine}[ground.right]\n"), one),
+        (format!("{half}{sine}[ground.right]\ndelay_s = 1\napparent_velocity_m_s = 100\n"), &not_with("apparent_velocity_m_s", "delay_s")),
+        (format!("{record}scale = 2\npeak_g = 0.3\n"), &not_with("peak_g", "scale")),
+        ("[suite]\nrecords = 'a.at2'\n".to_owned(), one),
+        ("[suite]\nrecords = 'a.at2'\nscales = [1]\npeaks_g = [1]\n".to_owned(), &not_with("peaks_g", "scales")),
+    ] {
+        refused(&format!("{arch}[free_hinges]\n{tables}"), words);
+    }
+    // The option `--hinges` chooses one of these tables, so only the reader refuses them together.
+    let elastic = format!("[elastic_joints]\n{normal}");
+    for (tables, words) in [
+        (
+            format!("[free_hinges]\n{elastic}"),
+            "table `free_hinges` cannot be combined with [elastic_joints]",
+        ),
+        (
+            format!("[impact]\n{elastic}"),
+            "table `impact` cannot be combined with [elastic_joints]",
+        ),
+        (
+            "[impact]\n[free_hinges]\n".to_owned(),
+            "table `impact` cannot be combined with [free_hinges]",
+        ),
+    ] {
+        let errors = Scenario::parse(&format!("{arch}{tables}"), "s.toml").unwrap_err();
+        assert!(
+            errors.to_string().contains(words),
+            "{words:?} is not in: {errors}"
+        );
+    }
+    // All broken relations are reported together.
+    let tie = "from_block = 1\nto_block = 2\nmodulus_gpa = 200\nyield_stress_mpa = 200\nyield_force_n = 1\n";
+    let errors = Scenario::parse(&format!("{arch}[[tie]]\n{tie}"), "s.toml").unwrap_err();
+    assert_eq!(errors.as_slice().len(), 7, "{errors}");
 }

@@ -1,4 +1,4 @@
-//! Scenario files and records: what is read, and what is an error.
+//! Scenario files and records: their contents and errors.
 
 mod check_record;
 mod files;

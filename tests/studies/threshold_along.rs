@@ -379,6 +379,7 @@ fn replaced_names_have_a_successor() {
             "m.toml:9:1: `spread` in [map] is now called `repeat`",
         ),
     ] {
-        refused(at, arguments, &[successor]);
+        let message = refused(at, arguments, &[successor]);
+        assert!(!message.contains("\n\n\n"), "{message}");
     }
 }

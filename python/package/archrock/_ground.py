@@ -329,7 +329,7 @@ class Record(Ground):
         table: Tables = dict(self._tables["record"])
         if "vertical" in table:
             raise ValueError("`vertical` has a vertical record itself: give one record per direction")
-        # It uses the clock of the horizontal record, and its place already tells its direction.
+        # It uses the clock of the horizontal record, and its place implies its direction.
         table.pop("start_s", None)
         table.pop("component", None)
         name = table["file"]

@@ -44,8 +44,8 @@ class Mechanism:
     hinges: tuple[Hinge, ...]
 
     @classmethod
-    def _of(cls, told: Mapping[str, Any]) -> Mechanism:
-        return cls(told["sway"], Hinge._all(told["hinges"]))
+    def _of(cls, values: Mapping[str, Any]) -> Mechanism:
+        return cls(values["sway"], Hinge._all(values["hinges"]))
 
 
 @dataclass(frozen=True)
@@ -94,9 +94,9 @@ class Limit:
     details: dict[str, Any] = field(repr=False, compare=False)
 
     @classmethod
-    def _of(cls, told: dict[str, Any]) -> Limit:
+    def _of(cls, values: dict[str, Any]) -> Limit:
         def onset(side: str) -> Onset:
-            hinges = told["mechanism"][side] or []
-            return Onset(told["incipient_acceleration_g"][side], Hinge._all(hinges))
+            hinges = values["mechanism"][side] or []
+            return Onset(values["incipient_acceleration_g"][side], Hinge._all(hinges))
 
-        return cls(onset("right"), onset("left"), told)
+        return cls(onset("right"), onset("left"), values)

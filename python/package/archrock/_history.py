@@ -57,15 +57,15 @@ class Impact:
     impulses_n_s: tuple[tuple[float, float], ...]
 
     @classmethod
-    def _of(cls, told: dict[str, Any]) -> Impact:
+    def _of(cls, values: dict[str, Any]) -> Impact:
         return cls(
             **{
-                **told,
-                "rates_before_rad_s": tuple(told["rates_before_rad_s"]),
-                "rates_after_rad_s": tuple(told["rates_after_rad_s"]),
-                "closed": Hinge._all(told["closed"]),
-                "opened": Hinge._all(told["opened"]),
-                "impulses_n_s": tuple((x, y) for x, y in told["impulses_n_s"]),
+                **values,
+                "rates_before_rad_s": tuple(values["rates_before_rad_s"]),
+                "rates_after_rad_s": tuple(values["rates_after_rad_s"]),
+                "closed": Hinge._all(values["closed"]),
+                "opened": Hinge._all(values["opened"]),
+                "impulses_n_s": tuple((x, y) for x, y in values["impulses_n_s"]),
             }
         )
 
@@ -98,14 +98,14 @@ class Event:
     impact: Impact | None
 
     @classmethod
-    def _of(cls, told: dict[str, Any]) -> Event:
-        impact = told["impact"]
+    def _of(cls, values: dict[str, Any]) -> Event:
+        impact = values["impact"]
         return cls(
             **{
-                **told,
-                "rotations_rad": tuple(told["rotations_rad"]),
-                "rates_rad_s": tuple(told["rates_rad_s"]),
-                "hinges": Hinge._all(told["hinges"]),
+                **values,
+                "rotations_rad": tuple(values["rotations_rad"]),
+                "rates_rad_s": tuple(values["rates_rad_s"]),
+                "hinges": Hinge._all(values["hinges"]),
                 "impact": None if impact is None else Impact._of(impact),
             }
         )

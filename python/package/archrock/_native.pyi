@@ -12,6 +12,7 @@ import numpy.typing as npt
 Progress = Callable[[int, int], object]
 
 MEMORY_GB: float
+MODELS: list[str]
 
 class Scenario:
     def __init__(

@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from ._described import Described
 from ._ground import Ground, Record
 from ._hinge import Limit
 from ._history import History
-from ._native import MEMORY_GB
+from ._native import MEMORY_GB, MODELS
 from ._native import Scenario as NativeScenario
 from ._settings import Settings
 from ._structure import Model, Structure
@@ -274,15 +274,9 @@ def _contents(tables: Tables, folder: str | None, *, missing: bool) -> dict[str,
 
 
 def _model(name: object) -> Model:
-    if name == "four_links":
-        return "four_links"
-    if name == "free_hinges":
-        return "free_hinges"
-    if name == "elastic_joints":
-        return "elastic_joints"
-    raise ValueError(
-        f"`model = {name!r}` is not one of 'four_links', 'free_hinges' and 'elastic_joints'"
-    )
+    if name in MODELS:
+        return cast(Model, name)
+    raise ValueError(f"`model = {name!r}` is not one of {', '.join(MODELS)}")
 
 
 def _bytes(memory_gb: float) -> int:

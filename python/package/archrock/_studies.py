@@ -311,9 +311,9 @@ class Threshold(Results):
             (self.uncertain, "uncertain", "C2", "//"),
         )
         for ranges, label, color, hatch in looks:
-            for index, told in enumerate(ranges):
+            for index, band in enumerate(ranges):
                 name = label if index == 0 else None
-                ax.axvspan(told["from"], told["to"], color=color, alpha=0.3, hatch=hatch, label=name)
+                ax.axvspan(band["from"], band["to"], color=color, alpha=0.3, hatch=hatch, label=name)
         ax.set_xscale("log")
         ax.set_xlabel("factor on the ground motion")
         ax.set_ylabel("largest / critical rotation" if known else "largest rotation (rad)")
@@ -868,10 +868,10 @@ def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, b
     table: dict[str, Any] = dict(demand)
     files: dict[str, bytes] = {}
     for state in ("sld", "slv", "slc"):
-        told = table.get(state)
-        if not isinstance(told, Mapping) or "spectrum" not in told:
+        given = table.get(state)
+        if not isinstance(given, Mapping) or "spectrum" not in given:
             continue
-        points = told["spectrum"]
+        points = given["spectrum"]
         if isinstance(points, (str, os.PathLike)):
             contents = Path(points).read_bytes()
         else:
@@ -879,7 +879,7 @@ def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, b
             contents = _csv(periods, accelerations)
         name = f"{state}.csv"
         files[name] = contents
-        table[state] = {**told, "spectrum": name}
+        table[state] = {**given, "spectrum": name}
     return table, files
 
 
@@ -893,10 +893,10 @@ def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, 
         raise ValueError(f"the records must be in one unit, not in {sorted(units)}")
     files: dict[str, bytes] = {}
     for record in records:
-        told = record._tables["record"]
-        if "vertical" in told or told.get("component") == "vertical":
+        table = record._tables["record"]
+        if "vertical" in table or table.get("component") == "vertical":
             raise ValueError(f"{record.name!r}: the records must be horizontal")
-        if told.get("scale") != 1.0:
+        if table.get("scale") != 1.0:
             raise ValueError(
                 f"{record.name!r} is scaled itself: leave `scale` and `peak_g` out, records are taken as they are"
             )

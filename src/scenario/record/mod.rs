@@ -4,9 +4,9 @@
 //! [ground.record]
 //! file = "north.at2"            # relative to the scenario file
 //! format = "at2"                # or "asc", "knet" or "csv"; from the file extension when left out
-//! quantity = "acceleration"     # or "velocity": what the samples are
+//! quantity = "acceleration"     # or "velocity": quantity of the samples
 //! remove_mean = false           # whether accelerations are read without their mean
-//! component = "horizontal"      # or "vertical": where the file's accelerations point, positive to the
+//! component = "horizontal"      # or "vertical": direction of the accelerations, positive to the
 //!                               # right or upwards
 //! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
 //! start_s = 0.0                 # time of the simulation at the file's time zero
@@ -155,7 +155,7 @@ impl Record {
         [&self.main].into_iter().chain(&self.vertical)
     }
 
-    /// The ground motion with another scaling of the horizontal record, or of the only one; the vertical one stays as it is.
+    /// The ground motion with another scaling of the horizontal record, or of the only one; the vertical one is unchanged.
     pub(crate) fn rescaled(
         &self,
         scaling: Scaling,
@@ -255,11 +255,10 @@ impl Series {
         }
     }
 
-    /// Reads a file on its own, with the keys of `[ground.record]` that tell how.
+    /// Reads a file on its own, with keys of `[ground.record]` that describe it.
     ///
     /// # Errors
-    /// Everything that is wrong with the keys, or what is wrong with the file. The only place given is the assignment or the
-    /// file.
+    /// All faults of the keys, or the fault of the file. Each names its assignment or the file, without a line.
     pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
         let layout = table::read_text(("", Path::new("")), keys, |table| {

@@ -45,7 +45,7 @@ impl Contents {
 pub struct LineFault {
     /// Line, from 1.
     pub line: usize,
-    /// The offending value, and what is allowed instead.
+    /// The wrong value and the allowed ones.
     pub message: String,
 }
 

@@ -1,4 +1,4 @@
-//! The dimensions of a structure, as a drawing has them.
+//! Dimensions of a structure for its drawing.
 
 use nalgebra::Vector2;
 
@@ -12,18 +12,18 @@ use crate::mechanics::masonry::{CircularArch, Masonry, Pier, Piers, Shape};
 pub struct Dimension {
     /// Its ends, in metres: of a width from left to right, of a height from below.
     pub ends_m: [Vector2<f64>; 2],
-    /// Where it is drawn.
+    /// Place of the dimension beside the structure.
     pub side: DimensionSide,
-    /// Its value, with a name where its place does not tell which it is.
+    /// Label on the drawing: the value, with the name if the place is ambiguous.
     pub text: String,
-    /// Its name and value.
+    /// Name and value in words.
     pub words: String,
 }
 
-/// Where a dimension is drawn: outside the structure.
+/// Side of the structure on which a dimension is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DimensionSide {
-    /// A width.
+    /// Below, for a width.
     Below,
     /// A height.
     Left,
@@ -32,7 +32,7 @@ pub enum DimensionSide {
 }
 
 impl Dimension {
-    /// A dimension; its name is drawn beside it where its place does not show which it is.
+    /// A dimension; its label has the name if the place is ambiguous: `is_named`.
     fn new(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str, is_named: bool) -> Self {
         let along_m = ends_m[1] - ends_m[0];
         let length_m = match side {
@@ -62,7 +62,7 @@ pub fn metres(length_m: f64) -> String {
 }
 
 impl Structure {
-    /// Its dimensions.
+    /// Dimensions of the structure.
     #[must_use]
     pub fn dimensions(&self) -> Vec<Dimension> {
         match self {
@@ -83,7 +83,7 @@ impl Structure {
     }
 }
 
-/// The circular arch, with whatever stands or lies beside it.
+/// The circular arch of masonry, which may also have piers, fill and loads.
 pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
     match &masonry.shape {
         Shape::Circular(circular) => Some(&circular.arch),

@@ -47,16 +47,16 @@ pub enum Structure {
     Masonry(Box<Masonry>),
 }
 
-/// Why a structure has no model of motion.
+/// Error: a structure has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModelError {
-    /// It does not rock as four links.
+    /// The structure does not rock as four links.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
-    /// It is not a row of blocks that stands.
+    /// The structure is not a row of blocks that can stand.
     #[error(transparent)]
     FreeHinges(#[from] RowModelError),
-    /// It does not stand on its elastic joints.
+    /// The structure does not stand on its elastic joints.
     #[error(transparent)]
     ElasticJoints(RowModelError),
 }
@@ -98,7 +98,7 @@ impl Structure {
         Ok((structure, ties))
     }
 
-    /// Its ties.
+    /// Ties of the structure.
     #[must_use]
     pub fn ties(&self) -> &[Tie] {
         match self {
@@ -149,7 +149,7 @@ impl Structure {
         }
     }
 
-    /// Fill and loads on it, as they are drawn; `None` for a structure that cannot carry any.
+    /// Fill and loads to draw on the structure; `None` if it cannot carry any.
     #[must_use]
     pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
         match self {
@@ -158,25 +158,25 @@ impl Structure {
         }
     }
 
-    /// Whether it thrusts at its springings: an arch does, a free-standing column does not.
+    /// True for an arch, which thrusts at its springings; false for a free-standing column.
     #[must_use]
     pub const fn thrusts(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
-    /// Whether it stands on one support, as a column does.
+    /// True if the structure stands on one support, like a column.
     #[must_use]
     pub fn stands_on_one_support(&self) -> bool {
         self.row().is_ok_and(|row| row.supports == Supports::Left)
     }
 
-    /// Whether it is symmetric whatever its dimensions.
+    /// True for shapes that are symmetric for all dimensions.
     #[must_use]
     pub const fn is_symmetric(&self) -> bool {
         !matches!(self, Self::Masonry(_))
     }
 
-    /// The circular arch, if the structure is one by itself.
+    /// The circular arch, if the structure is one without piers, fill, loads and ties.
     #[must_use]
     pub const fn circular(&self) -> Option<&Arch> {
         match self {
@@ -197,7 +197,7 @@ impl Structure {
         }
     }
 
-    /// The rotation below which it can be released: the limit position of its first mechanism. `None` if that mechanism
+    /// Release rotations must stay below this limit position of the first mechanism, in rad. `None` if that mechanism
     /// has more than one degree of freedom. Drums turn about the base as one block.
     pub(super) fn release_limit_rad(&self) -> Option<f64> {
         match self {
@@ -215,7 +215,7 @@ impl Structure {
         }
     }
 
-    /// Its blocks.
+    /// The structure as a row of blocks.
     ///
     /// # Errors
     /// When it is an arch without voussoirs.
@@ -237,7 +237,7 @@ impl Structure {
         }
     }
 
-    /// The model of the motion as a row of blocks whose joints open and shut.
+    /// The model of the motion as a row of rigid blocks whose joints open and close.
     ///
     /// # Errors
     /// When it is an arch without voussoirs, or cannot stand.

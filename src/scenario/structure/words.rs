@@ -1,4 +1,4 @@
-//! A structure in words: its dimensions, its frame of reference, and where its ties are in it.
+//! A structure in words: its dimensions, frame of reference and places of ties.
 
 use super::Structure;
 use super::dimensions::{circular, metres};
@@ -32,7 +32,7 @@ impl Structure {
         parts.join("; ")
     }
 
-    /// Where the coordinates x and y are zero. Ties, loads, points and results use this frame.
+    /// Origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
     #[must_use]
     pub fn origin(&self) -> String {
         let circular = match self {
@@ -64,7 +64,7 @@ impl Structure {
         words.to_owned()
     }
 
-    /// The frame of reference and where each tie is in it, a line each; empty without ties.
+    /// The frame of reference and the place of each tie, a line each; empty without ties.
     #[must_use]
     pub fn tie_places(&self) -> Vec<String> {
         let mut places = self.ties_in_words();
@@ -74,7 +74,7 @@ impl Structure {
         places
     }
 
-    /// Where each tie is: its ends, and its height above the springings of an arch.
+    /// The place of each tie: its ends, and its height above the springings of an arch.
     #[must_use]
     pub fn ties_in_words(&self) -> Vec<String> {
         let springing_m = match self {
@@ -87,7 +87,7 @@ impl Structure {
     }
 }
 
-/// Where its span and rise are measured, if the scenario gives them.
+/// The line along which span and rise are measured, in words, if the scenario gives them.
 fn measured(arch: &Arch) -> Option<String> {
     let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
