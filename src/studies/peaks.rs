@@ -139,8 +139,8 @@ fn in_words(found: &Distance) -> String {
         .shares_there
         .map(|share| format!("{:.0} %", 100.0 * share));
     format!(
-        "distributions of the largest rotation, {one} and {other}: Kolmogorov distance {:.2}: {one_there} and {other_there} of the cases \
-         rotate by at most {:.4} rad",
+        "largest rotation, {one} against {other}: Kolmogorov distance {:.2}, at {:.4} rad, which {one_there} and {other_there} of the cases \
+         do not exceed",
         found.kolmogorov_distance, found.at_rotation_rad
     )
 }

@@ -1439,7 +1439,7 @@ fn a_flat_thick_arch_jams() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
     let words = printed(folder.path(), &["--quiet", "spread", "flat.toml"]);
-    let jammed = "right springing inwards: stands up to 0.000000 m, and was not followed further: the blocks jam";
+    let jammed = "right springing inwards: stands up to 0.000000 m, and cannot be followed further: the blocks jam";
     assert!(words.contains(jammed), "{words}");
     assert!(
         words.contains("right springing outwards: falls at"),

@@ -171,7 +171,7 @@ fn the_command_writes_table_picture_and_summary() {
     }
     let picture = std::fs::read_to_string(results.join("capacity.svg")).unwrap();
     assert!(roxmltree::Document::parse(&picture).is_ok());
-    for (point, words) in [("0", "two numbers"), ("0,100", "not on the structure")] {
+    for (point, words) in [("0", "two coordinates"), ("0,100", "not on the structure")] {
         let output = program::archrock(folder.path(), &["capacity", "a.toml", "--point", point]);
         assert_eq!(output.status.code(), Some(2));
         assert!(

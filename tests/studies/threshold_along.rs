@@ -332,7 +332,7 @@ fn faults_are_refused_with_a_remedy() {
         ],
     ]
     .concat();
-    refused(at, &free, &["--no-impact goes with four links and columns"]);
+    refused(at, &free, &["--no-impact is for four links and columns"]);
     refused(at, &["threshold", "s.toml", "--no-impact"], &["--along"]);
     fs::write(at.join("s.toml"), ARCH).unwrap();
     refused(
