@@ -234,5 +234,5 @@ pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
 
 /// Time in the simulation of the file's time zero; it is chosen so that no record begins before the simulation.
 fn start_s(series: &Series) -> f64 {
-    (-series.first_s()).max(0.0)
+    (0.0 - series.first_s()).max(0.0)
 }

@@ -121,7 +121,9 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
     for record in ["wave-1.at2", "wave-2.at2"] {
         assert!(said.contains(&format!("  {record}: ")), "{said}");
         let summary = json(&path.join("results/s").join(record).join("summary.json"));
-        assert_eq!(summary["scenario"]["ground"]["record"]["file"], record);
+        let shaking = &summary["scenario"]["ground"]["record"];
+        assert_eq!(shaking["file"], record);
+        assert_eq!(shaking["start_s"].to_string(), "0.0");
     }
     // The same as if it were the ground of the scenario.
     stdout(&archrock(path, &["run", "s.toml", "--out", "o"]));
