@@ -66,8 +66,9 @@ fn defaults_are_those_of_python() {
             let given = given.map(|(_, value)| value.trim_end_matches(','));
             let given: Vec<_> = given.filter(|value| *value != "None").collect();
             assert!(!given.is_empty(), "{key} in {name}");
+            let default = default.to_string();
             assert!(
-                given.iter().all(|value| *value == default.to_string()),
+                given.iter().all(|value| *value == default),
                 "{key} in {name}"
             );
         }
