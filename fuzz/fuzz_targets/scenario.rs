@@ -14,7 +14,11 @@ fuzz_target!(|text: &str| {
             for error in errors.as_slice() {
                 let place = error.place.expect("an error in a text has a place");
                 assert!((1..=lines).contains(&place.line) && place.column >= 1);
-                assert_eq!(shown(&error.message), error.message, "hidden characters are escaped");
+                assert_eq!(
+                    shown(&error.message),
+                    error.message,
+                    "hidden characters are escaped"
+                );
             }
         }
     }
