@@ -3,6 +3,7 @@
 use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
+use std::slice;
 use std::sync::Arc;
 
 use archrock::output::{Batch, Figure};
@@ -95,7 +96,7 @@ pub fn study<'py>(
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
         let rows = Rows::Compute(runner, None, watch);
-        kind.compute(&scenario, &options, STYLE, rows)
+        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {
@@ -126,7 +127,7 @@ pub fn compute_part(
         };
         let rows = Rows::Compute(runner, Some(task), watch);
         let options = Options::default();
-        kind.compute(&scenario, &options, STYLE, rows)
+        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {

@@ -1,18 +1,15 @@
 //! Commands that compute without long histories: `capacity`, `spread` and `verify`.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
-use archrock::output::Figure;
-use archrock::studies::catalogue::{Done, Options, Rows, StudyKind, VERIFY};
+use archrock::studies::catalogue::{Options, StudyKind, VERIFY};
 use archrock::studies::kept::{Origin, Writer};
-use archrock::studies::results::{StudyError, Style};
-use archrock::studies::runner::Runner;
+use archrock::studies::results::Style;
 
 use super::figure::FigureOption;
-use super::progress::say;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, show, warn};
+use super::study::{Session, Work};
+use super::{Failure, Format, warn};
 
 /// Options of commands without long histories.
 #[derive(clap::Args)]
@@ -31,8 +28,8 @@ pub struct CommonArguments {
 pub fn at_once(
     kind: StudyKind,
     arguments: &CommonArguments,
-    figure: Option<FigureOption>,
-    options: &Options,
+    figure: FigureOption,
+    options: Options,
 ) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     // Only `verify` needs a model of motion.
@@ -41,24 +38,14 @@ pub fn at_once(
         false => input.read_statics()?,
     };
     warn(&scenario.unlikely());
-    let style = Style::of(figure.map_or(Ok(Figure::SCREEN), FigureOption::get)?);
-    let mut watch = |_| ControlFlow::Continue(());
-    let rows = Rows::Compute(Runner::default(), None, &mut watch);
-    let done = kind.compute(&scenario, options, style, rows);
-    let done = done.map_err(|error| match error {
-        StudyError::Scenario(message) => input.wrong(message),
-        error => error.into(),
-    })?;
-    let Done::Whole(results, _) = done else {
-        unreachable!("no part is requested");
+    let session = Session {
+        input: Some(&input),
+        work: Work::default(),
+        style: Style::of(figure.get()?),
+        options,
+        pending: Vec::new(),
     };
-    let mut place = input.results(arguments.out.as_deref())?;
-    if let Some(figure) = figure {
-        place = figure.printed(place);
-    }
+    let place = figure.printed(input.results(arguments.out.as_deref())?);
     let place = place.locked_for(Writer::of(kind), &Origin::of(&scenario))?;
-    place.prepare(&results)?;
-    place.publish()?;
-    say(&format!("results in {}", place.holds(&results)));
-    show(&results, arguments.format)
+    session.finish(kind, &scenario, &place, arguments.format)
 }

@@ -24,6 +24,5 @@ pub fn capacity(arguments: &Arguments) -> Result<(), Failure> {
         point_m: arguments.point,
         ..Options::default()
     };
-    let figure = Some(arguments.figure);
-    at_once(CAPACITY, &arguments.common, figure, &options)
+    at_once(CAPACITY, &arguments.common, arguments.figure, options)
 }

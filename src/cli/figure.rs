@@ -8,7 +8,7 @@ use super::number::number;
 use super::scenario_file::Destination;
 
 /// The options of every command that draws.
-#[derive(clap::Args, Clone, Copy, Debug)]
+#[derive(clap::Args, Clone, Copy, Debug, Default)]
 pub struct FigureOption {
     /// Draw for print at this width, such as 85mm, with text of 8 pt at that width [default: for the screen].
     #[arg(long, value_name = "WIDTH", allow_hyphen_values = true)]

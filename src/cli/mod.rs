@@ -196,7 +196,9 @@ pub fn main() -> ExitCode {
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity),
         Command::Spread(spread) => spread::spread(&spread),
-        Command::Verify(verify) => at_once(VERIFY, &verify, None, &Options::default()),
+        Command::Verify(verify) => {
+            at_once(VERIFY, &verify, FigureOption::default(), Options::default())
+        }
         Command::Map(map) => studies::map(&map),
         Command::Suite(suite) => studies::suite(&suite),
         Command::Threshold(threshold) => threshold::threshold(&threshold),

@@ -6,7 +6,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use archrock::scenario::shown_lines;
-use archrock::studies::runner::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Whether only errors and results are printed.
@@ -49,61 +48,51 @@ pub fn say_always(text: &str) {
 /// Progress: a bar on a terminal, a line a minute elsewhere.
 pub struct Display {
     bar: ProgressBar,
-    /// Number of cases done before this start; they do not count in the pace.
-    before: usize,
     begun: Instant,
+    /// The time before the bar is shown; `None`: there is no bar.
+    patience: Option<Duration>,
     /// Time of the last line; `None`: no lines are printed.
     said: Option<Instant>,
 }
 
 /// Time between lines.
 const MINUTE: Duration = Duration::from_secs(60);
+/// The bar counts thousandths of the work.
+const WHOLE: u64 = 1000;
 
 impl Display {
-    pub fn new(begin: Progress) -> Self {
+    /// Shows nothing yet; a computation that takes less than the `patience` has no bar.
+    pub fn new(patience: Duration) -> Self {
         let quiet = QUIET.load(Ordering::Relaxed);
         let on_terminal = io::stderr().is_terminal();
-        let target = if quiet || !on_terminal {
-            ProgressDrawTarget::hidden()
-        } else {
-            ProgressDrawTarget::stderr()
-        };
-        let bar = ProgressBar::with_draw_target(Some(begin.all as u64), target);
-        let style = ProgressStyle::with_template("{bar:40} {pos}/{len} cases, {msg}")
-            .expect("the template is valid");
-        bar.set_style(style);
-        bar.set_position(begin.done as u64);
-        bar.set_message(pace(0, begin.all, Duration::ZERO));
+        let bar = ProgressBar::with_draw_target(Some(WHOLE), ProgressDrawTarget::hidden());
+        let style = ProgressStyle::with_template("{bar:40} {msg}");
+        bar.set_style(style.expect("the template is valid"));
         Self {
             bar,
-            before: begin.done,
             begun: Instant::now(),
+            patience: (!quiet && on_terminal).then_some(patience),
             said: (!quiet && !on_terminal).then(Instant::now),
         }
     }
 
-    pub fn show(&mut self, progress: Progress) {
-        let pace = pace(
-            progress.done.saturating_sub(self.before),
-            progress.all.saturating_sub(progress.done),
-            self.begun.elapsed(),
-        );
-        self.bar.set_length(progress.all as u64);
-        self.bar.set_position(progress.done as u64);
-        self.bar.set_message(pace.clone());
+    /// Shows the part of the work that is done, and words about it, made from the time that it took.
+    pub fn show(&mut self, part: f64, words: impl FnOnce(Duration) -> String) {
+        let elapsed = self.begun.elapsed();
         if let Some(said) = &mut self.said
             && said.elapsed() >= MINUTE
         {
             *said = Instant::now();
-            say(&format!(
-                "{} of {} cases, {pace}",
-                progress.done, progress.all
-            ));
+            say(&words(elapsed));
+        } else if let Some(patience) = self.patience
+            && elapsed >= patience
+        {
+            if self.bar.is_hidden() {
+                self.bar.set_draw_target(ProgressDrawTarget::stderr());
+            }
+            self.bar.set_position((WHOLE as f64 * part) as u64);
+            self.bar.set_message(words(elapsed));
         }
-    }
-
-    pub fn finish(self) {
-        self.bar.finish_and_clear();
     }
 
     /// Ends the progress without removing the bar.
@@ -112,8 +101,14 @@ impl Display {
     }
 }
 
+impl Drop for Display {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}
+
 /// "12 a second, 3 minutes left", from the mean of all finished cases: with a moving mean one slow case would spoil the estimate.
-fn pace(done: usize, left: usize, elapsed: Duration) -> String {
+pub fn pace(done: usize, left: usize, elapsed: Duration) -> String {
     if done == 0 {
         return "none finished yet".to_owned();
     }
@@ -125,4 +120,10 @@ fn pace(done: usize, left: usize, elapsed: Duration) -> String {
         _ => format!("one in {:.1} s", each.as_secs_f64()),
     };
     format!("{rate}, {} left", HumanDuration(each.mul_f64(left as f64)))
+}
+
+/// The time left, from the part of the work that is done.
+pub fn left(part: f64, elapsed: Duration) -> HumanDuration {
+    // At the beginning nothing is known.
+    HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).clamp(0.0, 1e6)))
 }

@@ -1,31 +1,29 @@
 //! The command `run`.
 
-mod progress;
-
 use std::fmt::Write as _;
 use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::Duration;
 
 use archrock::output::Folder;
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{self, Options};
+use archrock::studies::kept::{Origin, RUN};
 use archrock::studies::results::{Results, Style};
 use archrock::studies::run::{
-    FILES, OVERLAY, Run, RunError, RunOptions, RunResults, compared, heading, overlay,
+    FILES, OVERLAY, Run, RunError, RunOptions, RunResults, Stage, compared, heading, overlay,
 };
 use nalgebra::Vector2;
-use serde_json::Map;
+use serde_json::Value;
 
-use self::progress::RunProgress;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::number::{number, point_m};
+use super::progress::{Display, left};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
-use super::studies::compare;
-use super::study::{ITSELF, Pending, Session, Work};
+use super::study::{ITSELF, Session, Work};
 use super::{Failure, Format, print, print_all};
-use archrock::studies::kept::{Origin, RUN};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -88,16 +86,16 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let mut jobs = Job::all(arguments)?;
-    Job::lock_all(&mut jobs, arguments)?;
+    Job::lock_all(&mut jobs, arguments.work)?;
     let mut summaries = Vec::new();
     let mut failures = Vec::new();
     for job in &jobs {
         super::warn(&job.scenarios[0].unlikely());
-        let results = match job.run(arguments, quiet) {
+        let results = match job.run(arguments) {
             Ok(results) => results,
             // The other scenarios are still run.
             Err(Failure::Work(message)) if jobs.len() > 1 => {
-                job.place.results.iter().for_each(Destination::abandon);
+                job.place.iter().for_each(Destination::abandon);
                 failures.push(format!("{}: {message}", job.name));
                 continue;
             }
@@ -107,7 +105,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             Format::Json => summaries.push(results.summary),
             Format::Text if quiet => {}
             // Standard output carries the rotations and nothing else.
-            Format::Text if job.place.to_stdout => {
+            Format::Text if arguments.to_stdout() => {
                 // When standard error fails there is nowhere to report it.
                 let _ = io::stderr().write_all(shown_lines(&results.words).as_bytes());
             }
@@ -117,22 +115,24 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     if let Format::Json = arguments.format {
         print_all(summaries)?;
     }
-    if failures.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::Work(failures.join("\nerror: ")))
+    match failures.is_empty() {
+        true => Ok(()),
+        false => Err(Failure::Work(failures.join("\nerror: "))),
     }
 }
 
 /// A scenario to run.
 struct Job {
-    /// Its file.
+    /// Its file, and the record of the suite.
     name: String,
     /// One for each chosen model of motion.
     scenarios: Vec<Scenario>,
     /// The scenario of its file, whose suite may name the record.
     origin: Rc<Origin>,
-    place: Place,
+    /// The folder to lock, which may be around those of a suite's records.
+    root: Option<Destination>,
+    /// The folder for results; `None`: no files are written.
+    place: Option<Destination>,
 }
 
 impl Job {
@@ -147,20 +147,18 @@ impl Job {
                 Err(failure) => return Err(failure),
             }
         }
-        if jobs.len() > 1 && arguments.rotations.is_some() {
-            let message = "--rotations - is for one scenario: run them one by one";
-            return Err(Failure::Input(message.to_owned()));
+        if jobs.len() > 1 && arguments.to_stdout() {
+            return Err("--rotations - is for one scenario: run them one by one".into());
         }
         let places = jobs
             .iter()
-            .filter_map(|job| Some((job.name.as_str(), job.place.results.as_ref()?)));
+            .filter_map(|job| Some((&*job.name, job.place.as_ref()?)));
         if let Err(Failure::Input(message)) = Destination::check_distinct(places) {
             wrong.push(message);
         }
-        if wrong.is_empty() {
-            Ok(jobs)
-        } else {
-            Err(Failure::Input(wrong.join("\n")))
+        match wrong.is_empty() {
+            true => Ok(jobs),
+            false => Err(wrong.join("\n").into()),
         }
     }
 
@@ -168,96 +166,87 @@ impl Job {
     fn read(path: &Path, arguments: &Arguments) -> Result<Vec<Self>, Failure> {
         let input = arguments.set.open(path)?;
         let models = arguments.models.read(&input)?;
-        let about = |failure| input.about(failure);
         let origin = Rc::new(Origin::of(&models[0]));
-        let chosen = arguments.suite.choose(models).map_err(about)?;
-        let jobs = chosen.into_iter().map(|(record, scenarios)| {
-            scenarios[0]
-                .check_for_run()
-                .map_err(|reason| about(Failure::Input(reason)))?;
-            let file = path.display();
-            Ok(Self {
-                name: match &record {
-                    Some(record) => format!("{file}, {record}"),
-                    None => file.to_string(),
-                },
-                place: Place::of(arguments, &input, record.as_deref())?,
-                origin: Rc::clone(&origin),
-                scenarios,
-            })
-        });
-        jobs.collect()
+        let root = arguments.root(&input)?;
+        let tasks = arguments
+            .suite
+            .tasks(models, root.as_ref(), Scenario::check_for_run);
+        let tasks = tasks.map_err(|failure| input.about(failure))?.into_iter();
+        let file = path.display();
+        let job = |(record, scenarios, place): (String, _, _)| Self {
+            name: match record.is_empty() {
+                true => file.to_string(),
+                false => format!("{file}, {record}"),
+            },
+            scenarios,
+            origin: Rc::clone(&origin),
+            root: root.clone(),
+            place,
+        };
+        Ok(tasks.map(job).collect())
     }
 
     /// Locks the folders of all jobs, before anything is written. The records of a suite share the lock of the folder around theirs.
-    fn lock_all(jobs: &mut [Self], arguments: &Arguments) -> Result<(), Failure> {
+    fn lock_all(jobs: &mut [Self], work: Work) -> Result<(), Failure> {
         let mut locked: Vec<Destination> = Vec::new();
         for job in jobs {
-            let (Some(results), Some(root)) = (&mut job.place.results, job.place.root.take())
-            else {
+            let (Some(place), Some(root)) = (&mut job.place, job.root.take()) else {
                 continue;
             };
             let known = locked.iter().find(|known| known.path() == root.path());
             let root = match known {
                 Some(known) => known.clone(),
-                None if arguments.work.is_part() => root.locked_for_a_part(RUN)?,
-                None => root.locked_for(RUN, &job.origin)?,
+                None => work.lock(root, RUN, &job.origin)?,
             };
-            *results = results.clone().locked_with(&root);
+            *place = place.clone().locked_with(&root);
             locked.push(root);
         }
         Ok(())
     }
 
     /// Runs the job and returns its report.
-    fn run(&self, arguments: &Arguments, quiet: bool) -> Result<Results, Failure> {
-        let session = Session {
+    fn run(&self, arguments: &Arguments) -> Result<Results, Failure> {
+        let mut session = Session {
             input: None,
             work: arguments.work,
             style: Style::of(arguments.figure.get()?),
+            options: Options::default(),
+            pending: Vec::new(),
         };
-        let (scenarios, mut pending) = (&self.scenarios, Pending::default());
+        let scenarios = &self.scenarios;
         if session.is_part(scenarios)? {
-            if let Some(place) = &self.place.results {
-                self.run_samples(session, place, &mut pending, &mut Results::default())?;
-            }
+            self.run_samples(&mut session, &mut Results::default())?;
             return Ok(Results::default());
         }
         let runs = self.prepared(arguments)?;
         let several = runs.len() > 1;
-        let folder = if several {
-            self.place.open(&[OVERLAY])?
-        } else {
-            None
-        };
-        let (mut own, mut summaries) = (Vec::new(), Map::new());
+        let folder = self.place.as_ref().filter(|_| several);
+        let folder = folder.map(|place| open(place, &[OVERLAY])).transpose()?;
+        let mut own = Vec::new();
         for (run, scenario) in runs.iter().zip(scenarios) {
-            let name = scenario.motion().hinges().name();
-            let inside = several.then(|| self.place.within(name));
-            let place = inside.as_ref().unwrap_or(&self.place);
-            let computed = place.run(run, scenario, quiet)?;
-            summaries.insert(name.to_owned(), computed.summary.clone());
-            own.push(computed);
+            let place = self
+                .place
+                .as_ref()
+                .map(|place| place.of_model(scenario, several));
+            own.push(arguments.compute(run, scenario, place.as_ref())?);
         }
+        let name = |one: &Scenario| one.motion().hinges().name().to_owned();
+        let summaries = scenarios
+            .iter()
+            .map(name)
+            .zip(own.iter().map(|one| one.summary.clone()));
         let mut results = Results {
-            summary: if several {
-                summaries.into()
-            } else {
-                own[0].summary.clone()
+            summary: match &own[..] {
+                [only] => only.summary.clone(),
+                _ => Value::Object(summaries.collect()),
             },
             ..Results::default()
         };
-        let mut of_samples = Vec::new();
-        if let Some(place) = &self.place.results {
-            of_samples = self.run_samples(session, place, &mut pending, &mut results)?;
-        }
+        let of_samples = self.run_samples(&mut session, &mut results)?;
         let heading = heading(&scenarios[0]);
-        results.words.insert_str(0, &heading);
-        if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
-            results
-                .words
-                .insert_str(heading.len(), &format!("  {ignored}\n"));
-        }
+        let ignored = scenarios.iter().find_map(Scenario::ignored);
+        let ignored = ignored.map_or(String::new(), |ignored| format!("  {ignored}\n"));
+        results.words.insert_str(0, &(heading + &ignored));
         for (model, own) in runs.iter().zip(&mut own) {
             let samples = of_samples.iter().find(|(name, _)| *name == model.name());
             own.complete(samples.map_or("", |(_, samples)| &samples.words))?;
@@ -272,39 +261,35 @@ impl Job {
             let _ = write!(results.words, "  {}{}", own.verdict, own.words);
         }
         if let Some(mut folder) = folder {
-            folder
-                .file(OVERLAY)
-                .write_all(overlay(&own).as_bytes())
-                .map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+            let written = folder.file(OVERLAY).write_all(overlay(&own).as_bytes());
+            written.map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
             let path = folder.path().join(OVERLAY);
             folder.complete()?;
             let all = if runs.len() > 2 { "all" } else { "both" };
             let _ = writeln!(results.words, "{all} in {}", path.display());
         }
-        if let Some(place) = &self.place.results {
-            pending.publish(place)?;
-        }
+        self.place
+            .iter()
+            .try_for_each(|place| session.publish(place))?;
         Ok(results)
     }
 
-    /// Runs the samples of `[uncertain]`, and adds their results and the comparison of several models. Returns the results of each model.
+    /// Runs the samples of `[uncertain]`, and adds their results and the comparison of several models. Returns the results of each model;
+    /// none without a folder.
     fn run_samples(
         &self,
-        session: Session<'_>,
-        place: &Destination,
-        pending: &mut Pending,
+        session: &mut Session<'_>,
         results: &mut Results,
     ) -> Result<Vec<(&'static str, Results)>, Failure> {
-        let (kind, options) = (catalogue::UNCERTAIN, Options::default());
-        let models =
-            session.add_samples(kind, &self.scenarios, &options, place, pending, results)?;
-        let title = self.scenarios[0].title();
-        if let Some(compared) = compare(title, &models, place, session.style.figure)? {
+        let Some(place) = &self.place else {
+            return Ok(Vec::new());
+        };
+        let models = session.add_samples(catalogue::UNCERTAIN, &self.scenarios, place, results)?;
+        if let Some(compared) = session.compare(self.scenarios[0].title(), &models, place)? {
             // After the words on samples, before the heading of those on the scenario itself.
             let at = results.words.len() - ITSELF.len();
-            results
-                .words
-                .insert_str(at, &format!("{}\n", compared.words));
+            let words = format!("{}\n", compared.words);
+            results.words.insert_str(at, &words);
             results.summary["peaks"] = compared.summary;
         }
         Ok(models)
@@ -312,37 +297,39 @@ impl Job {
 
     /// The runs of all models. If one scenario cannot be run, none is.
     fn prepared(&self, arguments: &Arguments) -> Result<Vec<Run<'_>>, Failure> {
-        let (scenarios, to_stdout) = (&self.scenarios, self.place.to_stdout);
-        if scenarios.len() > 1 && to_stdout {
-            let message = "--rotations - is for one model: choose one by --hinges";
-            return Err(Failure::Input(message.to_owned()));
+        let scenarios = &self.scenarios;
+        if scenarios.len() > 1 && arguments.to_stdout() {
+            return Err("--rotations - is for one model: choose one by --hinges".into());
         }
-        let in_steps = |one: &Scenario| one.motion().hinges().has_joints();
-        if arguments.no_repeat && !scenarios.iter().any(in_steps) {
+        let mut models = scenarios.iter().map(|one| one.motion().hinges());
+        if arguments.no_repeat && !models.clone().any(|model| model.has_joints()) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
-            return Err(Failure::Input(message.to_owned()));
+            return Err(message.into());
         }
-        let beside = scenarios.iter().map(|one| one.motion().hinges());
         let wanted = RunOptions {
-            beside: beside.collect(),
-            ..arguments.run_options(to_stdout)?
+            beside: models.by_ref().collect(),
+            ..arguments.run_options()?
         };
         let run = |scenario| Run::new(scenario, wanted.clone());
         let runs: Result<Vec<_>, String> = scenarios.iter().map(run).collect();
-        runs.map_err(Failure::Input)
+        Ok(runs?)
     }
 }
 
 impl Arguments {
+    /// Whether the rotations go to standard output.
+    const fn to_stdout(&self) -> bool {
+        self.rotations.is_some()
+    }
+
     /// The options of a run.
-    fn run_options(&self, to_stdout: bool) -> Result<RunOptions, Failure> {
+    fn run_options(&self) -> Result<RunOptions, Failure> {
         if self.exaggerate.is_some() && self.snapshots.is_empty() && self.film.is_none() {
-            let message = "--exaggerate goes with --snapshots or --film";
-            return Err(Failure::Input(message.to_owned()));
+            return Err("--exaggerate goes with --snapshots or --film".into());
         }
         Ok(RunOptions {
             figure: self.panels.of(self.figure.get()?),
-            rotations: !to_stdout,
+            rotations: !self.to_stdout(),
             dimensionless: self.dimensionless,
             repeat: !self.no_repeat,
             report: !self.no_report,
@@ -355,93 +342,62 @@ impl Arguments {
         })
     }
 
-    /// The name of a given option that writes a file.
-    fn of_files(&self) -> Option<&'static str> {
-        let options = [
+    /// The folder for the results of a scenario file; `None`: no files are written.
+    fn root(&self, input: &Input<'_>) -> Result<Option<Destination>, Failure> {
+        let place = match &self.out {
+            Some(out) if self.scenarios.len() > 1 => Destination::of(out).within(input.stem()),
+            None if self.to_stdout() || matches!(self.format, Format::Json) => return Ok(None),
+            out => input.results(out.as_deref())?,
+        };
+        Ok(Some(self.figure.printed(place)))
+    }
+
+    /// Runs a scenario and writes its results into a folder, if there is one.
+    fn compute<'r>(
+        &self,
+        run: &'r Run<'r>,
+        scenario: &Scenario,
+        place: Option<&Destination>,
+    ) -> Result<RunResults<'r>, Failure> {
+        let writes = [
             (!self.snapshots.is_empty(), "--snapshots"),
             (self.film.is_some(), "--film"),
             (self.poses, "--poses"),
         ];
-        let given = options.into_iter().find(|(given, _)| *given);
-        given.map(|(_, option)| option)
-    }
-}
-
-/// The place of results: a folder, standard output, or both.
-struct Place {
-    /// The folder; `None`: no files are written.
-    results: Option<Destination>,
-    /// Folder to lock, which may be around those of a suite's records; `None` once it is locked.
-    root: Option<Destination>,
-    /// True: the rotations go to standard output.
-    to_stdout: bool,
-    /// The name of an option that needs a folder.
-    of_files: Option<&'static str>,
-}
-
-impl Place {
-    fn of(arguments: &Arguments, input: &Input<'_>, record: Option<&str>) -> Result<Self, Failure> {
-        let to_stdout = arguments.rotations.is_some();
-        let results = match &arguments.out {
-            Some(out) if arguments.scenarios.len() > 1 => {
-                Some(Destination::of(out).within(input.stem()))
-            }
-            None if to_stdout || matches!(arguments.format, Format::Json) => None,
-            out => Some(input.results(out.as_deref())?),
-        };
-        let root = results.clone();
-        let results = match (results, record) {
-            (Some(results), Some(record)) => Some(results.of_record(record)?),
-            (results, _) => results,
-        };
-        Ok(Self {
-            root,
-            results: results.map(|results| arguments.figure.printed(results)),
-            to_stdout,
-            of_files: arguments.of_files(),
-        })
-    }
-
-    /// The folder inside this one for one of several models.
-    fn within(&self, name: &str) -> Self {
-        Self {
-            results: self.results.as_ref().map(|results| results.within(name)),
-            root: None,
-            ..*self
-        }
-    }
-
-    /// Opens the folder for these files. Other files that earlier runs left there are removed once these are complete.
-    fn open(&self, names: &[&'static str]) -> Result<Option<Folder>, Failure> {
-        let Some(results) = &self.results else {
-            return Ok(None);
-        };
-        let mut folder = results.open(names)?;
-        for name in FILES.iter().filter(|name| !names.contains(name)) {
-            folder.forget(name);
-        }
-        Ok(Some(folder))
-    }
-
-    /// Runs a scenario and writes its results here.
-    fn run<'r>(
-        &self,
-        run: &'r Run<'r>,
-        scenario: &Scenario,
-        quiet: bool,
-    ) -> Result<RunResults<'r>, Failure> {
-        if let (None, Some(option)) = (&self.results, self.of_files) {
+        let mut given = writes
+            .into_iter()
+            .filter(|(given, _)| *given && place.is_none());
+        if let Some((_, option)) = given.next() {
             let message = format!("{option} writes a file: name a folder for it with --out");
-            return Err(Failure::Input(message));
+            return Err(message.into());
         }
         // Opened before the work starts, so that a folder that cannot be written costs no time.
-        let folder = self.open(&run.files())?;
+        let folder = place.map(|place| open(place, &run.files())).transpose()?;
         let stdout = || -> Box<dyn io::Write> { Box::new(BufWriter::new(io::stdout().lock())) };
-        let rotations = self.to_stdout.then(stdout);
-        let progress = RunProgress::new(scenario.request().end_s, quiet);
-        let results = run.compute(folder, rotations, &mut |stage| progress.show(stage))?;
-        Ok(results)
+        let rotations = self.to_stdout().then(stdout);
+        let (mut display, end_s) = (Display::new(PATIENCE), scenario.request().end_s);
+        Ok(run.compute(folder, rotations, &mut |stage| match stage {
+            Stage::Reached(time_s) => display.show(time_s / end_s, |elapsed| {
+                let left = left(time_s / end_s, elapsed);
+                format!("{time_s:.2} of {end_s} s simulated, {left} left")
+            }),
+            Stage::Repeating => {
+                display.show(1.0, |_| "repeating the history with other steps".to_owned());
+            }
+        })?)
     }
+}
+
+/// A shorter run shows no progress.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// Opens a folder for these files. Other files that earlier runs left there are removed once these are complete.
+fn open(place: &Destination, names: &[&'static str]) -> Result<Folder, Failure> {
+    let mut folder = place.open(names)?;
+    for name in FILES.iter().filter(|name| !names.contains(name)) {
+        folder.forget(name);
+    }
+    Ok(folder)
 }
 
 impl From<RunError> for Failure {

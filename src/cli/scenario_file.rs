@@ -71,30 +71,41 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// The record of the suite that shakes the scenarios, if any; scenarios that differ only in their model of motion.
-pub type Shaken = (Option<String>, Vec<Scenario>);
+/// Scenarios that differ only in their model of motion, and the folder for their results, if any. The name is that of the record of the
+/// suite that shakes them, or empty.
+pub type Task = (String, Vec<Scenario>, Option<Destination>);
 
 impl SuiteOption {
-    /// Returns the scenarios, which differ in their model of motion. With `--suite`, returns them once for each record of the suite,
-    /// shaken by it.
-    pub fn choose(self, models: Vec<Scenario>) -> Result<Vec<Shaken>, Failure> {
-        if !self.suite {
-            return Ok(vec![(None, models)]);
-        }
-        let mut chosen: Vec<Shaken> = Vec::new();
-        for model in &models {
-            for (index, (file, scenario)) in model.by_record().into_iter().enumerate() {
-                match chosen.get_mut(index) {
-                    Some((_, scenarios)) => scenarios.push(scenario),
-                    None => chosen.push((Some(file), vec![scenario])),
-                }
+    /// The scenarios, which differ in their model of motion, with the folder `root`. With `--suite`, once for each record of the suite,
+    /// shaken by it, with a folder inside `root`. All scenarios must pass the check.
+    pub fn tasks(
+        self,
+        models: Vec<Scenario>,
+        root: Option<&Destination>,
+        check: impl Fn(&Scenario) -> Result<(), String>,
+    ) -> Result<Vec<Task>, Failure> {
+        let mut tasks: Vec<Task> = Vec::new();
+        let records = models
+            .iter()
+            .flat_map(|model| model.by_record().into_iter().enumerate());
+        for (index, (record, scenario)) in records.filter(|_| self.suite) {
+            if let Some((_, scenarios, _)) = tasks.get_mut(index) {
+                scenarios.push(scenario);
+            } else {
+                let place = root.map(|root| root.of_record(&record)).transpose()?;
+                tasks.push((record, vec![scenario], place));
             }
         }
-        if chosen.is_empty() {
+        if !self.suite {
+            tasks.push((String::new(), models, root.cloned()));
+        } else if tasks.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
             return Err(message.into());
         }
-        Ok(chosen)
+        for (_, scenarios, _) in &tasks {
+            check(&scenarios[0])?;
+        }
+        Ok(tasks)
     }
 }
 

@@ -52,6 +52,5 @@ pub fn spread(arguments: &Arguments) -> Result<(), Failure> {
         ways: angles_deg.iter().map(way).collect(),
         ..Options::default()
     };
-    let figure = Some(arguments.figure);
-    at_once(SPREAD, &arguments.common, figure, &options)
+    at_once(SPREAD, &arguments.common, arguments.figure, options)
 }

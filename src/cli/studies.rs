@@ -1,6 +1,7 @@
 //! The commands `map` and `suite`, and `merge`, which joins the parts of a study.
 
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
@@ -8,8 +9,7 @@ use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::map::OverturningMap;
-use archrock::studies::peaks;
-use archrock::studies::results::{Results, StudyError, Style};
+use archrock::studies::results::{Results, Style};
 use clap::ValueEnum;
 use serde_json::Map;
 
@@ -17,7 +17,7 @@ use super::figure::FigureOption;
 use super::models::warn_of;
 use super::progress::say;
 use super::scenario_file::{Destination, Input};
-use super::study::{Pending, Session, StudyArguments};
+use super::study::StudyArguments;
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -114,16 +114,14 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let study = &arguments.study;
     let input = study.scenario.open()?;
     let scenario = study.models.read_one(&input, "map")?;
-    let scenarios = [scenario];
-    warn_of(&scenarios);
-    let [scenario] = &scenarios;
-    OverturningMap::of(scenario).map_err(|message| input.wrong(message))?;
-    let style = arguments.map.style(scenario, study.figure.get()?)?;
+    warn_of(slice::from_ref(&scenario));
+    OverturningMap::of(&scenario).map_err(|message| input.wrong(message))?;
+    let style = arguments.map.style(&scenario, study.figure.get()?)?;
     if scenario.uncertain().is_some() {
-        CellsOfSamples::of(scenario).map_err(|message| input.wrong(message))?;
+        CellsOfSamples::of(&scenario).map_err(|message| input.wrong(message))?;
     }
     let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
-    compute(kinds, study, &input, &scenarios, style)
+    compute(kinds, study, &input, &[scenario], style)
 }
 
 pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
@@ -135,56 +133,34 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     compute(kinds, study, &input, &scenarios, style)
 }
 
-/// Computes a study and that of its samples for scenarios that differ in their models of motion; publishes and prints the results. Of a
-/// part, only the samples are computed if there are any.
+/// Computes a study and that of its samples for scenarios that differ in their models of motion, one by one; publishes and prints the
+/// results.
 fn compute(
-    [own, samples]: [StudyKind; 2],
+    kinds: [StudyKind; 2],
     study: &StudyArguments,
     input: &Input<'_>,
     scenarios: &[Scenario],
     style: Style,
 ) -> Result<(), Failure> {
-    let place = study.place(input)?;
-    let place = study.work.lock(place, Writer::of(own), &scenarios[0])?;
-    let session = Session {
-        input: Some(input),
-        work: study.work,
-        style,
-    };
-    let of_samples = Session {
-        style: style.of_samples(),
-        ..session
-    };
-    let (options, mut pending) = (Options::default(), Pending::default());
+    let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
+    let place = study.work.lock(place, Writer::of(kinds[0]), &origin)?;
+    let mut session = study.session(input, style, Options::default());
     let several = scenarios.len() > 1;
     let mut all = Vec::new();
-    for scenario in scenarios {
-        let (place, has_samples) = (
-            place.of_model(scenario, several),
-            scenario.uncertain().is_some(),
-        );
-        let mut found = None;
-        if !has_samples || !study.work.is_part() {
-            found = session.compute(own, scenario, &options, &place, &mut pending)?;
-        }
-        let mut results = found.clone().unwrap_or_default();
-        if has_samples {
-            results.words.insert_str(0, "  ");
-        }
-        let one = std::slice::from_ref(scenario);
-        of_samples.add_samples(samples, one, &options, &place, &mut pending, &mut results)?;
-        all.extend(found.map(|_| (scenario.motion().words(), results)));
+    for one in scenarios.chunks(1) {
+        let place = place.of_model(&one[0], several);
+        let found = session.with_samples(kinds, one, &place)?;
+        all.extend(found.map(|found| (one[0].motion().words(), found)));
     }
-    let compared = compare(scenarios[0].title(), &all, &place, style.figure)?;
-    pending.publish(&place)?;
+    let compared = session.compare(scenarios[0].title(), &all, &place)?;
+    session.publish(&place)?;
     if let (false, [(_, results)]) = (several, &all[..]) {
         return show(results, &place, study.format);
     }
     let mut summaries = Map::new();
     for (scenario, (model, results)) in scenarios.iter().zip(&all) {
         say(model);
-        let place = place.of_model(scenario, several);
-        show(results, &place, Format::Text)?;
+        show(results, &place.of_model(scenario, several), Format::Text)?;
         let name = scenario.motion().hinges().name();
         summaries.insert(name.to_owned(), results.summary.clone());
     }
@@ -196,30 +172,6 @@ fn compute(
         Format::Json if !all.is_empty() => print(&pretty(&summaries.into())),
         _ => Ok(()),
     }
-}
-
-/// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
-pub fn compare(
-    title: Option<&str>,
-    models: &[(&str, Results)],
-    place: &Destination,
-    figure: Figure,
-) -> Result<Option<Results>, Failure> {
-    if models.len() < 2 {
-        return Ok(None);
-    }
-    let models: Vec<(&str, &[f64])> = models
-        .iter()
-        .map(|(name, results)| (*name, &results.peaks[..]))
-        .collect();
-    let results = peaks::results(
-        title.unwrap_or("Largest rotations of several models"),
-        &models,
-        figure,
-    );
-    let results = results.map_err(StudyError::from)?;
-    place.of_models().prepare(&results)?;
-    Ok(Some(results))
 }
 
 pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {

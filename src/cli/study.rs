@@ -4,24 +4,27 @@ use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process;
+use std::slice;
 use std::sync::atomic::Ordering;
+use std::time::Duration;
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Done, Options, Rows, StudyKind};
+use archrock::studies::catalogue::{Done, Options, Rows, StudyKind, THRESHOLD};
 use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::part::{PartError, PartFile, Shard};
+use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 
 use super::figure::FigureOption;
 use super::models::ModelsOption;
 use super::progress::{
-    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, say, say_always,
+    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, pace, say, say_always,
 };
 use super::scenario_file::{Destination, Input, ScenarioFile};
-use super::{Failure, Format};
+use super::{Failure, Format, show};
 
-/// Options of every study.
+/// Options of every study of many histories.
 #[derive(clap::Args)]
 pub struct StudyArguments {
     #[command(flatten)]
@@ -41,7 +44,7 @@ pub struct StudyArguments {
 }
 
 /// Options of long computations.
-#[derive(clap::Args, Clone, Copy)]
+#[derive(clap::Args, Clone, Copy, Default)]
 pub struct Work {
     /// Number of threads [default: number of processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -73,39 +76,22 @@ impl From<PartError> for Failure {
     }
 }
 
-impl From<RunnerError> for Failure {
-    fn from(error: RunnerError) -> Self {
-        match error {
-            RunnerError::Part(error) => error.into(),
-            RunnerError::Folder { .. } => {
-                Self::Input(format!("{error}; choose another with --out"))
-            }
-            RunnerError::Cancelled(_) | RunnerError::Threads(_) => Self::Work(error.to_string()),
-        }
-    }
-}
-
 impl From<StudyError> for Failure {
     fn from(error: StudyError) -> Self {
         match error {
             StudyError::Scenario(message) => Self::Input(message),
-            StudyError::Failed(message) => Self::Work(message),
-            StudyError::Runner(error) => error.into(),
-            StudyError::Part(error) => error.into(),
             StudyError::Read(error) => error.into(),
+            StudyError::Part(error) | StudyError::Runner(RunnerError::Part(error)) => error.into(),
+            StudyError::Runner(error @ RunnerError::Folder { .. }) => {
+                Self::Input(format!("{error}; choose another with --out"))
+            }
             StudyError::Output(error) => error.into(),
+            StudyError::Failed(_) | StudyError::Runner(_) => Self::Work(error.to_string()),
         }
     }
 }
 
 impl Work {
-    /// The runner that computes on these threads.
-    pub fn runner(self) -> Runner {
-        Runner {
-            threads: self.threads.and_then(|n| NonZeroUsize::new(n.into())),
-        }
-    }
-
     /// True if only a part is requested.
     pub const fn is_part(self) -> bool {
         self.shard.is_some()
@@ -116,11 +102,11 @@ impl Work {
         self,
         place: Destination,
         writer: Writer,
-        scenario: &Scenario,
+        origin: &Origin,
     ) -> Result<Destination, Failure> {
         match self.is_part() {
             true => place.locked_for_a_part(writer),
-            false => place.locked_for(writer, &Origin::of(scenario)),
+            false => place.locked_for(writer, origin),
         }
     }
 }
@@ -128,99 +114,95 @@ impl Work {
 impl StudyArguments {
     /// The folder for results.
     pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
-        let place = input.results(self.out.as_deref())?;
-        Ok(self.figure.printed(place))
+        Ok(self.figure.printed(input.results(self.out.as_deref())?))
     }
-}
 
-/// The files that keep the rows of results until these are published.
-#[derive(Default)]
-pub struct Pending(Vec<PartFile>);
-
-impl Pending {
-    /// Publishes the results of a command.
-    pub fn publish(self, place: &Destination) -> Result<(), Failure> {
-        place.publish()?;
-        for part in self.0 {
-            part.remove()?;
+    /// The studies of this command.
+    pub fn session<'s>(&self, input: &'s Input<'s>, style: Style, options: Options) -> Session<'s> {
+        Session {
+            input: Some(input),
+            work: self.work,
+            style,
+            options,
+            pending: Vec::new(),
         }
-        Ok(())
     }
 }
 
-/// Common settings of the studies of a command.
-#[derive(Clone, Copy)]
+/// The studies of a command.
 pub struct Session<'s> {
     /// The scenario file, which errors about the scenario name.
     pub input: Option<&'s Input<'s>>,
     pub work: Work,
     pub style: Style,
+    pub options: Options,
+    /// The files that keep the rows of results until these are published.
+    pub pending: Vec<PartFile>,
 }
 
 /// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
 pub const ITSELF: &str = "the scenario itself:\n";
 
 impl Session<'_> {
-    /// Calls `compute` with a function that shows the progress. At Ctrl-C that function prints the message of `interrupted` and ends the
-    /// program.
-    pub fn watch<T>(
-        self,
-        interrupted: impl Fn(Progress) -> String,
-        compute: impl FnOnce(&mut dyn FnMut(Progress) -> ControlFlow<()>) -> Result<T, StudyError>,
-    ) -> Result<T, Failure> {
-        listen_to_interrupts();
-        let mut display = None;
-        let done = compute(&mut |progress| {
-            let display = display.get_or_insert_with(|| Display::new(progress));
-            // All finished rows are in the file and none is being written, so it is safe to exit.
-            if INTERRUPTED.load(Ordering::Relaxed) {
-                display.abandon();
-                say_always(&interrupted(progress));
-                process::exit(INTERRUPTED_CODE);
-            }
-            display.show(progress);
-            ControlFlow::Continue(())
-        });
-        if let Some(display) = display {
-            display.finish();
-        }
-        done.map_err(|error| match (error, self.input) {
-            (StudyError::Scenario(message), Some(input)) => input.wrong(message),
-            (error, _) => error.into(),
-        })
+    /// Publishes the results in a folder.
+    pub fn publish(&mut self, place: &Destination) -> Result<(), Failure> {
+        place.publish()?;
+        let mut pending = self.pending.drain(..);
+        Ok(pending.try_for_each(PartFile::remove)?)
     }
 
     /// Computes a study in a folder, and prepares its results there, which are returned. Of a part, reports the file and returns
     /// `None`.
     pub fn compute(
-        self,
+        &mut self,
         kind: StudyKind,
-        scenario: &Scenario,
-        options: &Options,
+        scenarios: &[Scenario],
         place: &Destination,
-        pending: &mut Pending,
     ) -> Result<Option<Results>, Failure> {
+        let Work {
+            threads,
+            resume,
+            shard,
+        } = self.work;
         let task = Task {
             folder: place.path(),
-            shard: self.work.shard.unwrap_or(Shard::WHOLE),
-            resume: self.work.resume,
+            shard: shard.unwrap_or(Shard::WHOLE),
+            resume,
         };
-        let interrupted = |Progress { done, all }| {
-            let file = task.folder.join(task.shard.file_name(kind.name));
-            if file.exists() {
-                format!("interrupted: {done} of {all} cases are done; continue with --resume")
-            } else {
-                format!("interrupted; {} was removed meanwhile", file.display())
+        let runner = Runner {
+            threads: threads.and_then(|n| NonZeroUsize::new(n.into())),
+        };
+        let mut shown = None;
+        let mut watch = |progress: Progress| {
+            let Progress { done, all } = progress;
+            let (display, before) = shown.get_or_insert_with(|| {
+                listen_to_interrupts();
+                (Display::new(Duration::ZERO), done)
+            });
+            // All finished rows are in the file and none is being written, so it is safe to exit.
+            if INTERRUPTED.load(Ordering::Relaxed) {
+                display.abandon();
+                say_always(&interrupted(kind, task, progress));
+                process::exit(INTERRUPTED_CODE);
             }
+            display.show(done as f64 / all.max(1) as f64, |elapsed| {
+                let new = done.saturating_sub(*before);
+                let pace = pace(new, all.saturating_sub(done), elapsed);
+                format!("{done} of {all} cases, {pace}")
+            });
+            ControlFlow::Continue(())
         };
-        let runner = self.work.runner();
-        match self.watch(interrupted, |watch| {
-            let rows = Rows::Compute(runner, Some(task), watch);
-            kind.compute(scenario, options, self.style, rows)
-        })? {
+        let rows = Rows::Compute(runner, Some(task), &mut watch);
+        let done = kind.compute(scenarios, &self.options, self.style, rows);
+        drop(shown);
+        let done = done.map_err(|error| match (error, self.input) {
+            (StudyError::Scenario(message), Some(input)) => input.wrong(message),
+            (error, _) => error.into(),
+        });
+        match done? {
             Done::Whole(results, part) => {
                 place.prepare(&results)?;
-                pending.0.extend(part);
+                self.pending.extend(part);
                 Ok(Some(results))
             }
             Done::Part { part, cases, all } => {
@@ -233,8 +215,42 @@ impl Session<'_> {
         }
     }
 
+    /// Computes a study of one scenario, publishes its results and prints them.
+    pub fn finish(
+        mut self,
+        kind: StudyKind,
+        scenario: &Scenario,
+        place: &Destination,
+        format: Format,
+    ) -> Result<(), Failure> {
+        let found = self.compute(kind, slice::from_ref(scenario), place)?;
+        self.publish(place)?;
+        found.map_or(Ok(()), |found| {
+            say(&format!("results in {}", place.holds(&found)));
+            show(&found, format)
+        })
+    }
+
+    /// Computes a study, and that of the samples of its scenarios. Of a part, only the samples are computed if there are any.
+    pub fn with_samples(
+        &mut self,
+        [own, samples]: [StudyKind; 2],
+        scenarios: &[Scenario],
+        place: &Destination,
+    ) -> Result<Option<Results>, Failure> {
+        let has_samples = scenarios.iter().any(|one| one.uncertain().is_some());
+        let mut found = match has_samples && self.work.is_part() {
+            true => None,
+            false => self.compute(own, scenarios, place)?,
+        };
+        let mut of_part = Results::default();
+        let results = found.as_mut().unwrap_or(&mut of_part);
+        self.add_samples(samples, scenarios, place, results)?;
+        Ok(found)
+    }
+
     /// Whether only a part of the samples is requested; an error if a scenario has no samples.
-    pub fn is_part(self, scenarios: &[Scenario]) -> Result<bool, Failure> {
+    pub fn is_part(&self, scenarios: &[Scenario]) -> Result<bool, Failure> {
         if self.work.is_part() && scenarios.iter().any(|one| one.uncertain().is_none()) {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
@@ -246,12 +262,10 @@ impl Session<'_> {
     /// Computes the samples of scenarios that differ in their models of motion and have `[uncertain]`. Prepares their results in folders
     /// of their own inside `place`, and adds them to `results`, of which their words come first. Returns the results of each model.
     pub fn add_samples(
-        self,
+        &mut self,
         kind: StudyKind,
         scenarios: &[Scenario],
-        options: &Options,
         place: &Destination,
-        pending: &mut Pending,
         results: &mut Results,
     ) -> Result<Vec<(&'static str, Results)>, Failure> {
         let several = scenarios.len() > 1;
@@ -259,7 +273,7 @@ impl Session<'_> {
         for scenario in scenarios.iter().filter(|one| one.uncertain().is_some()) {
             let (name, model) = (scenario.motion().hinges().name(), scenario.motion().words());
             let place = place.of_model(scenario, several).within(kind.name);
-            let Some(found) = self.compute(kind, scenario, options, &place, pending)? else {
+            let Some(found) = self.compute(kind, slice::from_ref(scenario), &place)? else {
                 continue;
             };
             if several {
@@ -273,8 +287,44 @@ impl Session<'_> {
             of_models.push((model, found));
         }
         if !words.is_empty() {
-            results.words.insert_str(0, &(words + ITSELF));
+            let indent = if results.words.starts_with(' ') || results.words.is_empty() {
+                ""
+            } else {
+                "  "
+            };
+            results.words.insert_str(0, &(words + ITSELF + indent));
         }
         Ok(of_models)
+    }
+
+    /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
+    pub fn compare(
+        &self,
+        title: Option<&str>,
+        models: &[(&str, Results)],
+        place: &Destination,
+    ) -> Result<Option<Results>, Failure> {
+        if models.len() < 2 {
+            return Ok(None);
+        }
+        let models = models.iter().map(|(name, found)| (*name, &found.peaks[..]));
+        let models: Vec<(&str, &[f64])> = models.collect();
+        let title = title.unwrap_or("Largest rotations of several models");
+        let results = peaks::results(title, &models, self.style.figure);
+        let results = results.map_err(StudyError::from)?;
+        place.of_models().prepare(&results)?;
+        Ok(Some(results))
+    }
+}
+
+/// The message when Ctrl-C ends a computation.
+fn interrupted(kind: StudyKind, task: Task<'_>, Progress { done, all }: Progress) -> String {
+    let file = task.folder.join(task.shard.file_name(kind.name));
+    if file.exists() {
+        format!("interrupted: {done} of {all} cases are done; continue with --resume")
+    } else if kind == THRESHOLD {
+        "interrupted".to_owned()
+    } else {
+        format!("interrupted; {} was removed meanwhile", file.display())
     }
 }

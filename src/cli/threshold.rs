@@ -2,16 +2,16 @@
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept::{ALONG, THRESHOLD};
-use archrock::studies::results::{Results, Style};
-use archrock::studies::threshold::along::{Along, AlongOptions, KeyRange};
-use archrock::studies::threshold::{FILES, Factors, check, results};
+use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
+use archrock::studies::results::Style;
+use archrock::studies::threshold::along::{AlongOptions, KeyRange};
+use archrock::studies::threshold::{Factors, check};
 
 use super::models::warn_of;
 use super::progress::say;
 use super::scenario_file::{Destination, Input, SuiteOption};
-use super::study::{Pending, Session, StudyArguments};
-use super::{Failure, Format, print, print_all, show};
+use super::study::{Session, StudyArguments};
+use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -45,39 +45,48 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| format!("--from, --to, --stride: {error}"))?;
     let input = study.scenario.open()?;
-    let session = Session {
-        input: Some(&input),
-        work: study.work,
-        style: Style::of(study.figure.get()?),
-    };
-    if let Some(along) = &arguments.along {
-        let options = AlongOptions {
-            along: along.clone(),
+    let along = arguments.along.clone();
+    let options = Options {
+        factors,
+        along: along.map(|along| AlongOptions {
+            along,
             factors,
             no_impact: arguments.no_impact,
-        };
-        return thresholds_along(study, options, session, &input);
+        }),
+        ..Options::default()
+    };
+    let mut session = study.session(&input, Style::of(study.figure.get()?), options);
+    if arguments.along.is_some() {
+        return thresholds_along(study, session, &input);
     }
     let models = study.models.read(&input)?;
-    let own = models[0].clone();
+    let origin = Origin::of(&models[0]);
     let root = study.place(&input)?;
-    let tasks = tasks(arguments.suite, models, &root).map_err(|failure| input.about(failure))?;
-    let mut scenarios = tasks.iter().flat_map(|(scenarios, _)| scenarios);
+    let tasks = arguments.suite.tasks(models, Some(&root), check);
+    let tasks = tasks.map_err(|failure| input.about(failure))?;
+    let places = tasks
+        .iter()
+        .filter_map(|(name, _, place)| Some((&**name, place.as_ref()?)));
+    Destination::check_distinct(places)?;
+    let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         say(ignored);
     }
-    let root = study.work.lock(root, THRESHOLD, &own)?;
-    let title = tasks[0].0[0].title();
+    let title = tasks[0].1[0].title();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
+    let root = study.work.lock(root, THRESHOLD, &origin)?;
     let mut all = Vec::new();
-    for (scenarios, place) in tasks {
+    for (_, scenarios, place) in &tasks {
         super::warn(&scenarios[0].unlikely());
-        all.push(find(
-            &scenarios,
-            &place.locked_with(&root),
-            factors,
-            session,
-        )?);
+        session.is_part(scenarios)?;
+        let place = place.as_ref().unwrap_or(&root).clone().locked_with(&root);
+        let kinds = [catalogue::THRESHOLD, catalogue::UNCERTAIN_THRESHOLD];
+        let found = session.with_samples(kinds, scenarios, &place)?;
+        session.publish(&place)?;
+        if let Some(found) = &found {
+            say(&format!("results in {}", place.holds(found)));
+        }
+        all.push(found.unwrap_or_default());
     }
     match study.format {
         Format::Json => print_all(all.into_iter().map(|results| results.summary)),
@@ -88,71 +97,9 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// The scenarios, which differ in their models, and the folder for their results: one task, or one for each record of the suite.
-fn tasks(
-    suite: SuiteOption,
-    models: Vec<Scenario>,
-    root: &Destination,
-) -> Result<Vec<(Vec<Scenario>, Destination)>, Failure> {
-    let (mut names, mut tasks) = (Vec::new(), Vec::new());
-    for (record, scenarios) in suite.choose(models)? {
-        check(&scenarios[0])?;
-        let place = match &record {
-            Some(record) => root.of_record(record)?,
-            None => root.clone(),
-        };
-        names.push(record.unwrap_or_default());
-        tasks.push((scenarios, place));
-    }
-    let places = tasks.iter().map(|(_, place)| place);
-    Destination::check_distinct(names.iter().map(String::as_str).zip(places))?;
-    Ok(tasks)
-}
-
-/// Finds the thresholds of a scenario, for one model of motion or for several, and those of its samples, and writes them.
-fn find(
-    scenarios: &[Scenario],
-    place: &Destination,
-    factors: Factors,
-    session: Session<'_>,
-) -> Result<Results, Failure> {
-    let (mut found, mut pending) = (Results::default(), Pending::default());
-    let is_part = session.is_part(scenarios)?;
-    if !is_part {
-        // Opened before the work starts, so that a folder that cannot be written costs no time.
-        let folder = place.open(&FILES)?;
-        let scenarios: Vec<&Scenario> = scenarios.iter().collect();
-        let (figure, runner) = (session.style.figure, session.work.runner());
-        found = session.watch(
-            |_| "interrupted".to_owned(),
-            |watch| results(&scenarios, &factors, figure, &runner, watch),
-        )?;
-        found.write(folder)?;
-    }
-    let options = Options {
-        factors,
-        ..Options::default()
-    };
-    let samples = catalogue::UNCERTAIN_THRESHOLD;
-    session.add_samples(
-        samples,
-        scenarios,
-        &options,
-        place,
-        &mut pending,
-        &mut found,
-    )?;
-    pending.publish(place)?;
-    if !is_part {
-        say(&format!("results in {}", place.holds(&found)));
-    }
-    Ok(found)
-}
-
 /// Finds the threshold for each value of a key.
 fn thresholds_along(
     study: &StudyArguments,
-    along: AlongOptions,
     session: Session<'_>,
     input: &Input<'_>,
 ) -> Result<(), Failure> {
@@ -162,18 +109,8 @@ fn thresholds_along(
         return Err(input.wrong(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    Along::of(&scenario, along.clone()).map_err(|message| input.wrong(message))?;
-    let place = study.work.lock(study.place(input)?, ALONG, &scenario)?;
-    let options = Options {
-        along: Some(along),
-        ..Options::default()
-    };
-    let mut pending = Pending::default();
-    let kind = catalogue::THRESHOLD_ALONG;
-    let found = session.compute(kind, &scenario, &options, &place, &mut pending)?;
-    pending.publish(&place)?;
-    found.map_or(Ok(()), |found| {
-        say(&format!("results in {}", place.holds(&found)));
-        show(&found, study.format)
-    })
+    let place = study
+        .work
+        .lock(study.place(input)?, ALONG, &Origin::of(&scenario))?;
+    session.finish(catalogue::THRESHOLD_ALONG, &scenario, &place, study.format)
 }

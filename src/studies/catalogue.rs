@@ -7,18 +7,18 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::capacity::{self, capacity};
-use super::ensemble::cells::{self, CellsOfSamples};
+use super::ensemble::Ensemble;
+use super::ensemble::cells::CellsOfSamples;
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
-use super::ensemble::{Ensemble, Question};
-use super::map::{self, OverturningMap};
+use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::results::{Reported, Results, StudyError, Style};
-use super::runner::{Computed, Progress, Runner, Study as _, Task};
+use super::runner::{Computed, Progress, Runner, Task};
 use super::spread::{self, Way};
-use super::suite::{self, Heading, RecordSuite};
-use super::threshold::along::{self, Along, AlongOptions};
+use super::suite::{Heading, RecordSuite};
+use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::verify;
 use crate::scenario::Scenario;
@@ -68,6 +68,9 @@ pub enum Done {
     },
 }
 
+/// Computes a study of scenarios that differ only in their models of motion; most studies take one.
+type Compute = fn(&[Scenario], &Options, Style, Rows<'_>) -> Result<Done, StudyError>;
+
 /// A study that a scenario describes.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyKind {
@@ -75,7 +78,7 @@ pub struct StudyKind {
     pub name: &'static str,
     /// The names of all files that its results may have, the seal last.
     pub files: &'static [&'static str],
-    run: fn(&Scenario, &Options, Style, Rows<'_>) -> Result<Done, StudyError>,
+    run: Compute,
 }
 
 impl PartialEq for StudyKind {
@@ -87,49 +90,39 @@ impl PartialEq for StudyKind {
 impl Eq for StudyKind {}
 
 /// The map of the pulses that overturn the structure, over two quantities.
-pub const MAP: StudyKind = StudyKind {
-    name: OverturningMap::NAME,
-    files: &map::FILES,
-    run: |scenario, _, style, rows| run(OverturningMap::of(scenario), style, rows),
-};
+pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
+    run(OverturningMap::of(&scenarios[0]), style, rows)
+});
 /// The records that overturn the structure.
-pub const SUITE: StudyKind = StudyKind {
-    name: RecordSuite::NAME,
-    files: &suite::FILES,
-    run: |scenario, _, style, rows| run(RecordSuite::of(scenario), style, rows),
-};
-/// The factors by which the ground motion overturns the structure.
+pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows| {
+    run(RecordSuite::of(&scenarios[0]), style, rows)
+});
+/// The factors by which the ground motion overturns the structure, for one or several models of motion.
 pub const THRESHOLD: StudyKind = StudyKind {
     name: "threshold",
     files: &threshold::FILES,
-    run: |scenario, options, style, rows| {
+    run: |scenarios, options, style, rows| {
         let Rows::Compute(runner, _, watch) = rows else {
             return Err(StudyError::scenario("a threshold has no parts"));
         };
-        let (factors, figure) = (&options.factors, style.figure);
-        threshold::results(&[scenario], factors, figure, &runner, watch).map(whole)
+        threshold::results(scenarios, &options.factors, style.figure, &runner, watch).map(whole)
     },
 };
 /// The threshold for each value of a key along a range.
-pub const THRESHOLD_ALONG: StudyKind = StudyKind {
-    name: Along::NAME,
-    files: &along::FILES,
-    run: |scenario, options, style, rows| {
+pub const THRESHOLD_ALONG: StudyKind =
+    StudyKind::of::<Along<'_>>(|scenarios, options, style, rows| {
         let along = options.along.clone();
-        let along = along.ok_or("a threshold along a range needs its key and its values");
-        let study = along.map_err(str::to_owned);
-        run(
-            study.and_then(|along| Along::of(scenario, along)),
-            style,
-            rows,
-        )
-    },
-};
+        let along =
+            along.ok_or("a threshold along a range needs its key and its values".to_owned());
+        let study = along.and_then(|along| Along::of(&scenarios[0], along));
+        run(study, style, rows)
+    });
 /// The capacity curves of the first mechanism.
 pub const CAPACITY: StudyKind = StudyKind {
     name: "capacity",
     files: &capacity::FILES,
-    run: |scenario, options, style, _| {
+    run: |scenarios, options, style, _| {
+        let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
         Ok(whole(capacity::report(scenario, &sides, style.figure)?))
@@ -139,16 +132,17 @@ pub const CAPACITY: StudyKind = StudyKind {
 pub const SPREAD: StudyKind = StudyKind {
     name: "spread",
     files: &spread::FILES,
-    run: |scenario, options, style, _| {
-        let found = spread::spread(scenario, &options.ways).map_err(StudyError::scenario)?;
-        Ok(whole(spread::report(scenario, &found, style.figure)?))
+    run: |scenarios, options, style, _| {
+        let found = spread::spread(&scenarios[0], &options.ways).map_err(StudyError::scenario)?;
+        Ok(whole(spread::report(&scenarios[0], &found, style.figure)?))
     },
 };
 /// The check of the first mechanism by the Circolare 7/2019.
 pub const VERIFY: StudyKind = StudyKind {
     name: "verify",
     files: &verify::FILES,
-    run: |scenario, _, _, _| {
+    run: |scenarios, _, _, _| {
+        let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
             let message =
@@ -160,39 +154,34 @@ pub const VERIFY: StudyKind = StudyKind {
     },
 };
 /// Endings and courses of histories for samples of the uncertain numbers.
-pub const UNCERTAIN: StudyKind = StudyKind {
-    name: Histories::NAME,
-    files: Histories::FILES,
-    run: |scenario, _, style, rows| run(ensemble(scenario, Histories::of(scenario)), style, rows),
-};
+pub const UNCERTAIN: StudyKind =
+    StudyKind::of::<Ensemble<'_, Histories>>(|scenarios, _, style, rows| {
+        run(
+            Ensemble::new(&scenarios[0], Histories::of(&scenarios[0])),
+            style,
+            rows,
+        )
+    });
 /// The factor from which samples of the uncertain numbers overturn.
-pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind {
-    name: FirstEdges::NAME,
-    files: FirstEdges::FILES,
-    run: |scenario, options, style, rows| {
-        let question = FirstEdges::of(scenario, options.factors);
-        run(ensemble(scenario, question), style, rows)
-    },
-};
+pub const UNCERTAIN_THRESHOLD: StudyKind =
+    StudyKind::of::<Ensemble<'_, FirstEdges>>(|scenarios, options, style, rows| {
+        let question = FirstEdges::of(&scenarios[0], options.factors);
+        run(Ensemble::new(&scenarios[0], question), style, rows)
+    });
 /// The records that overturn samples of the uncertain numbers.
-pub const UNCERTAIN_SUITE: StudyKind = StudyKind {
-    name: Capacities::NAME,
-    files: Capacities::FILES,
-    run: |scenario, _, style, rows| run(ensemble(scenario, Capacities::of(scenario)), style, rows),
-};
+pub const UNCERTAIN_SUITE: StudyKind =
+    StudyKind::of::<Ensemble<'_, Capacities>>(|scenarios, _, style, rows| {
+        run(
+            Ensemble::new(&scenarios[0], Capacities::of(&scenarios[0])),
+            style,
+            rows,
+        )
+    });
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
-pub const UNCERTAIN_MAP: StudyKind = StudyKind {
-    name: CellsOfSamples::NAME,
-    files: &cells::FILES,
-    run: |scenario, _, style, rows| run(CellsOfSamples::of(scenario), style, rows),
-};
-
-fn ensemble<Q: Question>(
-    scenario: &Scenario,
-    question: Result<Q, String>,
-) -> Result<Ensemble<'_, Q>, String> {
-    Ensemble::new(scenario, question?)
-}
+pub const UNCERTAIN_MAP: StudyKind =
+    StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows| {
+        run(CellsOfSamples::of(&scenarios[0]), style, rows)
+    });
 
 const fn whole(results: Results) -> Done {
     Done::Whole(results, None)
@@ -220,18 +209,26 @@ impl StudyKind {
         Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 
-    /// Computes the study of a scenario.
+    const fn of<S: Reported>(run: Compute) -> Self {
+        Self {
+            name: S::NAME,
+            files: S::FILES,
+            run,
+        }
+    }
+
+    /// Computes the study of scenarios that differ only in their models of motion. Only a threshold takes several.
     ///
     /// # Errors
     /// When the scenario does not describe the study, or its rows could not be completed.
     pub fn compute(
         self,
-        scenario: &Scenario,
+        scenarios: &[Scenario],
         options: &Options,
         style: Style,
         rows: Rows<'_>,
     ) -> Result<Done, StudyError> {
-        (self.run)(scenario, options, style, rows)
+        (self.run)(scenarios, options, style, rows)
     }
 }
 
@@ -296,12 +293,8 @@ pub fn merge(
     let options: Option<Options> =
         serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
     let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
-    match kind.compute(
-        &scenario,
-        &options.unwrap_or_default(),
-        style,
-        Rows::Merge(parts),
-    )? {
+    let (scenarios, options) = (std::slice::from_ref(&scenario), options.unwrap_or_default());
+    match kind.compute(scenarios, &options, style, Rows::Merge(parts))? {
         Done::Whole(results, _) => Ok((kind, results)),
         Done::Part { .. } => unreachable!("all parts are joined"),
     }

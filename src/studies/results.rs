@@ -50,6 +50,9 @@ impl StudyError {
 
 /// A study whose rows become results.
 pub trait Reported: Study {
+    /// The names of all files that its results may have, the seal last.
+    const FILES: &'static [&'static str];
+
     /// The files and words for all rows.
     ///
     /// # Errors
@@ -149,15 +152,6 @@ impl Style {
             figure,
             by_peak: false,
             factors: None,
-        }
-    }
-
-    /// The style of a map of probability, which has no outcomes to colour by.
-    #[must_use]
-    pub const fn of_samples(self) -> Self {
-        Self {
-            by_peak: false,
-            ..self
         }
     }
 }

@@ -26,7 +26,7 @@ const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\
 
 fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
     let question = Histories::of(scenario).unwrap();
-    let study = Ensemble::new(scenario, question).unwrap();
+    let study = Ensemble::new(scenario, Ok(question)).unwrap();
     let runner = Runner {
         threads: NonZeroUsize::new(threads),
     };
@@ -971,7 +971,7 @@ fn what_cannot_be_uncertain_is_refused() {
     }
     let nothing = parsed(&format!("{ARCH}{PULSE}"));
     let question = Histories::of(&nothing).unwrap();
-    assert!(Ensemble::new(&nothing, question).is_err());
+    assert!(Ensemble::new(&nothing, Ok(question)).is_err());
 }
 
 /// Every number that may have a fraction, in every kind of structure, ground and model, may be uncertain.

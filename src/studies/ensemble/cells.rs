@@ -5,7 +5,6 @@ mod report;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-pub use self::report::FILES;
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Spacing, Uncertain, UncertainKey};
@@ -306,6 +305,8 @@ impl CellsOfSamples<'_> {
 }
 
 impl Reported for CellsOfSamples<'_> {
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let parts = self.parts(&rows);
         let samples = Samples::new(self.scenario, self.uncertain, &parts);

@@ -76,15 +76,15 @@ pub struct Ensemble<'a, Q> {
 }
 
 impl<'a, Q: Question> Ensemble<'a, Q> {
-    /// The ensemble of a scenario with a table `[uncertain]`.
+    /// The ensemble of a scenario with a table `[uncertain]`, unless the question does not fit the scenario.
     ///
     /// # Errors
-    /// Explains that the scenario has no such table.
-    pub fn new(scenario: &'a Scenario, question: Q) -> Result<Self, String> {
+    /// Explains that the question does not fit, or that the scenario has no such table.
+    pub fn new(scenario: &'a Scenario, question: Result<Q, String>) -> Result<Self, String> {
         Ok(Self {
-            scenario,
+            question: question?,
             uncertain: uncertain(scenario)?,
-            question,
+            scenario,
         })
     }
 }
@@ -136,6 +136,8 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
 }
 
 impl<Q: Question> Reported for Ensemble<'_, Q> {
+    const FILES: &'static [&'static str] = Q::FILES;
+
     fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError> {
         let samples = Samples::new(self.scenario, self.uncertain, &rows);
         let findings = self.question.findings(&samples, style.figure)?;

@@ -4,8 +4,6 @@ pub(super) mod page;
 pub mod picture;
 mod report;
 
-pub use report::FILES;
-
 use std::cell::OnceCell;
 use std::sync::{Arc, OnceLock};
 

@@ -13,10 +13,9 @@ use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
 
-/// Names of the files, the seal last.
-pub const FILES: [&str; 4] = ["map.svg", "map.html", SUMMARY, "map.csv"];
-
 impl Reported for OverturningMap<'_> {
+    const FILES: &'static [&'static str] = &["map.svg", "map.html", SUMMARY, "map.csv"];
+
     fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let scenario = self.scenario;
         let title = scenario.title().unwrap_or("Overturning map");
@@ -28,7 +27,7 @@ impl Reported for OverturningMap<'_> {
             page::page(title, self, &cells, style).into_bytes(),
             csv(self.columns(), &cells)?,
         ];
-        Results::new(&FILES, &summary, words(self, &cells, &remarks), others)
+        Results::new(Self::FILES, &summary, words(self, &cells, &remarks), others)
     }
 }
 

@@ -13,7 +13,6 @@ use serde::{Deserialize, Serialize};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
-pub use self::report::FILES;
 use self::strength::Strength;
 use super::ending::{Ending, Verdict, check_finite};
 use super::remarks::warnings;
@@ -213,6 +212,8 @@ impl Study for RecordSuite<'_> {
 }
 
 impl Reported for RecordSuite<'_> {
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
         let heading = Heading::of_resolved(&self.scenario.to_toml(), warnings(self.scenario));
         let heading = heading.expect("the scenario has a suite");

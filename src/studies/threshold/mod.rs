@@ -304,13 +304,13 @@ fn peak_g(scenario: &Scenario) -> f64 {
 /// # Errors
 /// When a scenario has no threshold, no history can be computed, or `watch` breaks.
 pub fn results(
-    scenarios: &[&Scenario],
+    scenarios: &[Scenario],
     factors: &Factors,
     figure: Figure,
     runner: &Runner,
     watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Results, StudyError> {
-    let scenario = scenarios[0];
+    let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
     let models = scenarios.iter().map(|scenario| scenario.model());
     let models: Vec<Box<dyn Model>> = models

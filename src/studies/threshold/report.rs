@@ -133,12 +133,12 @@ struct HistorySummary {
 /// # Errors
 /// When a value is not finite.
 pub fn report(
-    scenarios: &[&Scenario],
+    scenarios: &[Scenario],
     factors: &Factors,
     thresholds: &[Threshold],
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let scenario = scenarios[0];
+    let scenario = &scenarios[0];
     let title = scenario.title();
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
@@ -193,9 +193,9 @@ fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
 }
 
 /// Warnings of all models, each once, and histories without a verdict.
-fn warnings(scenarios: &[&Scenario], thresholds: &[Threshold]) -> Vec<String> {
+fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
-    for warning in scenarios.iter().flat_map(|one| remarks::warnings(one)) {
+    for warning in scenarios.iter().flat_map(remarks::warnings) {
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }
@@ -293,8 +293,8 @@ fn at(factor: f64, peak_g: f64) -> String {
 }
 
 /// The results in words: one line for a record, one line per range for a pulse.
-fn words(scenarios: &[&Scenario], thresholds: &[Threshold]) -> String {
-    let peak_g = peak_g(scenarios[0]);
+fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
+    let peak_g = peak_g(&scenarios[0]);
     let mut lines = Vec::new();
     for threshold in thresholds {
         let model = match thresholds {
@@ -315,7 +315,7 @@ fn words(scenarios: &[&Scenario], thresholds: &[Threshold]) -> String {
         lines.extend(threshold.doubts_in_words());
         lines.extend(threshold.varied_in_words(peak_g));
     }
-    let caveat = scenarios.iter().find_map(|one| remarks::rough_guide(one));
+    let caveat = scenarios.iter().find_map(remarks::rough_guide);
     lines.extend(caveat.map(|caveat| format!("  {caveat}")));
     lines.join("\n") + "\n"
 }

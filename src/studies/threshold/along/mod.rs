@@ -4,8 +4,6 @@ mod no_impact;
 mod picture;
 mod report;
 
-pub use report::FILES;
-
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};

@@ -11,13 +11,6 @@ use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, no_verdict};
 use crate::studies::results::{Reported, Results, Style};
 use crate::studies::threshold::{Factors, rounded};
 
-/// Names of the files, the seal last.
-pub const FILES: [&str; 3] = [
-    "threshold_along.svg",
-    "threshold_along.json",
-    "threshold_along.csv",
-];
-
 /// The part of the summary that only thresholds along a range have.
 #[derive(Serialize)]
 struct Details<'a> {
@@ -30,6 +23,12 @@ struct Details<'a> {
 }
 
 impl Reported for Along<'_> {
+    const FILES: &'static [&'static str] = &[
+        "threshold_along.svg",
+        "threshold_along.json",
+        "threshold_along.csv",
+    ];
+
     fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
         let (rows, figure) = (&rows[..], style.figure);
         let points: Vec<Point> = rows.iter().map(Point::of).collect();
@@ -61,7 +60,7 @@ impl Reported for Along<'_> {
         words.extend(remarks.failed_in_words("threshold_along.json"));
         words.push(factors.in_words());
         let others = [picture.into_bytes(), csv(columns, &points)?];
-        Results::new(&FILES, &summary, words.join("\n  ") + "\n", others)
+        Results::new(Self::FILES, &summary, words.join("\n  ") + "\n", others)
     }
 }
 
