@@ -16,6 +16,17 @@ pub struct ArgumentError {
     pub allowed: String,
 }
 
+impl ArgumentError {
+    /// The error of this value.
+    pub fn new(argument: &'static str, value: f64, allowed: impl Into<String>) -> Self {
+        Self {
+            argument,
+            value,
+            allowed: allowed.into(),
+        }
+    }
+}
+
 /// The value, if it is in the range; NaN never is.
 pub fn within(
     argument: &'static str,
@@ -25,15 +36,9 @@ pub fn within(
     if range.contains(&value) {
         return Ok(value);
     }
-    Err(ArgumentError {
-        argument,
-        value,
-        allowed: format!(
-            "a number from {} to {}",
-            short(*range.start()),
-            short(*range.end())
-        ),
-    })
+    let (low, high) = (short(*range.start()), short(*range.end()));
+    let allowed = format!("a number from {low} to {high}");
+    Err(ArgumentError::new(argument, value, allowed))
 }
 
 /// The count, if it is in the range.
@@ -45,11 +50,8 @@ pub fn counted(
     if range.contains(&count) {
         return Ok(count);
     }
-    Err(ArgumentError {
-        argument,
-        value: count as f64,
-        allowed: format!("from {} to {}", range.start(), range.end()),
-    })
+    let allowed = format!("from {} to {}", range.start(), range.end());
+    Err(ArgumentError::new(argument, count as f64, allowed))
 }
 
 /// The value, if it is above the first bound and at most the second; NaN never is.
@@ -62,11 +64,8 @@ pub fn above(
     if value > low && value <= high {
         return Ok(value);
     }
-    Err(ArgumentError {
-        argument,
-        value,
-        allowed: format!("a number above {} and at most {}", short(low), short(high)),
-    })
+    let allowed = format!("a number above {} and at most {}", short(low), short(high));
+    Err(ArgumentError::new(argument, value, allowed))
 }
 
 /// A number as people write it, with at most six digits: 0.12, not 0.12000000000000002.

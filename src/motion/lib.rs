@@ -24,7 +24,7 @@ pub mod internals {
     }
     pub mod free_hinges {
         pub use crate::dynamics::free_hinges::motion::simulate;
-        pub use crate::dynamics::free_hinges::settings::Settings;
+        pub use crate::dynamics::row::clock::Settings;
     }
     pub mod hybrid {
         pub use crate::dynamics::hybrid::*;

@@ -91,7 +91,7 @@ fn overturns_at(
 /// Thrust relative to the weight, from the force on the first block.
 fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     let rest = structure.rest([0.0, -gravity_m_s2]).unwrap();
-    let places = [Place::undeformed(), Place::at(&rest.moved[0])];
+    let places = [Place::none(), Place::at(&rest.moved[0])];
     let mut memory = rest.memories[0];
     let mut fibres = rest.fibres.clone();
     let (action, ..) = structure.act(

@@ -726,8 +726,10 @@ fn bad_arguments_are_refused() {
         ..good
     };
     let error = simulate(&row, &ground, GRAVITY, &endless, None, None);
-    assert!(matches!(error, Err(RowMotionError::TooLong { .. })));
+    assert!(
+        matches!(error, Err(RowMotionError::Failed(why)) if why.contains("takes 1.0e13 steps"))
+    );
     let arch = arch(157.5, 0.15, 3, 10.0);
     let open = simulate(&arch, &ground, GRAVITY, &good, Some(&[0.0, 0.1, 0.0]), None);
-    assert!(matches!(open, Err(RowMotionError::Open { .. })));
+    assert!(matches!(open, Err(RowMotionError::Failed(why)) if why.contains("miss each other")));
 }

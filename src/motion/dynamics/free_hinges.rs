@@ -8,7 +8,7 @@ mod model;
 pub(crate) mod motion;
 mod rest;
 mod right_support;
-pub(crate) mod settings;
+mod settings;
 mod sliding;
 mod ties;
 

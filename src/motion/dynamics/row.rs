@@ -2,7 +2,7 @@
 //! judges the motion; and `standing`,
 //! what is known of a row of rigid blocks before it moves.
 
-pub(super) mod clock;
+pub(crate) mod clock;
 pub(super) mod course;
 pub mod error;
 pub(super) mod standing;

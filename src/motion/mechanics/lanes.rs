@@ -161,33 +161,35 @@ impl<const L: usize> Real for Lanes<L> {
     }
 }
 
-/// Implements access to single lanes of a struct that is remembered: fields, and after a semicolon fields that are pairs.
+/// Implements access to single lanes of a struct: fields, after a semicolon fields that are pairs, and after another one fields that are
+/// such structs themselves.
 macro_rules! remembered {
-    ($type:ident { $($field:ident),+ $(; $($pair:ident),+)? }) => {
+    ($type:ident { $($field:ident),* $(; $($pair:ident),+ $(; $($part:ident: $of:ident),+)?)? }) => {
         impl<R: Real> $type<R> {
             /// Nothing has happened.
             #[must_use]
             pub fn none() -> Self {
                 let zero = R::of(0.0);
-                Self { $($field: zero,)+ $($($pair: [zero; 2],)+)? }
+                Self { $($field: zero,)* $($($pair: [zero; 2],)+ $($($part: $of::none(),)+)?)? }
             }
         }
 
+        #[allow(dead_code, reason = "some are only set, others only read")]
         impl<const L: usize> $type<Lanes<L>> {
             /// Sets one lane.
             pub fn set(&mut self, lane: usize, alone: &$type<Lanes<1>>) {
-                $(self.$field.0[lane] = alone.$field.0[0];)+
+                $(self.$field.0[lane] = alone.$field.0[0];)*
                 $($(for (part, from) in self.$pair.iter_mut().zip(&alone.$pair) {
                     part.0[lane] = from.0[0];
-                })+)?
+                })+ $($(self.$part.set(lane, &alone.$part);)+)?)?
             }
 
             /// One lane.
             #[must_use]
             pub(crate) fn lane(&self, lane: usize) -> $type<Lanes<1>> {
                 $type {
-                    $($field: Lanes([self.$field.0[lane]]),)+
-                    $($($pair: self.$pair.map(|part| Lanes([part.0[lane]])),)+)?
+                    $($field: Lanes([self.$field.0[lane]]),)*
+                    $($($pair: self.$pair.map(|part| Lanes([part.0[lane]])),)+ $($($part: self.$part.lane(lane),)+)?)?
                 }
             }
         }

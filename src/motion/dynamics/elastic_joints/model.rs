@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
-use super::stepper::{ElasticStepper, Group, Start};
+use super::stepper::Group;
 use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Details, Summary};
@@ -11,8 +11,8 @@ use crate::dynamics::model::{
     Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, check, one_by_one,
 };
 use crate::dynamics::recording::Shape;
-use crate::dynamics::row::clock::Clock;
-use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task};
+use crate::dynamics::row::clock::Settings;
+use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task, balanced};
 use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
@@ -255,59 +255,35 @@ impl ElasticJoints {
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
-    fn clock(&self, request: &Request) -> Result<Clock, RowMotionError> {
-        let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
-        if step_s > longest_s {
-            return Err(RowMotionError::Unstable { step_s, longest_s });
-        }
-        let end_s = request.end_s;
-        if end_s / step_s > ElasticOptions::MOST_STEPS {
-            return Err(RowMotionError::TooLong {
-                step_s,
-                end_s,
-                remedy: TOO_LONG,
-            });
-        }
-        Ok(Clock {
-            longest_step_s: step_s,
-            may_halve: self.options.longest_step_s.is_none(),
-            shortest_step_s: step_s,
-            end_s,
-            output_step_s: Some(request.output_step_s),
-        })
-    }
-
-    fn check(&self, ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
-        check(ground, request)?;
-        match request.initial {
-            None => Ok(()),
-            Some(initial) => Err(ArgumentError {
-                argument: "rotation_rad",
-                value: initial.rotation_rad,
-                allowed:
-                    "left out: elastic joints start from rest under the weight of the structure"
-                        .to_owned(),
-            }
-            .into()),
-        }
-    }
-
     fn task<'a>(
         &'a self,
         ground: &'a GroundMotion,
         request: &Request,
     ) -> Result<Task<'a>, SimulationError> {
-        self.check(ground, request)?;
-        let clock = self.clock(request)?;
-        Ok(self.rigid.task(ground, request.gravity_m_s2, clock))
-    }
-
-    fn start<'a>(&'a self, rest: &'a Rest, barrier_j: &'a dyn Fn() -> Option<f64>) -> Start<'a> {
-        Start {
-            structure: &self.structure,
-            rest,
-            barrier_j,
+        check(ground, request)?;
+        if let Some(initial) = request.initial {
+            let allowed =
+                "left out: elastic joints start from rest under the weight of the structure";
+            return Err(ArgumentError::new("rotation_rad", initial.rotation_rad, allowed).into());
         }
+        let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
+        if step_s > longest_s {
+            let why = format!(
+                "a step of {step_s:.3e} s is not stable with these joints: the longest one is {longest_s:.3e} s; leave \
+                 longest_step_s out, or take a smaller stiffness or damping time"
+            );
+            return Err(RowMotionError::Failed(why).into());
+        }
+        let settings = Settings {
+            longest_step_s: step_s,
+            may_halve: self.options.longest_step_s.is_none(),
+            shortest_step_s: step_s,
+            end_s: request.end_s,
+            output_step_s: Some(request.output_step_s),
+            ..Settings::default()
+        };
+        let settings = settings.within(ElasticOptions::MOST_STEPS, TOO_LONG)?;
+        Ok(self.rigid.task(ground, request.gravity_m_s2, settings))
     }
 
     fn alone(
@@ -323,8 +299,10 @@ impl ElasticJoints {
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
         // A recorder of any lifetime serves for as long as the task.
         let recorder = recorder.map(|recorder| recorder as _);
-        let stepper = ElasticStepper::new(task, self.start(&rest, &barrier_j), until, recorder);
-        self.judged(stepper::run(stepper)?, &rest, gravity_m_s2)
+        let start = (&self.structure, &rest);
+        let mut group = Group::<1>::new(task.row, start, gravity_m_s2, &barrier_j);
+        group.begin(0, task, until, recorder);
+        self.judged(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
     /// Jobs on cases under one gravity, side by side.
@@ -332,8 +310,8 @@ impl ElasticJoints {
         let repeated: Vec<Self> = self.other_steps().map(|(_, model)| model).into();
         let model_of = |job: Job| job.repetition.map_or(self, |index| &repeated[index]);
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
-        let start = self.start(rest, &barrier_j);
-        let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), start, gravity_m_s2);
+        let start = (&self.structure, rest);
+        let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), start, gravity_m_s2, &barrier_j);
         let mut running = [None; SIDE_BY_SIDE];
         loop {
             let may_begin = group.may_begin();
@@ -392,15 +370,8 @@ impl ElasticJoints {
             let defect_j = summary.energy_defect_ratio * weight_n * self.row().size_m;
             row.energy_error = defect_j / barrier_j.max(row.largest_kinetic_j);
         }
-        match row.energy_error {
-            error if error > LARGEST_ENERGY_ERROR => Err(RowMotionError::Energy {
-                error,
-                table: "elastic_joints",
-                longest_step_s: SHORTER * self.longest_step_s(),
-            }
-            .into()),
-            _ => Ok(summary),
-        }
+        let step_s = SHORTER * self.longest_step_s();
+        Ok(balanced(summary, "elastic_joints", step_s)?)
     }
 }
 

@@ -5,14 +5,14 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::mechanics::elastic_joint::{
     Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
 };
-use crate::mechanics::lanes::{Lanes, Real, both};
+use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 use crate::mechanics::tie::TieMemory;
 
 /// A body that moves.
 #[derive(Clone, Copy)]
-struct Moving<R> {
-    place: Place<R>,
-    angle_rad: R,
+pub struct Moving<R> {
+    pub place: Place<R>,
+    pub angle_rad: R,
     /// Velocity half a step before the place, and rate of rotation.
     velocity_m_s: [R; 2],
     rate_rad_s: R,
@@ -21,23 +21,7 @@ struct Moving<R> {
     moment_n_m: R,
 }
 
-impl<R> Moving<R> {
-    fn parts_mut(&mut self) -> impl Iterator<Item = &mut R> {
-        let Place { moved_m, half_turn } = &mut self.place;
-        let pairs = [
-            moved_m,
-            half_turn,
-            &mut self.velocity_m_s,
-            &mut self.force_n,
-        ];
-        let turns = [
-            &mut self.angle_rad,
-            &mut self.rate_rad_s,
-            &mut self.moment_n_m,
-        ];
-        pairs.into_iter().flatten().chain(turns)
-    }
-}
+remembered!(Moving { angle_rad, rate_rad_s, moment_n_m; velocity_m_s, force_n; place: Place });
 
 impl<R: Real> Moving<R> {
     /// Adds a force and a moment.
@@ -51,7 +35,7 @@ impl<R: Real> Moving<R> {
 
 /// The bodies of a joint, of which the last two are the supports.
 #[inline(always)]
-fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
+pub fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     let right = structure.bodies.len() + 1;
     both!(end: joint.link.bodies[end].min(right))
 }
@@ -62,17 +46,17 @@ pub struct Motion<'a, const L: usize> {
     gravity_m_s2: f64,
     arch: Arch,
     /// The last two are the left and the right support.
-    bodies: Vec<Moving<Lanes<L>>>,
+    pub bodies: Vec<Moving<Lanes<L>>>,
     /// Displacements and rotations of the bodies that count as zero: those at rest of a settled row, else zero.
     datum: Vec<[f64; 3]>,
     /// One over the mass, and over the moment of inertia, of each body.
     inverses: Vec<[f64; 2]>,
-    memories: Vec<Memory<Lanes<L>>>,
+    pub memories: Vec<Memory<Lanes<L>>>,
     /// Forces of the joints that are computed together.
     bearing: [Bearing<Lanes<L>>; TOGETHER],
     /// Memories of the places of each joint, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
-    ties: Vec<TieMemory<Lanes<L>>>,
+    pub ties: Vec<TieMemory<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
 }
 
@@ -88,16 +72,7 @@ struct Bearing<R> {
     shear_n: R,
 }
 
-impl<R: Real> Bearing<R> {
-    fn none() -> Self {
-        let zero = R::of(0.0);
-        Self {
-            gap: Gap::none(),
-            edges_n: [zero; 2],
-            shear_n: zero,
-        }
-    }
-}
+remembered!(Bearing { shear_n; edges_n; gap: Gap });
 
 /// Energies spent since the beginning, in J.
 #[derive(Clone, Copy, Debug)]
@@ -115,20 +90,32 @@ pub struct Spent<R> {
     pub feet_j: R,
 }
 
+remembered!(Spent {
+    friction_j,
+    slip_balance_j,
+    damped_j,
+    crushed_j,
+    ties_j,
+    ground_j,
+    feet_j
+});
+
 /// A step, by lane. A lane in which all is zero does not change.
 #[derive(Clone, Copy)]
-pub struct Step<const L: usize> {
+pub struct Step<R> {
     /// Time from place to place, in s.
-    pub drift_s: Lanes<L>,
+    pub drift_s: R,
     /// Time from velocity to velocity, in s.
-    pub kick_s: Lanes<L>,
+    pub kick_s: R,
     /// Damping time over the time from place to place.
-    pub damping: Lanes<L>,
+    pub damping: R,
     /// Velocity that the ground gains in the time of the kick, in m/s.
-    pub shift_m_s: [Lanes<L>; 2],
+    pub shift_m_s: [R; 2],
     /// Displacement of the right support relative to the left one, from place to place, in m.
-    pub apart_m: [Lanes<L>; 2],
+    pub apart_m: [R; 2],
 }
+
+remembered!(Step { drift_s, kick_s, damping; shift_m_s, apart_m });
 
 /// Movements of the ground in a step of any lane; those that are absent are not computed.
 #[derive(Clone, Copy, Default)]
@@ -137,29 +124,6 @@ pub struct Happens {
     pub shakes: bool,
     /// The feet move differently.
     pub parts: bool,
-}
-
-impl<const L: usize> Step<L> {
-    pub fn none() -> Self {
-        let zero = Lanes([0.0; L]);
-        Self {
-            drift_s: zero,
-            kick_s: zero,
-            damping: zero,
-            shift_m_s: [zero; 2],
-            apart_m: [zero; 2],
-        }
-    }
-
-    pub fn set(&mut self, lane: usize, alone: &Step<1>) {
-        self.drift_s.0[lane] = alone.drift_s.0[0];
-        self.kick_s.0[lane] = alone.kick_s.0[0];
-        self.damping.0[lane] = alone.damping.0[0];
-        for axis in [0, 1] {
-            self.shift_m_s[axis].0[lane] = alone.shift_m_s[axis].0[0];
-            self.apart_m[axis].0[lane] = alone.apart_m[axis].0[0];
-        }
-    }
 }
 
 /// A support along whose joint the whole structure may slide.
@@ -193,24 +157,19 @@ pub struct Observed<R> {
     pub deepest: [R; 2],
 }
 
+remembered!(Observed {
+    kinetic_j, potential_j, elastic_j, sway_kg_m, farthest_m2, turned_rad; deepest; spent: Spent
+});
+
 impl<'a, const L: usize> Motion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
-        let zero = Lanes([0.0; L]);
-        let body = Moving {
-            place: Place::undeformed(),
-            angle_rad: zero,
-            velocity_m_s: [zero; 2],
-            rate_rad_s: zero,
-            force_n: [zero; 2],
-            moment_n_m: zero,
-        };
         let joints = structure.joints.len();
         let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
             gravity_m_s2,
             arch: Arch::new(),
-            bodies: vec![body; structure.bodies.len() + 2],
+            bodies: vec![Moving::none(); structure.bodies.len() + 2],
             datum: vec![[0.0; 3]; structure.bodies.len()],
             inverses: structure.bodies.iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
@@ -221,15 +180,7 @@ impl<'a, const L: usize> Motion<'a, L> {
                 .iter()
                 .map(|bound| TieMemory::undeformed(&bound.tie))
                 .collect(),
-            spent: Spent {
-                friction_j: zero,
-                slip_balance_j: zero,
-                damped_j: zero,
-                crushed_j: zero,
-                ties_j: zero,
-                ground_j: zero,
-                feet_j: zero,
-            },
+            spent: Spent::none(),
         }
     }
 
@@ -240,9 +191,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             self.datum.clone_from(&rest.moved);
         }
         for (body, from) in self.bodies.iter_mut().zip(&alone.bodies) {
-            for (part, from) in body.parts_mut().zip(from.clone().parts_mut()) {
-                part.0[lane] = from.0[0];
-            }
+            body.set(lane, from);
         }
         for (memory, alone) in self.memories.iter_mut().zip(&alone.memories) {
             memory.set(lane, alone);
@@ -253,22 +202,11 @@ impl<'a, const L: usize> Motion<'a, L> {
         for (tie, alone) in self.ties.iter_mut().zip(&alone.ties) {
             tie.set(lane, alone);
         }
-        let spent = &mut self.spent;
-        for energy in [
-            &mut spent.friction_j,
-            &mut spent.slip_balance_j,
-            &mut spent.damped_j,
-            &mut spent.crushed_j,
-            &mut spent.ties_j,
-            &mut spent.ground_j,
-            &mut spent.feet_j,
-        ] {
-            energy.0[lane] = 0.0;
-        }
+        self.spent.set(lane, &Spent::none());
     }
 
     /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
-    pub fn step(&mut self, step: &Step<L>, happens: Happens) {
+    pub fn step(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
         let arch = self.arch;
         arch.dispatch(Leap {
             motion: self,
@@ -278,7 +216,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     #[inline(always)]
-    fn leap(&mut self, step: &Step<L>, happens: Happens) {
+    fn leap(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
         self.kick(step, happens.shakes);
         self.drift(step.drift_s);
         if happens.parts {
@@ -290,7 +228,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Moves the right support, and finds the forces. Its work is the mean of the forces on it before and after, times its displacement.
     #[inline(always)]
-    fn part(&mut self, step: &Step<L>) {
+    fn part(&mut self, step: &Step<Lanes<L>>) {
         let right = self.structure.bodies.len() + 1;
         let by_m = step.apart_m;
         let support = &mut self.bodies[right];
@@ -304,26 +242,20 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Takes the velocities to half a step after the places.
     #[inline(always)]
-    fn kick(&mut self, step: &Step<L>, shaken: bool) {
-        let structure = self.structure;
-        let [sideways, upwards] = step.shift_m_s;
-        let fall = [sideways, upwards + step.kick_s * self.gravity_m_s2];
+    fn kick(&mut self, step: &Step<Lanes<L>>, shaken: bool) {
         let mut work = Lanes([0.0; L]);
-        let constants = &structure.bodies;
+        let constants = &self.structure.bodies;
         let mut index = 0;
         while index < constants.len() {
-            let (constants, body) = (&constants[index], &mut self.bodies[index]);
-            let [per_kg, per_kg_m2] = self.inverses[index];
-            index += 1;
-            let per_mass = step.kick_s * per_kg;
-            let before = body.velocity_m_s;
-            let after = both!(i: before[i] + (body.force_n[i] * per_mass - fall[i]));
-            body.velocity_m_s = after;
+            let [x, y, rate] = self.velocity(index, step);
+            let (after, body) = ([x, y], &mut self.bodies[index]);
             if shaken {
+                let before = body.velocity_m_s;
                 let by_axis = both!(i: (before[i] + after[i]) * step.shift_m_s[i]);
-                work += (by_axis[0] + by_axis[1]) * (0.5 * constants.mass_kg);
+                work += (by_axis[0] + by_axis[1]) * (0.5 * constants[index].mass_kg);
             }
-            body.rate_rad_s += body.moment_n_m * (step.kick_s * per_kg_m2);
+            (body.velocity_m_s, body.rate_rad_s) = (after, rate);
+            index += 1;
         }
         self.spent.ground_j -= work;
     }
@@ -419,28 +351,20 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Quantities at the places, with the velocities after half a kick more.
-    pub fn observe(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
+    pub fn observe(&self, half: &Step<Lanes<L>>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let arch = self.arch;
-        arch.dispatch(Observer {
-            motion: self,
-            half,
-            slides,
-        })
+        arch.dispatch(
+            #[inline(always)]
+            || self.look(half, slides),
+        )
     }
 
     #[inline(always)]
-    fn look(&self, half: &Step<L>, slides: &[Slide]) -> Observed<Lanes<L>> {
-        let zero = Lanes([0.0; L]);
+    fn look(&self, half: &Step<Lanes<L>>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let structure = self.structure;
         let mut seen = Observed {
-            kinetic_j: zero,
-            potential_j: zero,
-            elastic_j: zero,
             spent: self.spent,
-            sway_kg_m: zero,
-            farthest_m2: zero,
-            turned_rad: zero,
-            deepest: [zero; 2],
+            ..Observed::none()
         };
         for (index, (constants, body)) in structure.bodies.iter().zip(&self.bodies).enumerate() {
             let datum = self.datum[index].map(|part| Lanes([part; L]));
@@ -502,7 +426,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Velocities and rate of rotation of a body after half a kick more.
     #[inline(always)]
-    pub fn velocity(&self, body: usize, half: &Step<L>) -> [Lanes<L>; 3] {
+    pub fn velocity(&self, body: usize, half: &Step<Lanes<L>>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
         let moving = &self.bodies[body];
         let [sideways, upwards] = half.shift_m_s;
@@ -514,29 +438,11 @@ impl<'a, const L: usize> Motion<'a, L> {
         [x, y, moving.rate_rad_s + turning]
     }
 
-    /// Displacement of a body in a lane, in m.
-    pub fn moved_m(&self, body: usize, lane: usize) -> [f64; 2] {
-        self.bodies[body].place.moved_m.map(|part| part.0[lane])
-    }
-
     /// Rotations, of settled rows from those at rest, and their rates half a step before, in a lane.
     pub fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
-        let bodies = self.datum.iter().enumerate();
-        bodies.map(move |(body, datum)| {
-            let (rotation_rad, rate_rad_s) = self.turn(body, lane);
-            (rotation_rad - datum[2], rate_rad_s)
-        })
-    }
-
-    /// Rotation of a body and its rate half a step before, in a lane.
-    pub fn turn(&self, body: usize, lane: usize) -> (f64, f64) {
-        let body = &self.bodies[body];
-        (body.angle_rad.0[lane], body.rate_rad_s.0[lane])
-    }
-
-    /// Permanent slip of a joint in a lane, in m.
-    pub fn slipped_m(&self, joint: usize, lane: usize) -> f64 {
-        self.memories[joint].slipped_m.0[lane]
+        let bodies = self.bodies.iter().zip(&self.datum);
+        bodies
+            .map(move |(body, datum)| (body.angle_rad.0[lane] - datum[2], body.rate_rad_s.0[lane]))
     }
 
     /// Momentum in a lane, half a step before.
@@ -547,31 +453,11 @@ impl<'a, const L: usize> Motion<'a, L> {
         })
     }
 
-    /// The memory of a joint in a lane.
-    pub fn memory(&self, joint: usize, lane: usize) -> Memory<Lanes<1>> {
-        self.memories[joint].lane(lane)
-    }
-
     /// The memories of the places along a joint in a lane.
     pub fn fibres(&self, joint: usize, lane: usize) -> impl Iterator<Item = Fibre<Lanes<1>>> {
         let each = self.structure.fibres();
         let own = &self.fibres[joint * each..(joint + 1) * each];
         own.iter().map(move |fibre| fibre.lane(lane))
-    }
-
-    /// The memories of the ties in a lane.
-    pub fn ties(&self, lane: usize) -> impl Iterator<Item = TieMemory<Lanes<1>>> {
-        self.ties.iter().map(move |tie| tie.lane(lane))
-    }
-
-    /// The place of a body in a lane.
-    pub fn place(&self, body: usize, lane: usize) -> Place<Lanes<1>> {
-        let Place { moved_m, half_turn } = self.bodies[body].place;
-        let alone = |part: Lanes<L>| Lanes([part.0[lane]]);
-        Place {
-            moved_m: moved_m.map(alone),
-            half_turn: half_turn.map(alone),
-        }
     }
 }
 
@@ -597,7 +483,7 @@ impl<'a> Motion<'a, 1> {
 /// A step, to be compiled once for every kind of vectors.
 struct Leap<'m, 'a, const L: usize> {
     motion: &'m mut Motion<'a, L>,
-    step: &'m Step<L>,
+    step: &'m Step<Lanes<L>>,
     happens: Happens,
 }
 
@@ -607,22 +493,6 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         self.motion.leap(self.step, self.happens);
-    }
-}
-
-/// Observes a motion with the widest vectors of the processor.
-struct Observer<'m, 'a, const L: usize> {
-    motion: &'m Motion<'a, L>,
-    half: &'m Step<L>,
-    slides: &'m [Slide],
-}
-
-impl<const L: usize> WithSimd for Observer<'_, '_, L> {
-    type Output = Observed<Lanes<L>>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.motion.look(self.half, self.slides)
     }
 }
 

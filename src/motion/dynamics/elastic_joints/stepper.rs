@@ -4,10 +4,10 @@ use std::cell::OnceCell;
 
 use nalgebra::Vector2;
 
-use super::motion::{Happens, Motion, Observed, Slide, Step};
+use super::motion::{Happens, Motion, Observed, Slide, Step, ends};
 use crate::dynamics::ground::{FeetApart, GroundVelocity};
 use crate::dynamics::history::{
-    ElasticSummary, EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
+    EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
 };
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::repeatability::GONE;
@@ -20,7 +20,7 @@ use crate::dynamics::row::stepper::{Stepper, equal_step, open_hinge};
 use crate::dynamics::until::Until;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::elastic_joint::{ElasticStructure, Place, Rest};
+use crate::mechanics::elastic_joint::{ElasticStructure, Rest};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
@@ -43,15 +43,6 @@ const SIDE_RATIO: f64 = 0.1;
 /// A joint in contact on less than this fraction of its length is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
 
-/// The common start of all motions of a group.
-#[derive(Clone, Copy)]
-pub struct Start<'a> {
-    pub structure: &'a ElasticStructure,
-    pub rest: &'a Rest,
-    /// Least energy above that at rest with which it overturns without slip, if known; it takes time to find.
-    pub barrier_j: &'a dyn Fn() -> Option<f64>,
-}
-
 /// One motion of a group.
 struct Lane<'a> {
     course: Course<'a>,
@@ -71,7 +62,8 @@ struct Lane<'a> {
     /// Energy, potential and elastic, at rest.
     rest_j: Option<f64>,
     rest_sway_kg_m: f64,
-    opening: Opening,
+    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, which is at rest.
+    opening_m: Vec<[f64; 2]>,
     /// The largest energies that count as rest.
     still_j: f64,
     /// The barrier with rigid joints; if that is unknown, with elastic joints, once computed.
@@ -82,53 +74,30 @@ struct Lane<'a> {
     returns: bool,
     /// Time and energy of the first observation on ground that stays quiet.
     quiet: Option<(f64, f64)>,
-    end_s: f64,
     quiet_since_s: f64,
     /// Last time at which a joint was open beyond its state at rest.
     open_until_s: f64,
     marks: Marks,
     /// The error that ends it.
     lost: Option<RowMotionError>,
-    elastic: ElasticSummary,
-    /// The largest stress up to the last instant from which it may have fallen without return.
-    stress_before_fall: Stress,
     /// Events of ties since the last observation.
     happened: Vec<(usize, EventKind)>,
-}
-
-/// The gaps beyond which joints have opened.
-#[derive(Default)]
-struct Opening {
-    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, which is at rest.
-    from_m: Vec<[f64; 2]>,
-}
-
-impl Opening {
-    /// Whether a joint is open beyond its state at rest, by more than the weight compresses the most compressed edge.
-    fn is_seen(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
-        if !self.from_m.is_empty() {
-            let mut joints = penetrations_m.zip(&self.from_m);
-            return joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]));
-        }
-        let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
-        let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
-        let opens = |end: f64| (-end).max(0.0) + most_m;
-        self.from_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
-        false
-    }
 }
 
 /// Motions side by side.
 pub struct Group<'a, const L: usize> {
     row: &'a Row,
-    start: Start<'a>,
+    structure: &'a ElasticStructure,
+    /// Where all motions start.
+    rest: &'a Rest,
+    /// Finds the least energy above that at rest with which it overturns without slip, if known; it takes time.
+    find_barrier_j: &'a dyn Fn() -> Option<f64>,
     motion: Motion<'a, L>,
     lanes: [Option<Lane<'a>>; L],
     /// The barrier, once requested.
     barrier_j: OnceCell<Option<f64>>,
     /// Supports along which the row may slide as a whole.
     slides: Vec<Slide>,
-    mass_kg: f64,
 }
 
 impl<'a> Lane<'a> {
@@ -147,26 +116,23 @@ impl<'a> Lane<'a> {
             kicked_s: start_s,
             rest_j: None,
             rest_sway_kg_m: 0.0,
-            opening: Opening::default(),
+            opening_m: Vec::new(),
             still_j: 0.0,
             barrier_j: task.barrier_j,
             largest_j: 0.0,
             returns: false,
             quiet: None,
-            end_s: task.clock.end_s,
             quiet_since_s: start_s,
             open_until_s: start_s,
-            marks: Marks::new(task.clock, start_s),
+            marks: Marks::new(task.settings, start_s),
             lost: None,
-            elastic: ElasticSummary::default(),
-            stress_before_fall: Stress::default(),
             happened: Vec::new(),
             course: Course::new(task, None, recorder),
         }
     }
 
     /// Its next step.
-    fn next(&mut self, damping_time_s: f64) -> Step<1> {
+    fn next(&mut self, damping_time_s: f64) -> Step<Lanes<1>> {
         let step_s = equal_step(self.course.time, self.until_s, self.course.longest_step_s);
         let to_s = self.course.time + 0.5 * step_s;
         let (mut step, ground_m_s) = self.kick(to_s);
@@ -192,7 +158,7 @@ impl<'a> Lane<'a> {
     }
 
     /// A kick that lasts up to a time, and the velocity of the ground then, which is constant once the ground is quiet for good.
-    fn kick(&self, to_s: f64) -> (Step<1>, Vector2<f64>) {
+    fn kick(&self, to_s: f64) -> (Step<Lanes<1>>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
             self.velocity.at(to_s)
         } else {
@@ -221,7 +187,12 @@ impl<'a> Lane<'a> {
 }
 
 impl<'a, const L: usize> Group<'a, L> {
-    pub fn new(row: &'a Row, start: Start<'a>, gravity_m_s2: f64) -> Self {
+    pub fn new(
+        row: &'a Row,
+        (structure, rest): (&'a ElasticStructure, &'a Rest),
+        gravity_m_s2: f64,
+        find_barrier_j: &'a dyn Fn() -> Option<f64>,
+    ) -> Self {
         let [left, right] = row.supports_extend;
         let last = row.joints.len() - 1;
         // At the right support the block is the left one.
@@ -238,12 +209,13 @@ impl<'a, const L: usize> Group<'a, L> {
         };
         Self {
             row,
-            start,
-            motion: Motion::new(start.structure, gravity_m_s2),
+            structure,
+            rest,
+            find_barrier_j,
+            motion: Motion::new(structure, gravity_m_s2),
             lanes: [const { None }; L],
             barrier_j: OnceCell::new(),
             slides: slides.into_iter().map(slide).collect(),
-            mass_kg: row.mass_kg(),
         }
     }
 
@@ -255,14 +227,14 @@ impl<'a, const L: usize> Group<'a, L> {
         until: Until,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
-        self.motion.start(lane, self.start.rest);
+        self.motion.start(lane, self.rest);
         let mut begun = Lane::new(task, until, recorder);
         let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
-        let weighted = self.row.blocks.iter().zip(&self.start.rest.bent);
+        let weighted = self.row.blocks.iter().zip(&self.rest.bent);
         let moved_kg_m: f64 = weighted
             .map(|(block, moved)| block.mass_kg * moved_m(moved))
             .sum();
-        let structure = self.start.structure;
+        let structure = self.structure;
         begun.course.of_row.sliding =
             (structure.slips()).then(|| Sliding::none(structure.joints.len()));
         begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
@@ -279,7 +251,7 @@ impl<'a, const L: usize> Group<'a, L> {
 
     /// Steps until a motion has been observed.
     pub fn stride(&mut self) {
-        let damping_time_s = self.start.structure.damping_time_s;
+        let damping_time_s = self.structure.damping_time_s;
         loop {
             let mut step = Step::none();
             let (mut happens, mut due) = (Happens::default(), false);
@@ -307,7 +279,7 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// The half kick from the velocities to the places.
-    fn half_kick(&self) -> Step<L> {
+    fn half_kick(&self) -> Step<Lanes<L>> {
         let mut half = Step::none();
         for (index, lane) in self.lanes.iter().enumerate() {
             if let Some(lane) = lane {
@@ -319,6 +291,7 @@ impl<'a, const L: usize> Group<'a, L> {
 
     /// Notes the observed quantities of the motion of a lane.
     fn note(&mut self, index: usize, seen: &Observed<Lanes<L>>) {
+        let (motion, slides) = (&self.motion, &self.slides);
         let Some(lane) = &mut self.lanes[index] else {
             return;
         };
@@ -329,7 +302,9 @@ impl<'a, const L: usize> Group<'a, L> {
         let (kinetic, elastic) = (of(seen.kinetic_j), of(seen.elastic_j));
         let stored = of(seen.potential_j) + elastic;
         if !(kinetic.is_finite() && stored.is_finite()) {
-            lane.lost = Some(RowMotionError::Lost { time_s: time });
+            lane.lost = Some(RowMotionError::Failed(format!(
+                "at {time} s the motion has grown beyond all numbers: give a shorter longest_step_s"
+            )));
             return;
         }
         let rest_j = *lane.rest_j.get_or_insert_with(|| {
@@ -340,41 +315,38 @@ impl<'a, const L: usize> Group<'a, L> {
             stored
         });
         let spent = &seen.spent;
-        lane.elastic.elastic_j = elastic;
-        lane.elastic.damped_j = of(spent.damped_j);
-        lane.elastic.friction_j = of(spent.friction_j);
-        lane.elastic.crushed_j = of(spent.crushed_j);
-        lane.elastic.ties_j = of(spent.ties_j);
+        course.elastic.elastic_j = elastic;
+        course.elastic.damped_j = of(spent.damped_j);
+        course.elastic.friction_j = of(spent.friction_j);
+        course.elastic.crushed_j = of(spent.crushed_j);
+        course.elastic.ties_j = of(spent.ties_j);
         let taken_with = |friction_j: f64| {
-            let joints_j = lane.elastic.damped_j + friction_j + lane.elastic.crushed_j;
-            joints_j + lane.elastic.ties_j
+            let joints_j = course.elastic.damped_j + friction_j + course.elastic.crushed_j;
+            joints_j + course.elastic.ties_j
         };
         // The balance closes with the slip of the discrete motion, of which the work of friction is an estimate.
         let taken = taken_with(of(spent.slip_balance_j));
-        course.of_row.energy_taken_j = taken_with(lane.elastic.friction_j);
-        let bound = self.start.structure.ties.iter().map(|bound| &bound.tie);
-        lane.happened = course.note_ties(bound.zip(self.motion.ties(index)));
+        course.of_row.energy_taken_j = taken_with(course.elastic.friction_j);
+        let bound = self.structure.ties.iter().map(|bound| &bound.tie);
+        let memories = motion.ties.iter().map(|tie| tie.lane(index));
+        lane.happened = course.note_ties(bound.zip(memories));
         let of_row = &mut course.of_row;
         (of_row.ground_j, of_row.right_foot_j) = (of(spent.ground_j), of(spent.feet_j));
         let potential = stored - rest_j;
         let due = of_row.ground_j + of_row.right_foot_j - taken;
         course.note_defect((kinetic + potential - due).abs());
-        if of(seen.deepest[0]) > lane.elastic.largest_stress.stress_pa {
-            lane.elastic.largest_stress = Stress {
+        if of(seen.deepest[0]) > course.elastic.largest_stress.stress_pa {
+            course.elastic.largest_stress = Stress {
                 stress_pa: of(seen.deepest[0]),
                 joint: of(seen.deepest[1]) as usize,
                 time_s: time,
             };
         }
-        let slid = self.note_joints(index);
-        let Some(lane) = &mut self.lanes[index] else {
-            return;
-        };
-        let course = &mut lane.course;
         // Between feet that part the middle goes half the way.
-        let slid = slid + 0.5 * lane.apart_m.x;
-        let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.mass_kg * slid;
-        let rotations = self.motion.turns(index).map(|(rotation, _)| rotation);
+        let slid = lane.note_joints(index, motion, slides) + 0.5 * lane.apart_m.x;
+        let course = &mut lane.course;
+        let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.row.mass_kg() * slid;
+        let rotations = motion.turns(index).map(|(rotation, _)| rotation);
         lane.returns = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
         let far = OVERTURNED_RATIO * self.row.size_m;
@@ -382,56 +354,20 @@ impl<'a, const L: usize> Group<'a, L> {
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + taken);
         course.note_height(height);
-        if course.summit.time == time {
-            lane.stress_before_fall = lane.elastic.largest_stress;
-        }
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
         // A row that is still but stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             lane.quiet_since_s = time;
             course.moved = true;
         }
-        let barrier_j = || *self.barrier_j.get_or_init(self.start.barrier_j);
-        lane.mind_balance(barrier_j);
+        let barrier_j = || *self.barrier_j.get_or_init(self.find_barrier_j);
+        let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);
+        let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
+        course.mind_balance(rigid_j, scale_j);
         lane.largest_j = lane.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
             lane.course.decide();
         }
-    }
-
-    /// Notes open and slipped joints of a lane. Returns how far the structure slid along its supports, in m to the right.
-    fn note_joints(&mut self, index: usize) -> f64 {
-        let Some(lane) = &mut self.lanes[index] else {
-            return 0.0;
-        };
-        let course = &mut lane.course;
-        let joints = &self.start.structure.joints;
-        if course.rocks != Some(true) || !course.moved {
-            let edges = (0..joints.len()).map(|joint| self.motion.memory(joint, index));
-            let penetrations_m = edges.map(|edges| edges.penetrations_m.map(|end| end.0[0]));
-            let slips = lane.elastic.friction_j > REST_ENERGY_RATIO * course.energy_unit;
-            let is_open = lane.opening.is_seen(penetrations_m);
-            if is_open {
-                lane.open_until_s = course.time;
-            }
-            course.rocks = Some(course.rocks == Some(true) || is_open || slips);
-        }
-        let mut slid = 0.0;
-        for (joint, with_joint) in joints.iter().enumerate() {
-            let slipped_m = self.motion.slipped_m(joint, index);
-            if let Some(sliding) = &mut course.of_row.sliding {
-                sliding.offsets_m[joint] = slipped_m;
-                let largest = &mut sliding.largest_offsets_m[joint];
-                *largest = largest.max(slipped_m.abs());
-            }
-            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
-            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
-            match self.slides.iter().find(on_support) {
-                Some(slide) => slid += slipped_m * slide.along_x,
-                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
-            }
-        }
-        slid
     }
 
     /// Continues a lane, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock, with
@@ -450,7 +386,7 @@ impl<'a, const L: usize> Group<'a, L> {
             .ending(lane.course.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
             let mut ended = self.lanes[index].take()?;
-            return Some(Ok(ended.completed().end(outcome, time_s)));
+            return Some(Ok(ended.course.end(outcome, time_s)));
         }
         while lane.marks.is_due(lane.course.time) {
             lane.marks.pass();
@@ -461,6 +397,57 @@ impl<'a, const L: usize> Group<'a, L> {
 }
 
 impl<'a> Lane<'a> {
+    /// Whether a joint is open beyond its state at rest, by more than the weight compresses the most compressed edge.
+    fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
+        if self.opening_m.is_empty() {
+            let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
+            let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
+            let opens = |end: f64| (-end).max(0.0) + most_m;
+            self.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
+            return false;
+        }
+        let mut joints = penetrations_m.zip(&self.opening_m);
+        joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]))
+    }
+
+    /// Notes open and slipped joints of the lane of this index. Returns how far the structure slid along its supports, in m to the right.
+    fn note_joints<const L: usize>(
+        &mut self,
+        index: usize,
+        motion: &Motion<'_, L>,
+        slides: &[Slide],
+    ) -> f64 {
+        if self.course.rocks != Some(true) || !self.course.moved {
+            let edges = motion.memories.iter();
+            let is_open =
+                self.is_open(edges.map(|edges| edges.penetrations_m.map(|end| end.0[index])));
+            let slips =
+                self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
+            if is_open {
+                self.open_until_s = self.course.time;
+            }
+            self.course.rocks = Some(self.course.rocks == Some(true) || is_open || slips);
+        }
+        let course = &mut self.course;
+        let mut slid = 0.0;
+        for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
+            let slipped_m = motion.memories[joint].slipped_m.0[index];
+            if let Some(sliding) = &mut course.of_row.sliding {
+                sliding.friction_j = course.elastic.friction_j;
+                sliding.offsets_m[joint] = slipped_m;
+                let largest = &mut sliding.largest_offsets_m[joint];
+                *largest = largest.max(slipped_m.abs());
+            }
+            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
+            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
+            match slides.iter().find(on_support) {
+                Some(slide) => slid += slipped_m * slide.along_x,
+                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
+            }
+        }
+        slid
+    }
+
     fn rests_since(&self) -> Option<f64> {
         // A row may rock without more energy than at rest.
         let since_s = if self.course.moved {
@@ -470,22 +457,6 @@ impl<'a> Lane<'a> {
         };
         let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
         quiet.then_some(since_s)
-    }
-
-    /// Halves the steps where the energy balance needs it, a few times at most.
-    fn mind_balance(&mut self, barrier_j: impl FnOnce() -> Option<f64>) {
-        let Some(most) = self.course.halved_above() else {
-            return;
-        };
-        if self.course.energy_error(self.barrier_j.unwrap_or(0.0)) <= most {
-            return;
-        }
-        let barrier_j = *self
-            .barrier_j
-            .get_or_insert_with(|| barrier_j().unwrap_or(0.0));
-        if self.course.energy_error(barrier_j) > most {
-            self.course.halve_steps();
-        }
     }
 
     /// True if its end can be foreseen from this energy: on ground that stays quiet it gains none.
@@ -504,74 +475,40 @@ impl<'a> Lane<'a> {
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
             let rested_s = self.course.time + rests_s + self.course.rest_time_s();
-            let rests = rate > 0.0 && rested_s < self.end_s;
+            let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
             if !(self.course.moved && rests && energy_j < DECAYED * self.largest_j) {
                 return false;
             }
         }
-        let gone_j = self.elastic.friction_j + self.elastic.crushed_j;
+        let gone_j = self.course.elastic.friction_j + self.course.elastic.crushed_j;
         barrier_j()
             .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
-    }
-
-    fn completed(&mut self) -> &mut Course<'a> {
-        let of_row = &mut self.course.of_row;
-        if let Some(sliding) = &mut of_row.sliding {
-            sliding.friction_j = self.elastic.friction_j;
-        }
-        let largest_stress = if self.course.overturned {
-            self.stress_before_fall
-        } else {
-            self.elastic.largest_stress
-        };
-        self.course.elastic = Some(ElasticSummary {
-            largest_stress,
-            ..self.elastic
-        });
-        &mut self.course
     }
 }
 
 /// One motion alone, which may be recorded.
-pub struct ElasticStepper<'a> {
-    group: Group<'a, 1>,
-}
-
-impl<'a> ElasticStepper<'a> {
-    pub fn new(
-        task: Task<'a>,
-        start: Start<'a>,
-        until: Until,
-        recorder: Option<&'a mut dyn Recorder>,
-    ) -> Self {
-        let mut group = Group::new(task.row, start, task.gravity_m_s2);
-        group.begin(0, task, until, recorder);
-        Self { group }
-    }
-
+impl<'a> Group<'a, 1> {
     fn lane(&self) -> &Lane<'a> {
-        self.group.lanes[0].as_ref().expect("it was begun")
+        self.lanes[0].as_ref().expect("it was begun")
     }
 
     fn lane_mut(&mut self) -> &mut Lane<'a> {
-        self.group.lanes[0].as_mut().expect("it was begun")
+        self.lanes[0].as_mut().expect("it was begun")
     }
 
-    /// Positions of the bodies of a joint.
-    fn places(&self, joint: usize) -> [Place<Lanes<1>>; 2] {
-        let structure = self.group.start.structure;
-        let ground = structure.bodies.len();
-        let pair = structure.joints[joint].link.bodies;
-        pair.map(|body| self.group.motion.place(body.min(ground + 1), 0))
+    fn pose(&self, index: usize) -> Pose {
+        let (centre_m, body) = (self.row.blocks[index].centre_m, &self.motion.bodies[index]);
+        let moved_m = Vector2::from(body.place.moved_m.map(|part| part.0[0]));
+        Pose::about(centre_m, centre_m + moved_m, body.angle_rad.0[0])
     }
 
     /// Forces and stresses of a joint, by its elastic stress.
     fn pressure(&self, index: usize) -> JointPressure {
-        let structure = self.group.start.structure;
+        let structure = self.structure;
         let joint = &structure.joints[index];
-        let [first, second] = self.places(index);
-        let memory = self.group.motion.memory(index, 0);
-        let mut fibres: Vec<_> = self.group.motion.fibres(index, 0).collect();
+        let [first, second] = ends(structure, joint).map(|body| self.motion.bodies[body].place);
+        let memory = self.motion.memories[index].lane(0);
+        let mut fibres: Vec<_> = self.motion.fibres(index, 0).collect();
         let (edges_n, shear_n) =
             structure.elastic_n(joint, [&first, &second], &memory, &mut fibres);
         let [low, high] = memory.penetrations_m.map(|end| end.0[0]);
@@ -595,9 +532,7 @@ impl<'a> ElasticStepper<'a> {
     }
 }
 
-impl<'a> Stepper<'a> for ElasticStepper<'a> {
-    type Error = RowMotionError;
-
+impl<'a> Stepper<'a> for Group<'a, 1> {
     fn course(&self) -> &Course<'a> {
         &self.lane().course
     }
@@ -606,15 +541,11 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
         &mut self.lane_mut().course
     }
 
-    fn completed(&mut self) -> &mut Course<'a> {
-        self.lane_mut().completed()
-    }
-
     /// Some steps, up to the next observation of the motion.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         let stood = !self.course().moved;
         self.lane_mut().until_s = until;
-        self.group.stride();
+        self.stride();
         if let Some(error) = self.lane_mut().lost.take() {
             return Err(error);
         }
@@ -632,20 +563,17 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     fn write(&mut self, sample: &mut Sample, _: bool) -> Result<f64, RowMotionError> {
-        let half = self.group.half_kick();
-        let motion = &self.group.motion;
-        for (index, block) in self.group.row.blocks.iter().enumerate() {
+        let half = self.half_kick();
+        let motion = &self.motion;
+        for index in 0..self.row.blocks.len() {
             sample
                 .rates_rad_s
                 .push(motion.velocity(index, &half)[2].0[0]);
-            let moved_m = Vector2::from(motion.moved_m(index, 0));
-            let (rotation_rad, _) = motion.turn(index, 0);
-            let pose = Pose::about(block.centre_m, block.centre_m + moved_m, rotation_rad);
-            sample.poses.push(pose);
+            sample.poses.push(self.pose(index));
         }
         sample.feet_apart_m = self.lane().apart_m;
-        let seen = motion.observe(&half, &self.group.slides);
-        let joints = self.group.start.structure.joints.len();
+        let seen = motion.observe(&half, &self.slides);
+        let joints = self.structure.joints.len();
         for joint in 0..joints {
             let pressure = self.pressure(joint);
             if pressure.normal_n >= self.course().least_load_n() {
@@ -655,11 +583,11 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
         }
-        let bound = self.group.start.structure.ties.iter();
-        let ties = bound.zip(self.group.motion.ties(0));
+        let bound = self.structure.ties.iter();
+        let ties = bound.zip(&motion.ties);
         sample
             .ties
-            .extend(ties.map(|(bound, memory)| TieSample::of(&bound.tie, &memory)));
+            .extend(ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory)));
         if let Some(sliding) = &self.course().of_row.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);
         }
@@ -667,11 +595,11 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.group.motion.turns(0)
+        self.motion.turns(0)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
-        let memory = self.group.motion.memory(joint, 0);
+        let memory = &self.motion.memories[joint];
         memory.penetrations_m.map(|end| (-end.0[0]).max(0.0))
     }
 
@@ -682,19 +610,16 @@ impl<'a> Stepper<'a> for ElasticStepper<'a> {
     }
 
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
-        let link = &self.group.start.structure.joints[joint].link;
-        let blocks = &self.group.row.blocks;
+        let link = &self.structure.joints[joint].link;
+        let blocks = &self.row.blocks;
         // The face of the block, or of the first of two.
         let end = usize::from(link.bodies[0] >= blocks.len());
-        let centre_m = blocks[link.bodies[end]].centre_m;
-        let moved_m = Vector2::from(self.group.motion.moved_m(link.bodies[end], 0));
-        let (rotation_rad, _) = self.group.motion.turn(link.bodies[end], 0);
-        Pose::about(centre_m, centre_m + moved_m, rotation_rad)
-            .of(self.group.row.joints[joint].corner_m(edge))
+        let corner_m = self.row.joints[joint].corner_m(edge);
+        self.pose(link.bodies[end]).of(corner_m)
     }
 
     fn momentum(&self) -> Vector2<f64> {
-        self.group.motion.momentum(0).into()
+        self.motion.momentum(0).into()
     }
 
     fn stands(&self, _: &Sample) -> bool {

@@ -22,7 +22,6 @@ use nalgebra::Vector2;
 use self::observation::{kinetic, momentum};
 use super::rest::Rest;
 use super::right_support::RightSupport;
-use super::settings::Settings;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::recorder::Recorder;
@@ -108,7 +107,6 @@ pub struct LandingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
-    settings: &'a Settings,
     thinnest: f64,
     rest: Rest<'a>,
     right: RightSupport<'a>,
@@ -151,12 +149,7 @@ pub struct LandingStepper<'a> {
 }
 
 impl<'a> LandingStepper<'a> {
-    fn new(
-        task: Task<'a>,
-        settings: &'a Settings,
-        standing: &Stance,
-        recorder: Option<&'a mut dyn Recorder>,
-    ) -> Self {
+    fn new(task: Task<'a>, standing: &Stance, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
@@ -174,7 +167,6 @@ impl<'a> LandingStepper<'a> {
             velocity: GroundVelocity::new(ground),
             right,
             gravity,
-            settings,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
             course: Course::new(task, Some(fallen).filter(|_| !may_end_on_hinges), recorder),
             kicked_s: ground.start_s(),
@@ -227,12 +219,11 @@ impl<'a> LandingStepper<'a> {
     /// A stepper that starts at the stance of the row, or released at rest with the initial rotations.
     pub fn released(
         task: Task<'a>,
-        settings: &'a Settings,
         standing: &Stance,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, RowMotionError> {
-        let mut stepper = Self::new(task, settings, standing, recorder);
+        let mut stepper = Self::new(task, standing, recorder);
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -244,7 +235,10 @@ impl<'a> LandingStepper<'a> {
         self.placement.turn(rotations_rad);
         let error_m = self.placement.closure_error();
         if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
-            return Err(RowMotionError::Open { error_m });
+            return Err(RowMotionError::Failed(format!(
+                "with the initial rotations the ends of the arch miss each other by {error_m:.3e} m: give rotations of the blocks \
+                 with which it stays closed; a smaller `rotation_rad` in [initial] may do"
+            )));
         }
         self.closer.close(&mut self.placement);
         let gaps = self.placement.gaps_m.iter();
@@ -272,7 +266,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Whether the last step ended at an impact, after so many within the shortest step that the next ones are merged.
     fn is_crowded(&self) -> bool {
-        self.has_just_landed() && self.crowd.impacts > self.settings.merged_after
+        self.has_just_landed() && self.crowd.impacts > self.course.task.settings.merged_after
     }
 
     /// Whether the step before ended at an impact.
@@ -346,9 +340,11 @@ impl<'a> LandingStepper<'a> {
             touching: &self.touching,
         };
         let effort = self.program.solve(&load);
-        let effort = effort.map_err(|reason| RowMotionError::Contact {
-            time_s: self.course.time,
-            reason,
+        let effort = effort.map_err(|reason| {
+            RowMotionError::Failed(format!(
+                "at {} s {reason}, or give another `longest_step_s` in [free_hinges]",
+                self.course.time
+            ))
         })?;
         let iterations = effort.iterations as u64;
         self.course.cost.evaluations += iterations;
@@ -488,7 +484,7 @@ impl<'a> LandingStepper<'a> {
         let work = self.work_of_right_support(to_s - from_s);
         self.course.of_row.right_foot_j += work;
         // In a shorter time the rounding of the velocities exceeds the effect of the forces.
-        if step.merged || to_s - from_s < self.settings.shortest_step_s {
+        if step.merged || to_s - from_s < self.course.task.settings.shortest_step_s {
             return;
         }
         self.program.joint_impulses(&mut self.shares);
@@ -532,7 +528,10 @@ impl<'a> LandingStepper<'a> {
             Ok(())
         } else {
             let time_s = self.course.time;
-            Err(RowMotionError::Closure { time_s, error_m })
+            Err(RowMotionError::Failed(format!(
+                "at {time_s} s the ends of the arch miss each other by {error_m:.3e} m: give a shorter `longest_step_s` in \
+                 [free_hinges]"
+            )))
         }
     }
 
@@ -619,7 +618,7 @@ impl<'a> LandingStepper<'a> {
         self.kicked_s = self.course.time;
         self.course.impacts += 1;
         self.crowd
-            .count(self.course.time, self.settings.shortest_step_s);
+            .count(self.course.time, self.course.task.settings.shortest_step_s);
         Ok(())
     }
 
@@ -672,6 +671,7 @@ mod tests {
 
     use super::*;
     use crate::dynamics::ground::Pulse;
+    use crate::dynamics::row::clock::Settings;
     use crate::mechanics::geometry::ring::Ring;
 
     /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
@@ -768,16 +768,8 @@ mod tests {
                 .horizontal_m_s2(amplitude_g * 9.81)
                 .unwrap();
             let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
-            let task = Task {
-                row: &row,
-                ground: &ground,
-                gravity_m_s2: 9.81,
-                clock: settings.clock(),
-                barrier_j: None,
-                built_barrier_j: 1.0,
-                energy_scale_j: 0.0,
-            };
-            let mut stepper = LandingStepper::new(task, &settings, &Stance::undeformed(&row), None);
+            let task = Task::new(&row, &ground, 9.81, settings);
+            let mut stepper = LandingStepper::new(task, &Stance::undeformed(&row), None);
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;

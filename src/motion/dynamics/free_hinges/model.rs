@@ -5,14 +5,15 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 
 use super::motion::motion;
-use super::settings::{MANY_CASES_STEP_RATIO, Settings};
+use super::settings::MANY_CASES_STEP_RATIO;
 use crate::argument::{ArgumentError, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
 use crate::dynamics::recording::Shape;
-use crate::dynamics::row::course::LARGEST_ENERGY_ERROR;
-use crate::dynamics::row::error::{RowModelError, RowMotionError};
+use crate::dynamics::row::clock::Settings;
+use crate::dynamics::row::course::balanced;
+use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::row::standing::RigidRow;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::blocks::Row;
@@ -259,23 +260,13 @@ impl Model for FreeHinges {
     ) -> Result<Summary, SimulationError> {
         check(ground, request)?;
         let settings = self.settings(request);
-        let initial_rad = request
-            .initial
-            .map(|initial| self.rigid.released(initial))
-            .transpose()?;
-        let gravity_m_s2 = request.gravity_m_s2;
-        let task = self.rigid.task(ground, gravity_m_s2, settings.clock());
+        let initial = request.initial.map(|initial| self.rigid.released(initial));
+        let task = self.rigid.task(ground, request.gravity_m_s2, settings);
+        let initial_rad = initial.transpose()?;
         let standing = &self.rigid.standing;
-        let summary = motion(task, &settings, standing, initial_rad.as_deref(), recorder)?;
-        match summary.row() {
-            Some(row) if row.energy_error > LARGEST_ENERGY_ERROR => Err(RowMotionError::Energy {
-                error: row.energy_error,
-                table: "free_hinges",
-                longest_step_s: SHORTER
-                    * (settings.longest_step_s * 0.5_f64.powf(row.halvings.into())),
-            }
-            .into()),
-            _ => Ok(summary),
-        }
+        let summary = motion(task, standing, initial_rad.as_deref(), recorder)?;
+        let halvings = summary.row().map_or(0, |row| row.halvings);
+        let step_s = SHORTER * (settings.longest_step_s * 0.5_f64.powf(halvings.into()));
+        Ok(balanced(summary, "free_hinges", step_s)?)
     }
 }

@@ -1,14 +1,13 @@
 //! One motion of a row with rigid joints.
 
 use super::landing::LandingStepper;
-use super::settings::Settings;
 use super::sliding::SlidingStepper;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::recorder::Recorder;
+use crate::dynamics::row::clock::Settings;
 use crate::dynamics::row::course::Task;
 use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::standing::estimated_barrier_j;
 use crate::dynamics::row::stepper;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::stance::Stance;
@@ -29,45 +28,23 @@ pub fn simulate(
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, RowMotionError> {
-    let task = Task {
-        row,
-        ground,
-        gravity_m_s2,
-        clock: settings.clock(),
-        barrier_j: None,
-        built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
-        energy_scale_j: 0.0,
-    };
-    motion(
-        task,
-        settings,
-        &Stance::undeformed(row),
-        initial_rad,
-        recorder,
-    )
+    let task = Task::new(row, ground, gravity_m_s2, *settings);
+    motion(task, &Stance::undeformed(row), initial_rad, recorder)
 }
 
 /// Computes a motion of a row from any stance.
 pub fn motion(
     task: Task<'_>,
-    settings: &Settings,
     standing: &Stance,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, RowMotionError> {
-    let (step_s, end_s) = (settings.longest_step_s, settings.end_s);
-    if end_s / step_s > MOST_STEPS {
-        return Err(RowMotionError::TooLong {
-            step_s,
-            end_s,
-            remedy: "give a longer `longest_step_s` in [free_hinges]",
-        });
-    }
+    let remedy = "give a longer `longest_step_s` in [free_hinges]";
+    task.settings.within(MOST_STEPS, remedy)?;
     // A recorder of any lifetime serves for as long as the task.
     let recorder = recorder.map(|recorder| recorder as _);
-    let released =
-        |recorder| LandingStepper::released(task, settings, standing, initial_rad, recorder);
-    let Some(coefficient) = settings.friction_coefficient else {
+    let released = |recorder| LandingStepper::released(task, standing, initial_rad, recorder);
+    let Some(coefficient) = task.settings.friction_coefficient else {
         return stepper::run(released(recorder)?);
     };
     let placement = match initial_rad {
@@ -78,7 +55,6 @@ pub fn motion(
         standing,
         &placement,
         task,
-        settings,
         coefficient,
         recorder,
     ))

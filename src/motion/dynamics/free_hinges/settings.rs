@@ -1,6 +1,6 @@
-//! Settings of the computation of a motion with rigid joints.
+//! Steps of a motion with rigid joints.
 
-use crate::dynamics::row::clock::Clock;
+use crate::dynamics::row::clock::Settings;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::tie::square_frequency;
 
@@ -17,25 +17,6 @@ const MERGED_RATIO: f64 = 4.0;
 /// are longer.
 const TIE_STEP_RATIO: f64 = 0.2;
 
-/// Settings of the computation of a motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Longest step in seconds.
-    pub longest_step_s: f64,
-    /// Whether steps may be halved where the energy balance needs it.
-    pub may_halve: bool,
-    /// Landings that crowd within this time, in seconds, are taken as one.
-    pub shortest_step_s: f64,
-    /// Number of impacts within the shortest step after which landings crowd.
-    pub merged_after: usize,
-    /// Latest end, in seconds.
-    pub end_s: f64,
-    /// Time between samples in seconds; if `None`, there are none. Steps end there whether or not samples are wanted.
-    pub output_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint; if `None`, joints do not slip.
-    pub friction_coefficient: Option<f64>,
-}
-
 impl Settings {
     /// Steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes they follow the square root of size
     /// over gravity. The shortest step is a thirtieth of the longest.
@@ -44,12 +25,10 @@ impl Settings {
         let longest_step_s = 3.4e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
             longest_step_s,
-            may_halve: false,
             shortest_step_s: SHORTEST_STEP_RATIO * longest_step_s,
             merged_after: CROWDED_IMPACTS,
             end_s,
-            output_step_s: None,
-            friction_coefficient: None,
+            ..Self::default()
         }
     }
 
@@ -81,16 +60,6 @@ impl Settings {
             longest_step_s: self.longest_step_s * factor,
             shortest_step_s: self.shortest_step_s * factor,
             ..*self
-        }
-    }
-
-    pub(super) const fn clock(&self) -> Clock {
-        Clock {
-            longest_step_s: self.longest_step_s,
-            may_halve: self.may_halve,
-            shortest_step_s: self.shortest_step_s,
-            end_s: self.end_s,
-            output_step_s: self.output_step_s,
         }
     }
 

@@ -18,7 +18,6 @@ use nalgebra::{Vector2, Vector3};
 use self::impact::{Landing, Taken};
 use super::rest::Rest;
 use super::right_support::RightSupport;
-use super::settings::Settings;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{EventKind, Sample, Sliding};
@@ -101,7 +100,6 @@ impl<'a> SlidingStepper<'a> {
         standing: &Stance,
         placement: &Placement,
         task: Task<'a>,
-        settings: &'a Settings,
         coefficient: f64,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
@@ -151,7 +149,7 @@ impl<'a> SlidingStepper<'a> {
             lags: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
             kicked_s: ground.start_s(),
-            last_step: settings.longest_step_s,
+            last_step: task.settings.longest_step_s,
             auxiliary: program.clone(),
             program,
             modes_before: vec![Mode::WHOLE; joints],
@@ -260,11 +258,13 @@ impl<'a> SlidingStepper<'a> {
         sliding.unconverged += 1;
         sliding.bound_error = sliding.bound_error.max(error);
         if error <= LARGEST_BOUND_ERROR {
-            Ok(())
-        } else {
-            let time_s = self.course.time;
-            Err(RowMotionError::Friction { time_s, error })
+            return Ok(());
         }
+        let time_s = self.course.time;
+        Err(RowMotionError::Failed(format!(
+            "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one: give another \
+             longest_step_s in [free_hinges], or a friction_coefficient farther from the least one with which the row stands"
+        )))
     }
 
     /// Solves for the velocities after the kick of a step, which lasts until a time.
@@ -524,8 +524,6 @@ fn contact(
 }
 
 impl<'a> Stepper<'a> for SlidingStepper<'a> {
-    type Error = RowMotionError;
-
     fn course(&self) -> &Course<'a> {
         &self.course
     }
@@ -534,11 +532,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         &mut self.course
     }
 
-    fn completed(&mut self) -> &mut Course<'a> {
+    fn complete(&mut self) {
         self.end_landing(Taken::default(), true);
         let offsets_m = self.stuck.clone();
         self.sliding().offsets_m = offsets_m;
-        &mut self.course
     }
 
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
@@ -595,7 +592,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         } else {
             self.stands = self.touches_as_it_stood();
         }
-        self.course.mind_balance();
+        let scale_j = self.course.task.energy_scale_j;
+        self.course.mind_balance(scale_j, || scale_j);
         for (tie, kind) in happened {
             self.report_tie(tie, kind);
         }

@@ -2,20 +2,23 @@
 
 use std::mem;
 
-use super::clock::Clock;
+use super::clock::Settings;
+use super::error::RowMotionError;
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::dynamics::history::{
     Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Outcome, RowSummary, Sample, State,
-    Summary, TieSummary,
+    Stress, Summary, TieSummary,
 };
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
-use crate::mechanics::blocks::Row;
+use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::chain::{Hinge, LEAST_LOAD};
+use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Tie, TieMemory};
+use nalgebra::Vector2;
 
 /// Sways below this fraction of the size do not count as a change of side.
 pub const SWAY_RATIO: f64 = 1e-9;
@@ -50,13 +53,33 @@ pub struct Task<'a> {
     pub row: &'a Row,
     pub ground: &'a GroundMotion,
     pub gravity_m_s2: f64,
-    pub clock: Clock,
+    pub settings: Settings,
     /// Energy that the first mechanism has to gain to overturn, where that is known.
     pub barrier_j: Option<f64>,
     /// Energy barrier of the row as built, with rigid joints and without ties, in J; estimated where it is not known.
     pub built_barrier_j: f64,
     /// Energy beside which errors of the balance are small or not, if the motion has less.
     pub energy_scale_j: f64,
+}
+
+impl<'a> Task<'a> {
+    /// A motion whose energies are known as far as the blocks alone tell.
+    pub fn new(
+        row: &'a Row,
+        ground: &'a GroundMotion,
+        gravity_m_s2: f64,
+        settings: Settings,
+    ) -> Self {
+        Self {
+            row,
+            ground,
+            gravity_m_s2,
+            settings,
+            barrier_j: None,
+            built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
+            energy_scale_j: 0.0,
+        }
+    }
 }
 
 /// The motion so far.
@@ -85,11 +108,11 @@ pub struct Course<'a> {
     peak_rotations_rad: Vec<f64>,
     energy_defect_ratio: f64,
     pub of_row: RowSummary,
-    /// Results of elastic joints; `None` with rigid joints.
-    pub elastic: Option<ElasticSummary>,
+    /// Results of elastic joints.
+    pub elastic: ElasticSummary,
     /// Longest step from now on, in seconds.
     pub longest_step_s: f64,
-    pub(super) task: Task<'a>,
+    pub task: Task<'a>,
     /// When the row was highest before it came down for good, by heights that the stepper notes.
     pub summit: Summit,
     /// Whether the stepper has seen that the row has overturned.
@@ -98,7 +121,6 @@ pub struct Course<'a> {
     pub quiet_since_s: f64,
     /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
     fallen: f64,
-    peak_potential: f64,
     /// The results up to the last instant from which it may have fallen without return.
     before_fall: UpTo,
     cycle: Option<HalfCycle>,
@@ -138,6 +160,7 @@ struct UpTo {
     cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
     largest_slips_m: Vec<f64>,
+    largest_stress: Stress,
     ties: Vec<TieSummary>,
 }
 
@@ -171,7 +194,7 @@ impl<'a> Course<'a> {
         fallen: Option<f64>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let Task { row, clock, .. } = task;
+        let Task { row, settings, .. } = task;
         let joints = row.joints.len();
         let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m;
         let start_s = task.ground.start_s();
@@ -186,13 +209,12 @@ impl<'a> Course<'a> {
             energy_unit,
             shut: Vec::with_capacity(joints),
             opened: Vec::with_capacity(joints),
-            longest_step_s: clock.longest_step_s,
+            longest_step_s: settings.longest_step_s,
             task,
             summit: Summit::new(0.0, start_s),
             overturned: false,
             quiet_since_s: start_s,
             fallen: fallen.unwrap_or(f64::NEG_INFINITY),
-            peak_potential: 0.0,
             before_fall: UpTo {
                 time_s: start_s,
                 peak_rotations_rad: vec![0.0; row.blocks.len()],
@@ -220,11 +242,11 @@ impl<'a> Course<'a> {
             cost: Cost::default(),
             of_row: RowSummary {
                 least_normal_n: f64::INFINITY,
-                longest_step_s: clock.longest_step_s,
-                shortest_step_s: clock.shortest_step_s,
+                longest_step_s: settings.longest_step_s,
+                shortest_step_s: settings.shortest_step_s,
                 ..RowSummary::default()
             },
-            elastic: None,
+            elastic: ElasticSummary::default(),
         }
     }
 
@@ -250,7 +272,7 @@ impl<'a> Course<'a> {
                 None => (Outcome::Rest, time_s),
             });
         }
-        let over = time >= self.task.clock.end_s;
+        let over = time >= self.task.settings.end_s;
         over.then(|| (self.standing().unwrap_or(Outcome::StillRocking), time))
     }
 
@@ -270,8 +292,7 @@ impl<'a> Course<'a> {
         if self.is_safe {
             return false;
         }
-        let crushed_j = self.elastic.map_or(0.0, |elastic| elastic.crushed_j);
-        let lies = |barrier_j: &f64| crushed_j <= SLIPPED_RATIO * barrier_j;
+        let lies = |barrier_j: &f64| self.elastic.crushed_j <= SLIPPED_RATIO * barrier_j;
         let energy_ratio = match self.known_barrier_j().filter(lies) {
             Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
             None => self.recent_j[0].max(self.recent_j[1]) / self.task.built_barrier_j,
@@ -329,7 +350,7 @@ impl<'a> Course<'a> {
         self.note_peaks(rotations_rad);
         self.potential = potential;
         self.sway = sway;
-        self.peak_potential = potential.max(0.0);
+        self.of_row.largest_potential_j = potential.max(0.0);
         self.moved = moved;
         self.rising = true;
         self.note_return();
@@ -357,8 +378,9 @@ impl<'a> Course<'a> {
             self.quiet_since_s = self.time;
         }
         self.sway = sway;
-        self.peak_potential = self.peak_potential.max(potential);
-        self.of_row.largest_kinetic_j = self.of_row.largest_kinetic_j.max(kinetic);
+        let of_row = &mut self.of_row;
+        of_row.largest_potential_j = of_row.largest_potential_j.max(potential);
+        of_row.largest_kinetic_j = of_row.largest_kinetic_j.max(kinetic);
         if self.time - self.recent_from_s > self.recent_s {
             self.recent_from_s = self.time;
             self.recent_j = [self.recent_j[1], 0.0];
@@ -434,6 +456,7 @@ impl<'a> Course<'a> {
         before_fall.half_cycles = self.of_row.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
+        before_fall.largest_stress = self.elastic.largest_stress;
         if let Some(sliding) = &self.of_row.sliding {
             before_fall
                 .largest_slips_m
@@ -455,6 +478,7 @@ impl<'a> Course<'a> {
         });
         self.of_row.half_cycles.extend(cycle);
         self.thrust = before_fall.thrust;
+        self.elastic.largest_stress = before_fall.largest_stress;
         if let Some(sliding) = &mut self.of_row.sliding {
             sliding.largest_offsets_m = before_fall.largest_slips_m;
         }
@@ -503,25 +527,19 @@ impl<'a> Course<'a> {
         defect_j / kinetic_j.max(barrier_j).max(least_j)
     }
 
-    /// The energy error above which steps are halved next, if they may be.
-    pub fn halved_above(&self) -> Option<f64> {
-        let part = HALVED_FROM.get(self.of_row.halvings as usize)?;
-        (self.task.clock.may_halve).then_some(part * LARGEST_ENERGY_ERROR)
-    }
-
-    /// Halves the steps from now on.
-    pub fn halve_steps(&mut self) {
-        self.longest_step_s *= 0.5;
-        let of_row = &mut self.of_row;
-        of_row.halvings += 1;
-        of_row.shortest_step_s = of_row.shortest_step_s.min(self.longest_step_s);
-    }
-
-    /// Halves the steps where the energy balance needs it, a few times at most.
-    pub fn mind_balance(&mut self) {
-        let most = self.halved_above();
-        if most.is_some_and(|most| self.energy_error(self.task.energy_scale_j) > most) {
-            self.halve_steps();
+    /// Halves the steps where the energy balance needs it, a few times at most: where its error is too large beside this energy, and beside
+    /// another one that takes longer to find.
+    pub fn mind_balance(&mut self, scale_j: f64, other_scale_j: impl FnOnce() -> f64) {
+        let part = HALVED_FROM.get(self.of_row.halvings as usize);
+        let most = part.unwrap_or(&f64::INFINITY) * LARGEST_ENERGY_ERROR;
+        if self.task.settings.may_halve
+            && self.energy_error(scale_j) > most
+            && self.energy_error(other_scale_j()) > most
+        {
+            self.longest_step_s *= 0.5;
+            self.of_row.halvings += 1;
+            let shortest_s = &mut self.of_row.shortest_step_s;
+            *shortest_s = shortest_s.min(self.longest_step_s);
         }
     }
 
@@ -627,13 +645,11 @@ impl<'a> Course<'a> {
             _ if self.is_incomplete() => Outcome::Incomplete,
             _ => outcome,
         };
-        let barrier_j = self.known_barrier_j();
-        let row = Box::new(RowSummary {
-            energy_error: self.energy_error(self.task.energy_scale_j),
-            largest_potential_j: self.peak_potential,
-            peak_potential_over_barrier: barrier_j.map(|barrier_j| self.peak_potential / barrier_j),
-            ..self.of_row.clone()
-        });
+        let potential_j = self.of_row.largest_potential_j;
+        let over = |barrier_j: f64| potential_j / barrier_j;
+        self.of_row.peak_potential_over_barrier = self.known_barrier_j().map(over);
+        self.of_row.energy_error = self.energy_error(self.task.energy_scale_j);
+        let row = Box::new(self.of_row.clone());
         let summary = Summary {
             outcome,
             outcome_time_s,
@@ -643,9 +659,9 @@ impl<'a> Course<'a> {
             energy_defect_ratio: self.energy_defect_ratio,
             thrust: self.recorder.is_some().then_some(self.thrust),
             cost: self.cost,
-            details: match self.elastic {
+            details: match self.rocks {
                 None => Details::Rigid(row),
-                Some(elastic) => Details::Elastic(row, elastic),
+                Some(_) => Details::Elastic(row, self.elastic),
             },
         };
         let ending = match outcome {
@@ -668,4 +684,50 @@ impl<'a> Course<'a> {
         }
         summary
     }
+}
+
+/// This summary, if its energy balances; else an error with the table of its model, and a step that is short enough, in seconds.
+pub fn balanced(
+    summary: Summary,
+    table: &'static str,
+    longest_step_s: f64,
+) -> Result<Summary, RowMotionError> {
+    let error = summary.row().map_or(0.0, |row| row.energy_error);
+    if error > LARGEST_ENERGY_ERROR {
+        return Err(RowMotionError::Energy {
+            error,
+            table,
+            longest_step_s,
+        });
+    }
+    Ok(summary)
+}
+
+/// The energy barrier of an arch, if none is known, as a fraction of its weight times its size.
+const BARRIER_RATIO: f64 = 1e-3;
+
+/// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
+/// its joints overturns as one block, where that is least.
+fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
+    if row.supports == Supports::Both {
+        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m;
+    }
+    let above = |(index, joint): (usize, &Joint)| {
+        let blocks = &row.blocks[index..];
+        let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
+        let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
+        let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
+        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
+    };
+    let joints = row.joints.iter().enumerate();
+    joints.map(above).fold(f64::INFINITY, f64::min)
+}
+
+/// How far a centre of gravity rises, in m, until it is above the nearer edge of the joint about which its block turns.
+pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
+    let rise = |edge: Edge| {
+        let arm_m = centre_m - joint.corner_m(edge);
+        arm_m.norm() - arm_m.y
+    };
+    rise(Edge::Intrados).min(rise(Edge::Extrados))
 }

@@ -4,7 +4,6 @@ use thiserror::Error;
 
 use crate::argument::ArgumentError;
 use crate::mechanics::blocks::RowError;
-use crate::mechanics::contact::ContactError;
 use crate::mechanics::elastic_joint::RestError;
 use crate::mechanics::friction::FrictionError;
 use crate::mechanics::settling::SettlingError;
@@ -42,34 +41,6 @@ pub enum RowModelError {
 /// Why a motion of a row of blocks could not be computed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RowMotionError {
-    /// The initial rotations do not close an arch.
-    #[error(
-        "with the initial rotations the ends of the arch miss each other by {error_m:.3e} m: give rotations of the blocks \
-         with which it stays closed; a smaller `rotation_rad` in [initial] may do"
-    )]
-    Open {
-        /// By how much.
-        error_m: f64,
-    },
-    /// The velocities of a step were not found.
-    #[error("at {time_s} s {reason}, or give another `longest_step_s` in [free_hinges]")]
-    Contact {
-        /// When, in seconds.
-        time_s: f64,
-        /// Why.
-        reason: ContactError,
-    },
-    /// Friction was not found.
-    #[error(
-        "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one: give another \
-         longest_step_s in [free_hinges], or a friction_coefficient farther from the least one with which the row stands"
-    )]
-    Friction {
-        /// When, in seconds.
-        time_s: f64,
-        /// By how much.
-        error: f64,
-    },
     /// Energy was created or lost.
     #[error(
         "the energy balance is wrong by {:.2} % of the largest energy of the motion, so its result is not usable: set \
@@ -84,45 +55,10 @@ pub enum RowMotionError {
         /// A step that is short enough, in seconds.
         longest_step_s: f64,
     },
-    /// The ends of an arch parted in the computation.
-    #[error(
-        "at {time_s} s the ends of the arch miss each other by {error_m:.3e} m: give a shorter `longest_step_s` in \
-         [free_hinges]"
-    )]
-    Closure {
-        /// When, in seconds.
-        time_s: f64,
-        /// By how much.
-        error_m: f64,
-    },
     /// The row does not rest on its elastic joints under this gravity.
     #[error(transparent)]
     Rest(#[from] RestError),
-    /// A step is too long for elastic joints.
-    #[error(
-        "a step of {step_s:.3e} s is not stable with these joints: the longest one is {longest_s:.3e} s; leave \
-         longest_step_s out, or take a smaller stiffness or damping time"
-    )]
-    Unstable {
-        /// The step, in seconds.
-        step_s: f64,
-        /// The longest one that is stable.
-        longest_s: f64,
-    },
-    /// The steps are too many.
-    #[error("a motion of {end_s} s takes {:.1e} steps: {remedy}", .end_s / .step_s)]
-    TooLong {
-        /// The longest step, in seconds.
-        step_s: f64,
-        /// The length of the motion, in seconds.
-        end_s: f64,
-        /// Remedy, as an instruction to the user.
-        remedy: &'static str,
-    },
-    /// Numbers left their range.
-    #[error("at {time_s} s the motion has grown beyond all numbers: give a shorter longest_step_s")]
-    Lost {
-        /// When, in seconds.
-        time_s: f64,
-    },
+    /// The motion cannot begin, or a step failed: why, with a remedy.
+    #[error("{0}")]
+    Failed(String),
 }

@@ -1,20 +1,17 @@
 //! A row of rigid blocks before it moves: the push that starts it, and its first mechanism.
 
-use nalgebra::Vector2;
-
-use super::clock::Clock;
-use super::course::Task;
+use super::clock::Settings;
+use super::course::{Task, rise_to_overturn_m};
 use super::error::RowModelError;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::recording::Shape;
 use crate::dynamics::request::Initial;
-use crate::mechanics::blocks::{Joint, Row, Supports};
+use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::stance::Stance;
@@ -166,21 +163,18 @@ impl RigidRow {
         &'a self,
         ground: &'a GroundMotion,
         gravity_m_s2: f64,
-        clock: Clock,
+        settings: Settings,
     ) -> Task<'a> {
         let built_j = self.built_barrier_j(gravity_m_s2);
         // Where its feet part the feet do work, so it overturns at another energy, if at all.
         let parts = ground.right_foot_of(&self.row).is_some();
         let known = self.is_on_hinges() || self.row.ties.is_empty();
+        let task = Task::new(&self.row, ground, gravity_m_s2, settings);
         Task {
-            row: &self.row,
-            ground,
-            gravity_m_s2,
-            clock,
             barrier_j: self.barrier_j(gravity_m_s2).filter(|_| !parts),
-            built_barrier_j: built_j
-                .unwrap_or_else(|| estimated_barrier_j(&self.row, gravity_m_s2)),
+            built_barrier_j: built_j.unwrap_or(task.built_barrier_j),
             energy_scale_j: built_j.filter(|_| known).unwrap_or(0.0),
+            ..task
         }
     }
 
@@ -255,33 +249,4 @@ impl RigidRow {
         };
         Ok((0..blocks).map(rotation_rad).collect())
     }
-}
-
-/// The energy barrier of an arch, if none is known, as a fraction of its weight times its size.
-const BARRIER_RATIO: f64 = 1e-3;
-
-/// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
-/// its joints overturns as one block, where that is least.
-pub fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
-    if row.supports == Supports::Both {
-        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m;
-    }
-    let above = |(index, joint): (usize, &Joint)| {
-        let blocks = &row.blocks[index..];
-        let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
-        let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
-        let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
-        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
-    };
-    let joints = row.joints.iter().enumerate();
-    joints.map(above).fold(f64::INFINITY, f64::min)
-}
-
-/// How far a centre of gravity rises, in m, until it is above the nearer edge of the joint about which its block turns.
-fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
-    let rise = |edge: Edge| {
-        let arm_m = centre_m - joint.corner_m(edge);
-        arm_m.norm() - arm_m.y
-    };
-    rise(Edge::Intrados).min(rise(Edge::Extrados))
 }

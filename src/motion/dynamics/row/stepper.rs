@@ -1,12 +1,12 @@
 //! Moves a row by a stepper, and reports its motion.
 
-use std::fmt::Display;
 use std::time::{Duration, Instant};
 
 use nalgebra::Vector2;
 
 use super::clock::Marks;
 use super::course::{Course, towards};
+use super::error::RowMotionError;
 use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::history::{
     Elapsed, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
@@ -18,16 +18,13 @@ use crate::mechanics::sway::Sway;
 
 /// Moves a row, step by step.
 pub trait Stepper<'a>: Sized {
-    /// Why a step fails.
-    type Error;
-
     fn course(&self) -> &Course<'a>;
     fn course_mut(&mut self) -> &mut Course<'a>;
     /// One step, at most to the given time.
-    fn step(&mut self, until: f64) -> Result<(), Self::Error>;
+    fn step(&mut self, until: f64) -> Result<(), RowMotionError>;
     /// Writes into a blank sample where the blocks are, their rates at that instant, offsets, friction and, if it is wanted, the line
     /// of thrust. Returns the kinetic energy at that instant.
-    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, Self::Error>;
+    fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError>;
     /// Rotations of the blocks, and their rates after the last step.
     fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
     /// Gaps of a joint at intrados and extrados.
@@ -58,8 +55,8 @@ pub trait Stepper<'a>: Sized {
     fn overturned_s(&self) -> Option<f64> {
         self.course().overturned_s()
     }
-    /// The course of the motion, with all results of the stepper in its summaries.
-    fn completed(&mut self) -> &mut Course<'a>;
+    /// Completes the summaries of the course at its end.
+    fn complete(&mut self) {}
 
     /// The side to which the centre of gravity sways; if that is at its undeformed place, the side to which it moves.
     fn heading(&self) -> Sway {
@@ -172,7 +169,7 @@ pub trait Stepper<'a>: Sized {
     }
 
     /// Makes a sample.
-    fn sample(&mut self) -> Result<(), Self::Error> {
+    fn sample(&mut self) -> Result<(), RowMotionError> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
         sample
@@ -195,14 +192,14 @@ pub trait Stepper<'a>: Sized {
 }
 
 /// Steps a row until it rests, has overturned, or the time is over.
-pub fn run<'a, S>(mut stepper: S) -> Result<Summary, S::Error>
+pub fn run<'a, S>(mut stepper: S) -> Result<Summary, RowMotionError>
 where
-    S: Stepper<'a, Error: Display>,
+    S: Stepper<'a>,
 {
-    let clock = stepper.course().task.clock;
-    let mut marks = Marks::new(clock, stepper.course().time);
+    let settings = stepper.course().task.settings;
+    let mut marks = Marks::new(settings, stepper.course().time);
     let mut sampled_s = None;
-    let samples_are_made = clock.output_step_s.is_some() && stepper.course().is_followed();
+    let samples_are_made = settings.output_step_s.is_some() && stepper.course().is_followed();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
     let (outcome, outcome_time_s) = loop {
         let course = stepper.course();
@@ -226,7 +223,8 @@ where
     if samples_are_made && sampled_s != Some(course.time) && !course.stopped {
         stepper.sample()?;
     }
-    let course = stepper.completed();
+    stepper.complete();
+    let course = stepper.course_mut();
     course.of_row.longest_step = Elapsed(longest_step);
     let summary = course.end(outcome, outcome_time_s);
     if let Outcome::Overturned(_) = outcome {
@@ -236,14 +234,14 @@ where
 }
 
 /// Steps a row on that has overturned, if its recorder follows falls.
-fn follow_fall<'a, S: Stepper<'a, Error: Display>>(stepper: &mut S) {
+fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
     let course = stepper.course_mut();
     let wanted = |recorder: &&mut dyn Recorder| recorder.wants_fall();
     if !course.recorder.as_ref().is_some_and(wanted) {
         return;
     }
     course.falls = true;
-    let mut marks = Marks::of_fall(course.task.clock, course.time);
+    let mut marks = Marks::of_fall(course.task.settings, course.time);
     let end = fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
     if let Some(recorder) = &mut stepper.course_mut().recorder {
         recorder.fell(end);
@@ -251,13 +249,13 @@ fn follow_fall<'a, S: Stepper<'a, Error: Display>>(stepper: &mut S) {
 }
 
 /// Steps a row that falls, and says why its fall is followed no further.
-fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, S::Error> {
+fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, RowMotionError> {
     for _ in 0..fall::MOST_STEPS {
         let course = stepper.course();
         if let Some(end) = fall::end_at(&course.sample) {
             return Ok(end);
         }
-        if course.stopped || course.time >= marks.clock.end_s {
+        if course.stopped || course.time >= marks.settings.end_s {
             break;
         }
         stepper.step(marks.next_s())?;

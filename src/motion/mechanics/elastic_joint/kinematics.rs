@@ -1,6 +1,6 @@
 //! The relative position of the two faces of a joint.
 
-use crate::mechanics::lanes::{Real, both};
+use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
 /// Position of a body: how far its centre has moved, and how it has turned.
 #[derive(Clone, Copy, Debug)]
@@ -11,17 +11,9 @@ pub struct Place<R> {
     pub half_turn: [R; 2],
 }
 
-impl<R: Real> Place<R> {
-    /// Undeformed.
-    #[must_use]
-    pub fn undeformed() -> Self {
-        let zero = R::of(0.0);
-        Self {
-            moved_m: [zero; 2],
-            half_turn: [zero; 2],
-        }
-    }
+remembered!(Place { ; moved_m, half_turn });
 
+impl<R: Real> Place<R> {
     /// Moved and turned by this much, in m and rad.
     #[must_use]
     pub fn at(moved: &[f64; 3]) -> Self {
@@ -90,21 +82,7 @@ pub struct Action<R> {
     pub moments_n_m: [R; 2],
 }
 
-impl<R: Real> Gap<R> {
-    /// Of an undeformed joint whose mean direction does not matter.
-    #[must_use]
-    pub fn none() -> Self {
-        let (zero, one) = (R::of(0.0), R::of(1.0));
-        Self {
-            penetrations_m: [zero; 2],
-            slip_m: zero,
-            rise_m: zero,
-            apart_m: [zero; 2],
-            along: [one, zero],
-            half: [one, zero],
-        }
-    }
-}
+remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, along, half });
 
 impl Link {
     /// A joint between the bodies with these indices.

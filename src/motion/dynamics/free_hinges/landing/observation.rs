@@ -170,17 +170,11 @@ impl LandingStepper<'_> {
 }
 
 impl<'a> Stepper<'a> for LandingStepper<'a> {
-    type Error = RowMotionError;
-
     fn course(&self) -> &Course<'a> {
         &self.course
     }
 
     fn course_mut(&mut self) -> &mut Course<'a> {
-        &mut self.course
-    }
-
-    fn completed(&mut self) -> &mut Course<'a> {
         &mut self.course
     }
 
@@ -210,7 +204,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         } else if self.stands {
             self.note_uplift(from_s);
         }
-        self.course.mind_balance();
+        let scale_j = self.course.task.energy_scale_j;
+        self.course.mind_balance(scale_j, || scale_j);
         for (tie, kind) in happened {
             self.report_tie(tie, kind);
         }

@@ -34,7 +34,7 @@ impl LandingStepper<'_> {
     /// so the landing.
     pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
         let floor = if self.is_crowded() {
-            self.settings.shortest_step_s.min(longest)
+            self.course.task.settings.shortest_step_s.min(longest)
         } else {
             0.0
         };
@@ -82,7 +82,7 @@ impl LandingStepper<'_> {
             }
             .clamp(floor, longest);
         }
-        let length_s = self.settings.shortest_step_s.min(longest);
+        let length_s = self.course.task.settings.shortest_step_s.min(longest);
         self.merge(length_s)?;
         Ok(Step {
             expected_s: length_s,
