@@ -45,75 +45,58 @@ pub(super) fn kind(value: &Value) -> &'static str {
     }
 }
 
-/// A number as JSON; whole numbers may stand for counts.
-fn number_of(number: f64) -> Value {
-    if number.fract() == 0.0 && number.abs() < 1e15 {
-        #[expect(clippy::cast_possible_truncation, reason = "a whole number below 1e15")]
-        return Value::from(number as i64);
-    }
-    Value::from(number)
+/// Parses the values of a text, and notes their places.
+#[derive(Default)]
+struct Parser {
+    text: usize,
+    spans: Spans,
 }
 
-/// A value of a text, whose place and those of the values in it are added to `spans`.
-fn parsed(
-    spans: &mut Spans,
-    path: &str,
-    (key, value): (usize, Spanned<DeValue<'_>>),
-    text: usize,
-    depth: usize,
-) -> Value {
-    let range = value.span();
-    spans.insert(path.to_owned(), Span { text, range, key });
-    match value.into_inner() {
-        DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => Value::Array(Vec::new()),
-        DeValue::String(string) => Value::from(string),
-        // A number beyond this type is beyond the bounds of all counts.
-        DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix()).map_or_else(
-            |_| whole.as_str().parse().unwrap_or(f64::MAX).into(),
-            Value::from,
-        ),
-        DeValue::Float(number) => match number.as_str().parse::<f64>() {
-            Ok(finite) if finite.is_finite() => Value::from(finite),
-            _ => Value::from(number.as_str()),
-        },
-        DeValue::Boolean(value) => Value::from(value),
-        DeValue::Datetime(_) => Value::Null,
-        DeValue::Array(elements) => {
-            let elements = elements.into_iter().enumerate();
-            let parsed = elements.map(|(index, element)| {
-                parsed(
-                    spans,
-                    &format!("{path}/{index}"),
-                    (0, element),
-                    text,
-                    depth + 1,
-                )
-            });
-            parsed.collect()
-        }
-        DeValue::Table(table) => Value::Object(parsed_table(spans, path, table, text, depth + 1)),
+impl Parser {
+    fn value(
+        &mut self,
+        path: String,
+        key: usize,
+        value: Spanned<DeValue<'_>>,
+        depth: usize,
+    ) -> Value {
+        let (range, text) = (value.span(), self.text);
+        let parsed = match value.into_inner() {
+            DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => Value::Array(Vec::new()),
+            DeValue::String(string) => Value::from(string),
+            // A number beyond this type is beyond the bounds of all counts.
+            DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
+                .map_or_else(
+                    |_| whole.as_str().parse().unwrap_or(f64::MAX).into(),
+                    Value::from,
+                ),
+            DeValue::Float(number) => match number.as_str().parse::<f64>() {
+                Ok(finite) if finite.is_finite() => Value::from(finite),
+                _ => Value::from(number.as_str()),
+            },
+            DeValue::Boolean(value) => Value::from(value),
+            DeValue::Datetime(_) => Value::Null,
+            DeValue::Array(elements) => {
+                let elements = elements.into_iter().enumerate();
+                let parsed = elements.map(|(index, element)| {
+                    self.value(format!("{path}/{index}"), 0, element, depth + 1)
+                });
+                parsed.collect()
+            }
+            DeValue::Table(table) => Value::Object(self.table(&path, table, depth + 1)),
+        };
+        self.spans.insert(path, Span { text, range, key });
+        parsed
     }
-}
 
-fn parsed_table(
-    spans: &mut Spans,
-    path: &str,
-    table: DeTable<'_>,
-    text: usize,
-    depth: usize,
-) -> Entries {
-    let entries = table.into_iter().map(|(key, value)| {
-        let (offset, key) = (key.span().start, key.into_inner().into_owned());
-        let value = parsed(
-            spans,
-            &format!("{path}/{key}"),
-            (offset, value),
-            text,
-            depth,
-        );
-        (key, value)
-    });
-    entries.collect()
+    fn table(&mut self, path: &str, table: DeTable<'_>, depth: usize) -> Entries {
+        let entries = table.into_iter().map(|(key, value)| {
+            let (offset, key) = (key.span().start, key.into_inner().into_owned());
+            let value = self.value(format!("{path}/{key}"), offset, value, depth);
+            (key, value)
+        });
+        entries.collect()
+    }
 }
 
 /// A TOML text with assignments into it.
@@ -151,14 +134,14 @@ impl<'a> Document<'a> {
                 if let Some(fault) = not_a_scenario(&legible, &faults) {
                     return Err(vec![fault]);
                 }
-                let (mut spans, folder) = (Spans::new(), folder.to_owned());
+                let mut parser = Parser::default();
                 return Ok(Self {
-                    root: parsed_table(&mut spans, "", root.into_inner(), 0, 0),
-                    spans,
+                    root: parser.table("", root.into_inner(), 0),
+                    spans: parser.spans,
                     texts: vec![text],
                     unread,
                     faults,
-                    folder,
+                    folder: folder.to_owned(),
                 });
             };
             let offset = start(&first);
@@ -197,41 +180,25 @@ impl<'a> Document<'a> {
     pub(super) fn assign(&mut self, assignments: &'a [Assignment]) {
         for assignment in assignments {
             self.texts.push(&assignment.text);
-            let text = self.texts.len() - 1;
+            let (text, spans) = (self.texts.len() - 1, Spans::new());
             let (value, _) = DeTable::parse_recoverable(&assignment.text);
-            let mut spans = Spans::new();
-            let value = parsed_table(&mut spans, "", value.into_inner(), text, 0);
-            if let Err(message) = self.put(value, &spans, assignment.depth) {
-                self.faults.push(Fault::new(text, 0, message));
+            let mut parser = Parser { text, spans };
+            let value = Value::Object(parser.table("", value.into_inner(), 0));
+            let mut root = Value::Object(mem::take(&mut self.root));
+            match replace(&mut root, value, assignment.depth) {
+                Ok([path, new_path]) => {
+                    let spans = parser.spans.into_iter().filter_map(|(inner, span)| {
+                        let inner = inner.strip_prefix(&new_path)?;
+                        Some((format!("{path}{inner}"), span))
+                    });
+                    self.spans.extend(spans);
+                }
+                Err(message) => self.faults.push(Fault::new(text, 0, message)),
+            }
+            if let Value::Object(root) = root {
+                self.root = root;
             }
         }
-    }
-
-    /// Puts a number at the place that a key such as `load.2.mass_kg` names.
-    pub(super) fn put_number(&mut self, key: &[&str], number: f64) -> Result<(), String> {
-        let value = key.iter().rev().fold(number_of(number), |inner, part| {
-            Value::Object(Map::from_iter([((*part).to_owned(), inner)]))
-        });
-        match value {
-            Value::Object(value) => self.put(value, &Spans::new(), key.len()),
-            _ => Ok(()),
-        }
-    }
-
-    /// Puts the value of the only key of `new`, which lies `depth` tables deep, at its place, and the places of values with it.
-    fn put(&mut self, new: Entries, spans: &Spans, depth: usize) -> Result<(), String> {
-        let mut root = Value::Object(mem::take(&mut self.root));
-        let put = replace(
-            &mut self.spans,
-            &mut root,
-            ["", ""],
-            (Value::Object(new), spans),
-            depth,
-        );
-        if let Value::Object(root) = root {
-            self.root = root;
-        }
-        put
     }
 
     /// The text of a value, as a message quotes it.
@@ -287,49 +254,40 @@ fn faulty_part(text: &str, offset: usize) -> Range<usize> {
     start..end
 }
 
-/// Replaces the known value by a new one, `depth` tables deep. Both have their paths. Entries of lists are counted from 1.
-fn replace(
-    known_spans: &mut Spans,
-    known: &mut Value,
-    [path, new_path]: [&str; 2],
-    (new, spans): (Value, &Spans),
-    depth: usize,
-) -> Result<(), String> {
-    match (known, new) {
-        (Value::Object(known), Value::Object(inner)) if depth > 0 => {
-            for (key, value) in inner {
-                let paths = [path, new_path].map(|path| format!("{path}/{key}"));
-                let paths = paths.each_ref().map(String::as_str);
-                let known = known.entry(key).or_insert(Value::Null);
-                replace(known_spans, known, paths, (value, spans), depth - 1)?;
+/// Replaces a known value by the only value of `new` that lies `depth` tables deep. Entries of lists are counted from 1. Returns the paths of
+/// both.
+fn replace(mut known: &mut Value, mut new: Value, depth: usize) -> Result<[String; 2], String> {
+    let [mut path, mut new_path] = [String::new(), String::new()];
+    for _ in 0..depth {
+        let only = new.as_object_mut().and_then(|new| new.iter_mut().next());
+        let Some((key, value)) = only else {
+            break;
+        };
+        match known {
+            Value::Object(entries) => {
+                path += &format!("/{key}");
+                known = entries.entry(key).or_insert(Value::Null);
             }
-        }
-        (Value::Array(entries), Value::Object(inner)) if depth > 0 => {
-            let count = entries.len();
-            for (number, value) in inner {
-                let index = number
+            Value::Array(entries) => {
+                let count = entries.len();
+                let index = key
                     .parse()
                     .ok()
                     .and_then(|place: usize| place.checked_sub(1));
-                let entry = index.and_then(|index| Some((index, entries.get_mut(index)?)));
-                let Some((index, known)) = entry else {
+                let Some(index) = index.filter(|index| *index < count) else {
                     let name = path.rsplit('/').next().unwrap_or_default();
                     return Err(format!(
-                        "`{name}` is a list, whose entries are `{name}.1` to `{name}.{count}`: `{name}.{number}` is none"
+                        "`{name}` is a list, whose entries are `{name}.1` to `{name}.{count}`: `{name}.{key}` is none"
                     ));
                 };
-                let paths = [format!("{path}/{index}"), format!("{new_path}/{number}")];
-                let paths = paths.each_ref().map(String::as_str);
-                replace(known_spans, known, paths, (value, spans), depth - 1)?;
+                path += &format!("/{index}");
+                known = &mut entries[index];
             }
+            _ => break,
         }
-        (known, new) => {
-            *known = new;
-            known_spans.extend(spans.iter().filter_map(|(inner, span)| {
-                let inner = inner.strip_prefix(new_path)?;
-                Some((format!("{path}{inner}"), span.clone()))
-            }));
-        }
+        new_path += &format!("/{key}");
+        new = value.take();
     }
-    Ok(())
+    *known = new;
+    Ok([path, new_path])
 }

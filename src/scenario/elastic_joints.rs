@@ -3,13 +3,8 @@
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use serde::Serialize;
-
-use super::relation::Relation::{self, AtMostOne, Excludes, OneOf, Requires, Together};
-use super::rule::{Count, Number, one_of, within};
+use super::prelude::*;
 use super::structure::{ModelError, Structure};
-use super::table::{Reading, Table};
-use crate::argument::short;
 use crate::dynamics::elastic_joints::{ElasticJoints, ElasticOptions};
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::elastic_joint::{
@@ -26,6 +21,7 @@ const MPA: f64 = 1e6;
 const SHEAR_RATIO: f64 = 0.4;
 /// Default damping time, in seconds.
 const DAMPING_TIME_S: f64 = 1e-4;
+const TABLE: &[&str] = &["elastic_joints"];
 /// Joints stiffer than this are as good as rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
@@ -97,22 +93,20 @@ impl ElasticTable {
     /// The joints of a structure of this depth.
     fn properties(&self, depth_m: f64) -> ElasticProperties {
         let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
-            (None, Some(stone_gpa)) => Stiffness::Materials(Materials {
-                stone_modulus_pa: GPA * stone_gpa,
-                mortar: self
-                    .mortar_modulus_gpa
-                    .zip(self.mortar_thickness_m)
-                    .map(|(modulus_gpa, thickness_m)| [GPA * modulus_gpa, thickness_m]),
-                shear_ratio: SHEAR_RATIO,
-            }),
+            (None, Some(stone_gpa)) => {
+                let mortar = self.mortar_modulus_gpa.zip(self.mortar_thickness_m);
+                Stiffness::Materials(Materials {
+                    stone_modulus_pa: GPA * stone_gpa,
+                    mortar: mortar.map(|(modulus_gpa, thick_m)| [GPA * modulus_gpa, thick_m]),
+                    shear_ratio: SHEAR_RATIO,
+                })
+            }
             (normal_gpa_m, _) => {
                 let normal_gpa_m = normal_gpa_m.unwrap_or(STIFFEST_GPA_M);
-                let shear_gpa_m = self
-                    .shear_stiffness_gpa_m
-                    .unwrap_or(SHEAR_RATIO * normal_gpa_m);
+                let shear_gpa_m = self.shear_stiffness_gpa_m;
                 Stiffness::Uniform(JointStiffness {
                     normal_pa_m: GPA * normal_gpa_m,
-                    shear_pa_m: GPA * shear_gpa_m,
+                    shear_pa_m: GPA * shear_gpa_m.unwrap_or(SHEAR_RATIO * normal_gpa_m),
                 })
             }
         };
@@ -133,8 +127,7 @@ impl ElasticTable {
         &self,
         table: &mut Table<'_>,
         structure: &Structure,
-        gravity_m_s2: f64,
-        end_s: f64,
+        (gravity_m_s2, end_s): (f64, f64),
     ) -> Reading<()> {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
@@ -145,69 +138,73 @@ impl ElasticTable {
             return Ok(());
         };
         let joints = joints.on_supports(self.supports.displacements());
-        let rest = joints.rest([0.0, -gravity_m_s2]);
-        if let Err(RestError::Supports(part)) = rest {
-            return Err(table.wrong(
-                "supports",
-                format!(
+        let Err(error) = joints.rest([0.0, -gravity_m_s2]) else {
+            return self.check_step(table, &joints, end_s);
+        };
+        let key = match error {
+            RestError::Friction => "friction_coefficient",
+            RestError::Strength => "compressive_strength_mpa",
+            RestError::Points => "contact_points",
+            RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
+            RestError::Stiffness => "normal_stiffness_gpa_m",
+            RestError::Tie(index) => {
+                return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
+            }
+            RestError::TieOnTheWay { tie, part } => {
+                let wrong = format!(
+                    "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
+                     `breaks_at_strain`, or less movement",
+                    1e2 * part
+                );
+                return Err(table.wrong_element("tie", tie, wrong));
+            }
+            RestError::Supports(part) => {
+                let wrong = format!(
                     "lets the arch fall when its springings have gone {:.2} % of this way, with joints as soft as these: give less, or \
                      stiffer joints",
                     1e2 * part
-                ),
-            ));
-        }
-        let wrong = |table: &mut Table<'_>, key: &str, wrong: String| {
-            Err(table.wrong_in(&["elastic_joints"], key, wrong))
+                );
+                return Err(table.wrong("supports", wrong));
+            }
+            RestError::NotFound => return Ok(()),
         };
-        if let Err(error) = rest {
-            let key = match error {
-                RestError::Friction => "friction_coefficient",
-                RestError::Strength => "compressive_strength_mpa",
-                RestError::Points => "contact_points",
-                RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
-                RestError::Stiffness => "normal_stiffness_gpa_m",
-                RestError::Tie(index) => {
-                    let wrong = format!("does not fit: {error}");
-                    return Err(table.wrong_element("tie", index, wrong));
-                }
-                RestError::TieOnTheWay { tie, part } => {
-                    let wrong = format!(
-                        "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
-                         `breaks_at_strain`, or less movement",
-                        1e2 * part
-                    );
-                    return Err(table.wrong_element("tie", tie, wrong));
-                }
-                RestError::NotFound | RestError::Supports(_) => return Ok(()),
-            };
-            return wrong(table, key, format!("is not possible here: {error}"));
-        }
-        let stable_s = joints.stable_step_s();
+        let wrong = format!("is not possible here: {error}");
+        Err(table.wrong_in(TABLE, key, wrong))
+    }
+
+    /// Refuses steps that are too long, or too many until the end.
+    fn check_step(
+        &self,
+        table: &mut Table<'_>,
+        joints: &ElasticStructure,
+        end_s: f64,
+    ) -> Reading<()> {
+        let (stable_s, step_s) = (
+            joints.stable_step_s(),
+            ElasticJoints::default_step_s(joints),
+        );
         match self.longest_step_s {
             Some(step_s) if step_s > stable_s => {
                 let most = short(0.5 * stable_s);
-                let what = format!(
+                let wrong = format!(
                     "is too long: half of what is stable with these joints is {most} s; leave it out, or give that"
                 );
-                wrong(table, "longest_step_s", what)
+                Err(table.wrong_in(TABLE, "longest_step_s", wrong))
             }
-            Some(_) => Ok(()),
-            None => {
-                let step_s = ElasticJoints::default_step_s(&joints);
-                if end_s <= ElasticOptions::MOST_STEPS * step_s {
-                    return Ok(());
-                }
-                let most = format!(
-                    "makes steps of {} s, too many for a motion of {} s: give less damping, or a shorter [simulation] duration_s",
-                    short(step_s),
-                    short(end_s)
+            None if end_s > ElasticOptions::MOST_STEPS * step_s => {
+                let [step, end] = [step_s, end_s].map(short);
+                let wrong = format!(
+                    "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
                 );
-                let keys = ["damping_ratio", "damping_time_s"];
-                let given = keys
-                    .iter()
-                    .find(|key| table.gives_in("elastic_joints", key));
-                wrong(table, given.unwrap_or(&"damping_time_s"), most)
+                let ratio = table.gives_in(TABLE[0], "damping_ratio");
+                let key = if ratio {
+                    "damping_ratio"
+                } else {
+                    "damping_time_s"
+                };
+                Err(table.wrong_in(TABLE, key, wrong))
             }
+            _ => Ok(()),
         }
     }
 
@@ -248,18 +245,15 @@ const RELATIONS: &[Relation<'_>] = &[
         "mortar_modulus_gpa",
         "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out",
     ),
-    AtMostOne(&["damping_time_s", "damping_ratio"], "give one of them"),
-    AtMostOne(
-        &["damping_time_s", "damping_frequency_hz"],
-        "give one of them",
-    ),
+    AtMostOne(&["damping_time_s", "damping_ratio"], GIVE_ONE),
+    AtMostOne(&["damping_time_s", "damping_frequency_hz"], GIVE_ONE),
     Requires(
         "damping_ratio",
         "damping_frequency_hz",
         " beside it: it is a part of critical damping at a frequency",
     ),
     Requires("damping_frequency_hz", "damping_ratio", " beside it"),
-    AtMostOne(&["contact", "contact_points"], "give one of them"),
+    AtMostOne(&["contact", "contact_points"], GIVE_ONE),
 ];
 
 /// Reads the damping time, or finds it from a fraction of critical damping at a frequency.
@@ -272,13 +266,11 @@ fn read_damping(table: &mut Table<'_>) -> f64 {
         return default_s;
     };
     let time_s = ratio / (PI * frequency_hz);
-    if !range_s.contains(time_s) {
-        let wrong = format!(
-            "at {frequency_hz:?} Hz is a damping time of {} s; must be at most {} s",
-            short(time_s),
-            short(*ElasticProperties::DAMPING_TIME_S.end())
-        );
-        table.wrong("damping_ratio", wrong);
-    }
+    let wrong = format!(
+        "at {frequency_hz:?} Hz is a damping time of {} s; must be at most {} s",
+        short(time_s),
+        short(*ElasticProperties::DAMPING_TIME_S.end())
+    );
+    let _ = table.refuse(!range_s.contains(time_s), "damping_ratio", wrong);
     time_s
 }

@@ -91,16 +91,11 @@ impl ScenarioErrors {
                 };
             }
             while let Some((_, c)) = chars.next_if(|&(offset, _)| offset < fault.offset) {
-                place = match c {
-                    '\n' => Place {
-                        line: place.line + 1,
-                        column: 1,
-                    },
-                    _ => Place {
-                        column: place.column + 1,
-                        ..place
-                    },
-                };
+                if c == '\n' {
+                    (place.line, place.column) = (place.line + 1, 1);
+                } else {
+                    place.column += 1;
+                }
             }
             ScenarioError {
                 file: name.to_owned(),
@@ -114,13 +109,8 @@ impl ScenarioErrors {
 
 impl fmt::Display for ScenarioErrors {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, error) in self.0.iter().enumerate() {
-            if i > 0 {
-                writeln!(f)?;
-            }
-            write!(f, "{error}")?;
-        }
-        Ok(())
+        let errors: Vec<_> = self.0.iter().map(ToString::to_string).collect();
+        f.write_str(&errors.join("\n"))
     }
 }
 
@@ -146,6 +136,11 @@ impl Fault {
             of_file: false,
         }
     }
+}
+
+/// Succeeds if a condition holds; otherwise explains what is wrong.
+pub(super) fn ensure<E>(holds: bool, wrong: impl FnOnce() -> E) -> Result<(), E> {
+    holds.then_some(()).ok_or_else(wrong)
 }
 
 /// An excerpt of the file for a message: its first line, shortened if it is long.

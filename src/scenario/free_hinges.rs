@@ -1,9 +1,8 @@
 //! Free hinges, joints that may open, close and slip anywhere: `[free_hinges]`.
 
-use super::rule::within;
+use super::prelude::*;
 use super::structure::Structure;
-use super::table::{Reading, Table};
-use crate::argument::{plain, rounded_up};
+use crate::argument::rounded_up;
 use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::friction::{self, FrictionError};
@@ -24,13 +23,12 @@ impl FreeTable {
     /// # Errors
     /// When it is an arch without voussoirs, cannot stand, or falls or slides as its supports move.
     pub fn model(&self, structure: &Structure) -> Result<FreeHinges, RowModelError> {
-        let built = structure.free_hinges(RowOptions {
-            friction_coefficient: None,
-            ..self.options
-        })?;
-        built
-            .on_supports(&self.supports)?
-            .with_options(self.options)
+        let mut options = self.options;
+        options.friction_coefficient = None;
+        let built = structure
+            .free_hinges(options)?
+            .on_supports(&self.supports)?;
+        built.with_options(self.options)
     }
 }
 
@@ -66,11 +64,8 @@ pub(super) fn carries(
     table: &mut Table<'_>,
     name: &str,
     structure: &Structure,
-    coefficient: Option<f64>,
+    coefficient: f64,
 ) -> Reading<()> {
-    let Some(coefficient) = coefficient else {
-        return Ok(());
-    };
     // Other faults of the row are reported by its users.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
@@ -78,12 +73,12 @@ pub(super) fn carries(
     if friction::stands(model.row(), coefficient) != Ok(false) {
         return Ok(());
     }
-    let wrong = match friction::least_coefficient(model.row()) {
-        Ok(least) => format!(
-            "does not carry the weight of the structure; must be at least {}",
-            plain(rounded_up(least))
-        ),
-        Err(error) => error.to_string(),
-    };
+    let wrong = friction::least_coefficient(model.row()).map_or_else(
+        |error| error.to_string(),
+        |least| {
+            let least = plain(rounded_up(least));
+            format!("does not carry the weight of the structure; must be at least {least}")
+        },
+    );
     Err(table.wrong_in(&[name], "friction_coefficient", wrong))
 }

@@ -1,14 +1,12 @@
 //! The ground motion: `[ground.<kind>]`.
 
 use nalgebra::Vector2;
-use serde::{Serialize, Serializer};
 
 use super::error::ScenarioErrors;
-use super::record::{MAX_ACCELERATION_G, Record, Series, free_fall};
-use super::relation::Relation;
-use super::rule::{Number, above, within};
+use super::prelude::*;
+use super::record::{Known, MAX_ACCELERATION_G, Record, free_fall};
 use super::source::Source;
-use super::table::{self, Reading, Reported, Table};
+use super::table;
 use crate::argument::{self, ArgumentError};
 use crate::dynamics::ground::{GroundMotion, Pulse, PulseShape, WaveTrain};
 use crate::dynamics::model::Request;
@@ -42,15 +40,16 @@ impl Ground {
     /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
         table::read_text((&source.text, &source.folder), &[], |table| {
-            let ground = table.given_table("ground", |table| {
-                Self::read(table, &[], Some(gravity_m_s2))
-            })?;
-            match ground {
-                Some((ground, _)) => Ok(ground),
-                None => Err(table.wrong_itself(
-                    "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]",
-                )),
-            }
+            let known = Known {
+                series: &[],
+                gravity_m_s2: Some(gravity_m_s2),
+            };
+            let ground = table.given_table("ground", |table| Self::read(table, known))?;
+            let missing =
+                "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]";
+            ground
+                .map(|(ground, _)| ground)
+                .ok_or_else(|| table.wrong_itself(missing))
         })
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
@@ -72,24 +71,20 @@ impl Ground {
         }
     }
 
-    /// Reads `[ground]` and builds the motion; `known` records are not read from their files again.
-    /// `[ground]` holds one table, named after its kind, so that different kinds may have different keys.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        known: &[Series],
-        gravity_m_s2: Option<f64>,
-    ) -> Reading<(Self, GroundMotion)> {
+    /// Reads `[ground]` and builds the motion. `[ground]` holds one table, named after its kind, so that different kinds may have different
+    /// keys.
+    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let mut found = None;
         for &kind in Pulse::ALL {
             let pulse = table.table(kind.name(), |table| {
-                PulseGround::read(table, kind, gravity_m_s2)
+                PulseGround::read(table, kind, known.gravity_m_s2)
             });
             found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
         }
-        let record = table.table(RECORD, |table| Record::read(table, known, gravity_m_s2));
+        let record = table.table(RECORD, |table| Record::read(table, known));
         let kinds = Pulse::ALL.iter().map(|kind| kind.name());
         let kinds: Vec<_> = kinds.chain([RECORD]).collect();
-        table.relate(&[Relation::OneOf(&kinds, None)])?;
+        table.relate(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
         found.or(record).ok_or(Reported)
     }

@@ -1,9 +1,6 @@
 //! The impact law of four links: `[impact]`.
 
-use serde_json::{Value, json};
-
-use super::rule::{Number, one_of, within};
-use super::table::{Reading, Table};
+use super::prelude::*;
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 
 pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));

@@ -1,13 +1,11 @@
 //! The initial state of the motion: `[initial]`.
 
 use std::f64::consts::PI;
-use std::ops::Bound::{Excluded, Included};
 
 use super::hinges::Hinges;
-use super::rule::{Number, between, one_of};
+use super::prelude::*;
 use super::structure::Structure;
-use super::table::{Reading, Table};
-use crate::argument::{rounded_down, short};
+use crate::argument::rounded_down;
 use crate::dynamics::model::Initial;
 use crate::mechanics::sway::Sway;
 
@@ -37,13 +35,11 @@ pub(super) fn read(
                  [initial] out",
             ));
         };
-        if initial.rotation_rad >= limit_rad {
-            let wrong = format!(
-                "is beyond the limit position of the mechanism; must be below {}",
-                short(rounded_down(limit_rad))
-            );
-            return Err(table.wrong("rotation_rad", wrong));
-        }
+        let wrong = format!(
+            "is beyond the limit position of the mechanism; must be below {}",
+            short(rounded_down(limit_rad))
+        );
+        table.refuse(initial.rotation_rad >= limit_rad, "rotation_rad", wrong)?;
     }
     Ok(initial)
 }

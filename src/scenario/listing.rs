@@ -4,11 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component as PathPart, Path, PathBuf};
 
 use glob::MatchOptions;
-use serde_json::{Map, Value};
 
+use super::prelude::*;
 use super::record::{Format, Layout, Series};
-use super::shown;
-use super::table::{Reading, Table};
 
 /// The files named by the keys of a table, and how to read them.
 pub(super) struct Listing {
@@ -78,25 +76,26 @@ impl Listing {
     }
 }
 
-/// The keys of the layout of these records, with their values.
-pub(super) fn layout_keys<'a>(
-    records: impl Iterator<Item = &'a Series> + Clone,
-) -> Map<String, Value> {
-    let mut layouts = records.map(|series| &series.layout);
+/// Records by the keys that name them, as a table has them: the files of each key, and the keys of their layout.
+pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
+    let keys = keys.iter().filter(|(_, records)| !records.is_empty());
+    let files = keys.clone().map(|(key, records)| {
+        let files = records.iter().map(|series| Value::from(&*series.file));
+        ((*key).to_owned(), files.collect())
+    });
+    let mut layouts = keys.flat_map(|(_, records)| records.iter().map(|series| &series.layout));
     // All tables share the same keys; without a table, AT2 files may share a unit.
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
-    let Some(telling) = tables.or_else(|| layouts.clone().next()) else {
-        return Map::new();
-    };
-    let keys = serde_json::to_value(telling).ok();
-    let mut keys = keys
-        .and_then(|keys| keys.as_object().cloned())
-        .unwrap_or_default();
+    let telling = tables.or_else(|| layouts.clone().next());
+    let mut layout = json!(telling);
     // Formats that differ come from the file extensions.
-    if layouts.any(|layout| layout.format != telling.format) {
-        keys.shift_remove("format");
+    if let Some(layout) = layout.as_object_mut()
+        && layouts.any(|layout| Some(layout.format) != telling.map(|layout| layout.format))
+    {
+        layout.shift_remove("format");
     }
-    keys
+    let layout = layout.as_object().cloned().into_iter().flatten();
+    files.chain(layout).collect()
 }
 
 /// All files that match the patterns, sorted by name, each once.
@@ -109,35 +108,28 @@ fn list(
     // A file found under several names counts once.
     let mut seen = BTreeSet::new();
     for (element, pattern) in patterns.iter().enumerate() {
-        match find(table.folder(), pattern) {
-            Ok(files) => {
-                for file in files {
-                    let path = table.path(&file);
-                    if seen.insert(path.canonicalize().unwrap_or(path)) {
-                        found.insert(file, element);
-                    }
-                }
-            }
-            Err(wrong) => {
-                table.wrong_element(key, element, wrong);
+        let files = find(table.folder(), pattern).map_err(|wrong| {
+            table.wrong_element(key, element, wrong);
+        });
+        for file in files.into_iter().flatten() {
+            let path = table.path(&file);
+            if seen.insert(path.canonicalize().unwrap_or(path)) {
+                found.insert(file, element);
             }
         }
     }
     let listed = found.into_iter().filter_map(|(file, element)| {
         let format = format.map_or_else(|| Format::of_ending(&file), Ok);
-        match format {
-            Ok(format) => Some(Listed {
-                key,
-                file,
-                element,
-                format,
-            }),
-            Err(wrong) => {
-                let wrong = format!("names {}, which {wrong}", shown(&file));
-                table.wrong_element(key, element, wrong);
-                None
-            }
-        }
+        let format = format.map_err(|wrong| {
+            let wrong = format!("names {}, which {wrong}", shown(&file));
+            table.wrong_element(key, element, wrong)
+        });
+        Some(Listed {
+            key,
+            format: format.ok()?,
+            file,
+            element,
+        })
     });
     listed.collect()
 }
@@ -147,22 +139,16 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     // If a file has a name that looks like a pattern, that file is meant; so a resolved scenario reads back the
     // same.
     let path = folder.join(pattern);
-    if path.is_dir() {
-        return Err("is a folder; must be a file or a pattern such as \"folder/*.at2\"".to_owned());
-    }
+    let no_file = |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
+    ensure(!path.is_dir(), || no_file("is a folder"))?;
     if path.is_file() {
         return Ok(vec![file_name(Path::new(pattern))?]);
     }
-    if !pattern.contains(['*', '?', '[']) {
-        return Err(
-            "does not exist; must be a file or a pattern such as \"folder/*.at2\"".to_owned(),
-        );
-    }
-    let folder = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
+    ensure(pattern.contains(['*', '?', '[']), || {
+        no_file("does not exist")
+    })?;
+    let here = folder.as_os_str().is_empty();
+    let folder = if here { Path::new(".") } else { folder };
     // `glob` cannot start from a folder, so its patterns are made absolute.
     let folder =
         std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
@@ -186,9 +172,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
             files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
         }
     }
-    if files.is_empty() {
-        return Err("matches no file".to_owned());
-    }
+    ensure(!files.is_empty(), || "matches no file".to_owned())?;
     Ok(files)
 }
 
@@ -197,10 +181,8 @@ const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 
 /// The name of a file as scenarios and results hold it; it must fit on one line and in one cell.
 fn file_name(path: &Path) -> Result<String, String> {
-    let plain: PathBuf = path
-        .components()
-        .filter(|part| *part != PathPart::CurDir)
-        .collect();
+    let parts = path.components();
+    let plain: PathBuf = parts.filter(|part| *part != PathPart::CurDir).collect();
     match plain.to_str() {
         Some(name) if name.starts_with(FORMULA) => Err(format!(
             "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \

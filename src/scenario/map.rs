@@ -10,21 +10,15 @@
 //! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
 //! `repeat = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
 
-use serde::{Serialize, Serializer};
-use serde_json::json;
-
-use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
 use super::hinges::Hinges;
 use super::impact::RESTITUTION;
 use super::motion::Motion;
+use super::prelude::*;
 use super::record::{PEAK_G, SCALE};
-use super::rule::{ANY_NUMBER, Number, Switch};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
 use super::structure::Structure;
-use super::table::{Reading, Table};
-use crate::argument::plain;
 use crate::mechanics::four_link::impact::ImpactModel;
 
 named! {
@@ -105,11 +99,9 @@ impl Map {
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
     ) -> Reading<Self> {
-        let repeat = table.or(REPEAT, &Switch, false);
-        if repeat && !hinges.has_joints() {
-            let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
-            table.wrong(REPEAT, wrong);
-        }
+        let repeat = table.or(REPEAT, &SWITCH, false);
+        let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
+        let _ = table.refuse(repeat && !hinges.has_joints(), REPEAT, wrong);
         let mut axes = Vec::new();
         let others = table.keys_of_other_tables().into_iter();
         let others = others.map(|key| (Quantity::Other, key));
@@ -137,10 +129,9 @@ impl Map {
                 keys.join(", ")
             )));
         };
-        if (x.quantity, y.quantity) == (Quantity::Duration, Quantity::Frequency) {
-            let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
-            return Err(table.wrong("frequency_hz", wrong));
-        }
+        let are_inverse = (x.quantity, y.quantity) == (Quantity::Duration, Quantity::Frequency);
+        let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
+        table.refuse(are_inverse, "frequency_hz", wrong)?;
         let cells = x.sequence.values().len() * y.sequence.values().len();
         if cells > MAX_CELLS {
             return Err(table.wrong_itself(format!(
@@ -159,21 +150,16 @@ impl Map {
         ground: Option<&Ground>,
         simulation: &Simulation,
     ) -> Result<(), String> {
-        let Some(ground) = ground else {
-            return Err(
-                "[map] needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]"
-                    .to_owned(),
-            );
-        };
-        for axis in [&self.x, &self.y] {
+        let missing = "[map] needs a ground motion: give a table [ground.<kind>], such as [ground.rectangular], or [ground.record]";
+        let ground = ground.ok_or(missing)?;
+        use Quantity::{Amplitude, Duration, Frequency, PeakG, Scale};
+        let axes = [&self.x, &self.y];
+        for axis in axes {
             let wrong = match (axis.quantity, ground) {
-                (Quantity::Scale | Quantity::PeakG, Ground::Pulse(_)) => {
+                (Scale | PeakG, Ground::Pulse(_)) => {
                     "goes with a record, and [ground] has a pulse: the axis of its strength is `amplitude_g`"
                 }
-                (
-                    Quantity::Duration | Quantity::Frequency | Quantity::Amplitude,
-                    Ground::Record(_),
-                ) => {
+                (Duration | Frequency | Amplitude, Ground::Record(_)) => {
                     "goes with a pulse, and [ground] has a record: the axes of its strength are `scale` and `peak_g`"
                 }
                 _ => continue,
@@ -183,15 +169,14 @@ impl Map {
         let pulse = match ground {
             Ground::Pulse(pulse) => pulse,
             Ground::Record(record) => {
-                let end_s = record.end_s();
-                return ends_within("a record that lasts", end_s, simulation);
+                return ends_within("a record that lasts", record.end_s(), simulation);
             }
         };
-        let longest_s = [&self.x, &self.y].into_iter().find_map(|axis| {
+        let longest_s = axes.into_iter().find_map(|axis| {
             let values = axis.sequence.values();
             match axis.quantity {
-                Quantity::Duration => values.last().copied(),
-                Quantity::Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
+                Duration => values.last().copied(),
+                Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
                 _ => None,
             }
         });
@@ -207,14 +192,12 @@ impl Map {
 /// Refuses ground motion that lasts longer than the simulation.
 fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), String> {
     let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
-    if end_s <= duration_s {
-        return Ok(());
-    }
-    Err(format!(
-        "[map] has {what} until {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
-        plain(end_s),
-        plain(duration_s)
-    ))
+    ensure(end_s <= duration_s, || {
+        let [last, end] = [end_s, duration_s].map(plain);
+        format!(
+            "[map] has {what} until {last} s and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
+        )
+    })
 }
 
 impl Serialize for Map {
@@ -235,23 +218,20 @@ fn suits(
     structure: Option<&Structure>,
     (hinges, motion): (Hinges, Option<&Motion>),
 ) {
+    let is_prescribed = |motion: &Motion| {
+        let model = motion.impact().model;
+        matches!(model, ImpactModel::Prescribed { .. })
+    };
     let wrong = match quantity {
         Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
-            if matches!(
-                structure,
-                Some(Structure::Column(_) | Structure::Masonry(_))
-            ) =>
+            if structure.is_some_and(|structure| structure.circular().is_none()) =>
         {
             "applies to a circular [arch] without piers and loads"
         }
         Quantity::Restitution if hinges.has_joints() => {
             "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none"
         }
-        Quantity::Restitution
-            if motion.is_some_and(|motion| {
-                !matches!(motion.impact().model, ImpactModel::Prescribed { .. })
-            }) =>
-        {
+        Quantity::Restitution if !motion.is_none_or(is_prescribed) => {
             "needs model = \"prescribed\" in [impact]"
         }
         _ => return,

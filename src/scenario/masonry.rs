@@ -14,12 +14,9 @@ use std::path::Path;
 use nalgebra::Vector2;
 
 use super::LineFault;
-use super::bounds::{MAGNITUDE, VOUSSOIRS};
+use super::prelude::*;
 use super::record::{faulty, read_numbers};
-use super::relation::Relation;
-use super::rule::{Count, OneOrMore, Switch, Text, above, one_of, within};
-use super::table::{Reading, Reported, Table};
-use super::tie::{self, TieTable};
+use super::tie::{self, PULLS_OVER, TieTable};
 use crate::argument::ArgumentError;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
 use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
@@ -39,24 +36,24 @@ pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_a
 
 /// Reads the shapes that have tables of their own, and returns the first that is given.
 pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
-    let pointed = table.table("pointed_arch", |table| {
-        Ok(Shape::PointedArch(read_dimensions(table)))
-    });
-    let elliptic = table.table("elliptic_arch", |table| {
-        Ok(Shape::EllipticArch(read_dimensions(table)))
-    });
+    let pointed = table.table("pointed_arch", read_dimensions);
+    let elliptic = table.table("elliptic_arch", read_dimensions);
     let basket = table.table("basket_arch", |table| {
-        Ok(Shape::BasketArch(BasketArch {
+        Ok(BasketArch {
             crown_deg: table.or("crown_deg", &above(0.0, 179.0), BasketArch::CROWN_DEG),
-            dimensions: read_dimensions(table),
-        }))
+            dimensions: read_dimensions(table)?,
+        })
     });
-    let blocks = table.table("blocks", |table| read_blocks(table).map(Shape::Blocks));
+    let blocks = table.table("blocks", read_blocks);
+    let pointed = pointed.map(Shape::PointedArch);
+    let elliptic = elliptic.map(Shape::EllipticArch);
+    let basket = basket.map(Shape::BasketArch);
+    let blocks = blocks.map(Shape::Blocks);
     pointed.or(elliptic).or(basket).or(blocks)
 }
 
-fn read_dimensions(table: &mut Table<'_>) -> Dimensions {
-    Dimensions {
+fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
+    Ok(Dimensions {
         span_m: table.required("span_m", &MAGNITUDE),
         rise_m: table.required("rise_m", &MAGNITUDE),
         thickness_m: table.required("thickness_m", &within(&(1e-6..=1e6))),
@@ -65,12 +62,12 @@ fn read_dimensions(table: &mut Table<'_>) -> Dimensions {
             depth_m: table.or("depth_m", &MAGNITUDE, DEPTH_M),
             density_kg_m3: table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3),
         },
-    }
+    })
 }
 
 fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
-    let joints_file = table.required("joints", &Text);
-    let outlines_file = table.optional("outlines", &Text);
+    let joints_file = table.required("joints", &TEXT);
+    let outlines_file = table.optional("outlines", &TEXT);
     let kinds = one_of(Supports::ALL, Supports::name);
     let supports = table.or("supports", &kinds, Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
@@ -78,54 +75,48 @@ fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
     table.sound()?;
     let path = table.path(&joints_file);
-    let rows = read_numbers::<4>(&path).map_err(|wrong| table.wrong("joints", wrong))?;
+    let rows = table.accept("joints", read_numbers::<4>(&path))?;
     table.note_file(&joints_file);
-    let wrong_line = |line, message| faulty(&path, &LineFault::on(line)(message));
-    if !(2..=MAX_BLOCKS + 1).contains(&rows.len()) {
-        let wrong = format!(
-            "has {} joints; must be from 2 to {}: blocks lie between joints, and a row has at most {MAX_BLOCKS}",
-            rows.len(),
-            MAX_BLOCKS + 1
-        );
-        return Err(table.wrong("joints", wrong));
-    }
-    let joints: Vec<Joint> = rows
-        .iter()
-        .map(|(_, [xi, yi, xe, ye])| Joint {
-            intrados_m: Vector2::new(*xi, *yi),
-            extrados_m: Vector2::new(*xe, *ye),
-        })
-        .collect();
+    let (count, most) = (rows.len(), MAX_BLOCKS + 1);
+    let wrong = format!(
+        "has {count} joints; must be from 2 to {most}: blocks lie between joints, and a row has at most {MAX_BLOCKS}"
+    );
+    table.refuse(!(2..=most).contains(&count), "joints", wrong)?;
+    let joints = rows.iter().map(|(_, [xi, yi, xe, ye])| Joint {
+        intrados_m: Vector2::new(*xi, *yi),
+        extrados_m: Vector2::new(*xe, *ye),
+    });
     let mut given = GivenBlocks {
         joints_file,
         outlines_file,
         supports,
         depth_m,
         density_kg_m3,
-        joints,
+        joints: joints.collect(),
         outlines: Vec::new(),
     };
-    if let Err(error) = given.check() {
-        let wrong = format!("has {} elements; must be {}", error.value, error.allowed);
-        return Err(table.wrong("density_kg_m3", wrong));
-    }
+    let fits = given.check().map_err(|error| {
+        let (count, allowed) = (error.value, error.allowed);
+        format!("has {count} elements; must be {allowed}")
+    });
+    table.accept("density_kg_m3", fits)?;
     if let Some(file) = &given.outlines_file {
-        let path = table.path(file);
-        given.outlines =
-            read_outlines(&path, &given).map_err(|wrong| table.wrong("outlines", wrong))?;
+        let outlines = read_outlines(&table.path(file), &given);
+        given.outlines = table.accept("outlines", outlines)?;
         table.note_file(file);
     }
     // If the blocks do not form a row, the error names the line of the joint.
     let shape = Shape::Blocks(given.clone());
-    match Masonry::new(shape, Piers::default(), None, Vec::new()) {
-        Ok(_) => Ok(given),
+    let wrong = match Masonry::new(shape, Piers::default(), None, Vec::new()) {
+        Ok(_) => return Ok(given),
         Err(MasonryError::Row(error)) => {
             let joint = GivenBlocks::joint_of(&error).unwrap_or(0);
             let line = rows.get(joint).map_or(1, |(line, _)| *line);
-            Err(table.wrong("joints", wrong_line(line, why_no_row(&error))))
+            faulty(&path, &LineFault::on(line)(why_no_row(&error)))
         }
-        Err(error) => Err(table.wrong("joints", error)),
-    }
+        Err(error) => error.to_string(),
+    };
+    Err(table.wrong("joints", wrong))
 }
 
 /// Explains why blocks form no row, with blocks and joints counted as in the files.
@@ -163,34 +154,28 @@ fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
     let mut outlines = Outlines::new();
     let mut lines = Vec::new();
     for (line, [block, x, y]) in rows {
-        let index = (1..=blocks).find(|index| {
-            let number = *index as f64;
-            number == block
-        });
-        let Some(index) = index else {
-            let message =
-                format!("there is no block {block}: blocks are counted from 1 to {blocks}");
-            return Err(fault(line, message));
-        };
+        let index = (0..blocks).find(|index| (index + 1) as f64 == block);
+        let missing =
+            || format!("there is no block {block}: blocks are counted from 1 to {blocks}");
+        let index = index.ok_or_else(|| fault(line, missing()))?;
         let corner = Vector2::new(x, y);
-        let known = outlines.iter().position(|(known, _)| *known == index - 1);
+        let known = outlines.iter().position(|(known, _)| *known == index);
         match known {
             None => {
-                outlines.push((index - 1, vec![corner]));
+                outlines.push((index, vec![corner]));
                 lines.push(line);
             }
             Some(known) if known + 1 == outlines.len() => outlines[known].1.push(corner),
             Some(_) => {
-                let message =
+                let wrong =
                     format!("block {block} comes back: give the corners of a block together");
-                return Err(fault(line, message));
+                return Err(fault(line, wrong));
             }
         }
     }
     for ((block, corners), line) in outlines.iter().zip(lines) {
-        given
-            .check_outline(*block, corners)
-            .map_err(|error| fault(line, error.to_string()))?;
+        let fits = given.check_outline(*block, corners);
+        fits.map_err(|error| fault(line, error.to_string()))?;
     }
     Ok(outlines)
 }
@@ -252,9 +237,7 @@ impl Additions {
         let masonry = tie::tied(table, &self.ties, masonry, gravity_m_s2)?;
         match falls(&masonry.row) {
             Ok(None) => Ok(masonry),
-            Ok(Some(_)) if stands_without_ties(&masonry) => {
-                Err(table.wrong("tie", tie::PULLS_OVER))
-            }
+            Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
             Ok(Some(openings)) => {
                 let joints: Vec<_> = openings.iter().map(|o| o.joint.to_string()).collect();
                 Err(why_it_falls(table, &masonry, &joints.join(", ")))
@@ -306,7 +289,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
         value.or(table.gives(key).then_some(1.0))
     });
     let blocks = table.optional("blocks", &PIER_BLOCKS);
-    let pedestal = table.optional("pedestal", &Switch);
+    let pedestal = table.optional("pedestal", &SWITCH);
     let one = |table: &mut Table<'_>| {
         let mut number = |key, both: Option<f64>| match both {
             Some(both) => table.or(key, &MAGNITUDE, both),
@@ -320,14 +303,14 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
             width_m: number("width_m", both[1]),
             density_kg_m3: table.optional("density_kg_m3", &MAGNITUDE).or(both[2]),
             blocks: table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1)),
-            pedestal: table.or("pedestal", &Switch, pedestal.unwrap_or(false)),
+            pedestal: table.or("pedestal", &SWITCH, pedestal.unwrap_or(false)),
         })
     };
     let (left, right) = (table.table("left", one), table.table("right", one));
     table.sound()?;
     // If `[piers]` itself has values, both piers exist.
     let has_values = blocks.is_some() || both.iter().any(Option::is_some);
-    if (left.is_some() && right.is_some()) || !has_values && (left.is_some() || right.is_some()) {
+    if [&left, &right].iter().filter(|pier| pier.is_some()).count() > usize::from(has_values) {
         return Ok(Piers { left, right });
     }
     let mut value = |key: &str, value: Option<f64>| {
@@ -354,7 +337,7 @@ fn read_fill(table: &mut Table<'_>) -> Reading<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
-    table.relate(&[Relation::OneOf(&["height_m", "above_crown_m"], None)])?;
+    table.relate(&[OneOf(&["height_m", "above_crown_m"], None)])?;
     let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {
         level: level
@@ -380,9 +363,8 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Repor
     );
     match masonry.remedy() {
         Remedy::WiderPiers(factor) => {
-            let remedy = factor.map_or("give wider or lower piers".to_owned(), |factor| {
-                format!("it stands with piers {factor:.4} times as wide")
-            });
+            let wider = |factor| format!("it stands with piers {factor:.4} times as wide");
+            let remedy = factor.map_or("give wider or lower piers".to_owned(), wider);
             let wrong = format!(
                 "gives piers that are too slender for this arch, which stands on rigid ground: joints {joints} open under \
                  its weight; {remedy}"
@@ -391,16 +373,11 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Repor
         }
         Remedy::ThickerArch(Some(factor)) => {
             let wrong = format!("{falls}; it stands if it is {factor:.4} times as thick");
-            for candidate in ["thickness_m", "thickness_ratio"] {
-                if table.gives_in(shape, candidate) {
-                    return table.wrong_in(
-                        &[shape],
-                        candidate,
-                        format!("makes an arch that {wrong}"),
-                    );
-                }
+            let mut keys = ["thickness_m", "thickness_ratio"].into_iter();
+            match keys.find(|key| table.gives_in(shape, key)) {
+                Some(key) => table.wrong_in(&[shape], key, format!("makes an arch that {wrong}")),
+                None => table.wrong(shape, wrong),
             }
-            table.wrong(shape, wrong)
         }
         Remedy::ThickerArch(None) => {
             table.wrong(shape, format!("{falls}; give a thicker arch, or less load"))

@@ -40,6 +40,7 @@ mod listing;
 mod map;
 mod masonry;
 mod motion;
+mod prelude;
 mod record;
 mod relation;
 mod right_foot;
@@ -63,8 +64,6 @@ mod verify;
 use std::path::Path;
 use std::sync::Arc;
 
-use serde_json::{Value, json};
-
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
 use crate::dynamics::row::error::RowModelError;
@@ -83,12 +82,13 @@ use input_file::InputFiles;
 pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
 pub use motion::Motion;
+use prelude::*;
+use record::Known;
 pub use record::{
     Component, Contents, Decimal, Format, Layout, LineFault, Record, Recorded, Sampling, Scaling,
     Series, TableColumn, Times, Unit,
 };
 pub use right_foot::RightFoot;
-use rule::Text;
 pub use sequence::{Sequence, Spacing};
 pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
@@ -96,7 +96,6 @@ pub use source::Source;
 use span::Circular;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
-use table::{Reading, Table};
 pub use tie::{Between, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
@@ -188,14 +187,11 @@ impl Scenario {
     /// The records of its ground, under both feet.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         let record = match &self.ground {
-            Some(Ground::Record(record)) => Some(record),
+            Some(Ground::Record(record)) => Some(&**record),
             Some(Ground::Pulse(_)) | None => None,
         };
-        let right = self.right_foot.iter().flat_map(RightFoot::series);
-        record
-            .into_iter()
-            .flat_map(|record| record.series())
-            .chain(right)
+        let right = self.right_foot.iter().filter_map(RightFoot::record);
+        record.into_iter().chain(right).flat_map(Record::series)
     }
 
     /// Name and checksum of each record file, of the ground and of the suite, separated by a space.
@@ -203,9 +199,8 @@ impl Scenario {
     pub fn record_checksums(&self) -> Vec<String> {
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
         let series = self.series().chain(suite);
-        series
-            .map(|series| format!("{} {:08x}", series.file, series.checksum()))
-            .collect()
+        let named = series.map(|series| format!("{} {:08x}", series.file, series.checksum()));
+        named.collect()
     }
 
     /// The uncertain numbers of the scenario; `None`: none.
@@ -297,27 +292,28 @@ impl Scenario {
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), changes.set, faults))
     }
 
-    /// Reads a scenario; `known` records are not read from their files again.
+    /// Reads a scenario; records that are known are not read from their files again.
     fn read_table(table: &mut Table<'_>, known: &[Series], changes: &Changes<'_>) -> Reading<Self> {
-        let title = table.optional("title", &Text);
+        let title = table.optional("title", &TEXT);
         let motion = motion::Tables::read(table, changes.hinges, changes.statics);
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
-        let gravity_m_s2 = simulation.as_ref().ok().map(|it| it.gravity_m_s2);
+        let simulated = simulation.as_ref().ok();
+        let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
-        let shaking = Shaking::read(table, known, gravity_m_s2, changes.statics);
+        let known = Known {
+            series: known,
+            gravity_m_s2,
+        };
+        let shaking = Shaking::read(table, known, changes.statics);
         let motion = motion.complete(table);
         let right_foot = shaking.as_ref().ok().and_then(|it| it.right_foot.as_ref());
         let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
         let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
-        let moved_by = motion.as_ref().ok().map(|(motion, _)| motion);
-        let map = table.given_table("map", |table| {
-            Map::read(table, structure, (hinges, moved_by))
-        });
-        let suite = table.given_table("suite", |table| {
-            Suite::read(table, simulation.as_ref().ok())
-        });
+        let moved = (hinges, motion.as_ref().ok().map(|(motion, _)| motion));
+        let map = table.given_table("map", |table| Map::read(table, structure, moved));
+        let suite = table.given_table("suite", |table| Suite::read(table, simulated));
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
         let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
         let demand = Demand::read_given(table, options.confidence_factor);
@@ -328,15 +324,14 @@ impl Scenario {
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
         let shaken_s = shaking.as_ref().map_or(0.0, |it| it.motion.end_s());
-        let until = simulation.as_ref().ok().map(|simulation| {
+        let until = simulated.map(|simulation| {
             let end_s = simulation.end_s(shaken_s, structure.size_m());
             (simulation.gravity_m_s2, end_s)
         });
         motion.check(table, &structure, until)?;
-        if !ties.is_empty() && table.gives("initial") {
-            let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
-            return Err(table.wrong("initial", wrong));
-        }
+        let is_released = !ties.is_empty() && table.gives("initial");
+        let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
+        table.refuse(is_released, "initial", wrong)?;
         let (given_shape, shaking) = (Circular::given(table), shaking?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
@@ -465,12 +460,9 @@ impl Scenario {
     /// # Errors
     /// Explains what to change.
     pub(crate) fn check_from_rest(&self, what: &str) -> Result<(), String> {
-        match self.initial {
-            None => Ok(()),
-            Some(_) => Err(format!(
-                "the histories of a {what} start from rest: leave [initial] out"
-            )),
-        }
+        ensure(self.initial.is_none(), || {
+            format!("the histories of a {what} start from rest: leave [initial] out")
+        })
     }
 
     /// The row of blocks, if limit analysis has to find what starts them: for masonry, and for a column that is not
@@ -516,14 +508,9 @@ impl Scenario {
     /// # Errors
     /// Explains what to leave out.
     pub fn check_as_built(&self) -> Result<(), String> {
-        match self.motion.supports() {
-            None => Ok(()),
-            Some(_) => Err(
-                "this is computed for the structure on the springings that were built: leave [supports] out; the studies `limit` and \
-                 `spread` compute the push it bears where they have moved"
-                    .to_owned(),
-            ),
-        }
+        let wrong = "this is computed for the structure on the springings that were built: leave [supports] out; the studies `limit` and \
+                     `spread` compute the push it bears where they have moved";
+        ensure(self.motion.supports().is_none(), || wrong.to_owned())
     }
 
     /// The request for the simulation, with samples at every output step.
@@ -600,23 +587,16 @@ impl Scenario {
     /// The scenario as JSON in which a circular arch has its mean radius, the ratio of its thickness and its embrace angle, whatever keys
     /// the file gives.
     pub(crate) fn resolved(&self) -> Value {
-        // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
-        let motion = |of_rows: bool| match self.motion.hinges().has_joints() {
-            has_joints if has_joints == of_rows => (self.motion.table_name(), self.motion.table()),
-            _ => ("", Value::Null),
-        };
         let mut ground = self.unread_ground.clone();
         let ground = ground.get_or_insert_with(|| json!(self.ground));
         if let (Value::Object(ground), Some(right)) = (&mut *ground, &self.right_foot) {
             ground.insert("right".to_owned(), json!(right));
         }
         let ties = Some(&self.ties).filter(|ties| !ties.is_empty());
-        let tables = [
+        let mut tables = vec![
             ("tie", json!(ties)),
-            motion(true),
             ("supports", json!(self.motion.supports())),
             ("ground", ground.take()),
-            motion(false),
             ("initial", json!(self.initial)),
             ("simulation", json!(self.simulation)),
             ("map", json!(self.map)),
@@ -625,12 +605,22 @@ impl Scenario {
             ("verify", json!(self.verify)),
             ("uncertain", json!(self.uncertain)),
         ];
-        let tables = tables.map(|(key, table)| (key.to_owned(), table));
-        let title = ("title".to_owned(), json!(self.title));
-        let structure = match json!(self.structure) {
-            Value::Object(structure) => structure,
-            _ => Entries::new(),
+        // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
+        let place = if self.motion.hinges().has_joints() {
+            1
+        } else {
+            3
         };
+        tables.insert(place, (self.motion.table_name(), self.motion.table()));
+        let tables = tables
+            .into_iter()
+            .map(|(key, table)| (key.to_owned(), table));
+        let title = ("title".to_owned(), json!(self.title));
+        let structure = json!(self.structure)
+            .as_object()
+            .cloned()
+            .into_iter()
+            .flatten();
         let all = [title].into_iter().chain(structure).chain(tables);
         given(
             all.map(|(key, value)| match self.as_given.get(&key) {
@@ -653,18 +643,12 @@ struct Shaking {
 }
 
 impl Shaking {
-    fn read(
-        table: &mut Table<'_>,
-        known: &[Series],
-        gravity_m_s2: Option<f64>,
-        statics: bool,
-    ) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, known: Known<'_>, statics: bool) -> Reading<Self> {
         let faults = table.faults();
         let mut right_foot = Ok(None);
         let ground = table.given_table("ground", |table| {
-            right_foot =
-                table.given_table("right", |table| RightFoot::read(table, known, gravity_m_s2));
-            Ground::read(table, known, gravity_m_s2)
+            right_foot = table.given_table("right", |table| RightFoot::read(table, known));
+            Ground::read(table, known)
         });
         let is_unread = ground.is_err() || right_foot.is_err();
         if statics && is_unread && table.forgives_files(faults) {

@@ -1,13 +1,10 @@
 //! The model of motion: its tables, and the models that it builds from a structure.
 
-use serde_json::{Value, json};
-
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
 use super::hinges::Hinges;
-use super::relation::Relation::{self, Excludes};
+use super::prelude::*;
 use super::structure::{DRUM_KEYS, ModelError, Structure};
-use super::table::{Reading, Table};
 use super::{free_hinges, impact, supports};
 use crate::dynamics::free_hinges::RowOptions;
 use crate::dynamics::model::{Model, Request};
@@ -149,23 +146,18 @@ impl Motion {
         if let Some(movements) = self.supports() {
             supports::check(table, structure, &movements)?;
         }
+        let coefficient = self.friction_coefficient();
+        if let Some(coefficient) = coefficient {
+            free_hinges::carries(table, self.table_name(), structure, coefficient)?;
+        }
         match self {
-            Self::FourLinks(_) => Ok(()),
-            Self::FreeHinges(free) => {
-                let coefficient = free.options.friction_coefficient;
-                free_hinges::carries(table, "free_hinges", structure, coefficient)?;
-                if free.supports.is_none() || coefficient.is_none() {
-                    return Ok(());
-                }
+            Self::FreeHinges(free) if self.supports().is_some() && coefficient.is_some() => {
                 free_hinges::holds(table, structure, free)
             }
             Self::ElasticJoints(joints) => {
-                let coefficient = joints.friction_coefficient;
-                free_hinges::carries(table, "elastic_joints", structure, coefficient)?;
-                until.map_or(Ok(()), |(gravity_m_s2, end_s)| {
-                    joints.check(table, structure, gravity_m_s2, end_s)
-                })
+                until.map_or(Ok(()), |until| joints.check(table, structure, until))
             }
+            Self::FourLinks(_) | Self::FreeHinges(_) => Ok(()),
         }
     }
 

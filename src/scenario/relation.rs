@@ -46,21 +46,12 @@ impl Relation<'_> {
     fn check(&self, table: &mut Table<'_>) {
         match self {
             OneOf(keys, message) => {
-                let rule = format!(
-                    "exactly one of the {} {}",
-                    if keys.iter().all(|key| table.is_table(key)) {
-                        "tables"
-                    } else {
-                        "keys"
-                    },
-                    keys.join(", ")
-                );
-                let at_most_one = |remedy: &str| format!("give {remedy}");
-                if !exclude(table, keys, &at_most_one(&rule)) && !table.may_give(keys) {
-                    match message {
-                        Some(message) => table.wrong_itself(message),
-                        None => table.wrong_itself(format!("needs {rule}")),
-                    };
+                let are_tables = keys.iter().all(|key| table.is_table(key));
+                let kind = if are_tables { "tables" } else { "keys" };
+                let rule = format!("exactly one of the {kind} {}", keys.join(", "));
+                if !exclude(table, keys, &format!("give {rule}")) && !table.may_give(keys) {
+                    let needs = format!("needs {rule}");
+                    table.wrong_itself(message.unwrap_or(&needs));
                 }
             }
             AtMostOne(keys, remedy) => {
@@ -87,13 +78,13 @@ impl Relation<'_> {
     }
 }
 
+/// The remedy for two keys of which one is enough.
+pub(super) const GIVE_ONE: &str = "give one of them";
+
 /// Reports all given keys but the first in the file. Returns true if any is given.
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
-    let mut given: Vec<_> = keys
-        .iter()
-        .copied()
-        .filter(|key| table.gives(key))
-        .collect();
+    let given = keys.iter().copied().filter(|key| table.gives(key));
+    let mut given: Vec<_> = given.collect();
     given.sort_by_key(|key| table.place(key));
     if let [first, others @ ..] = &given[..] {
         for key in others {
@@ -108,12 +99,17 @@ impl Table<'_> {
     pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
         let before = self.faults();
         for relation in relations {
-            self.constrain(|| relation.schema());
+            self.describe("allOf", || relation.schema());
             relation.check(self);
         }
         if self.faults() > before {
             return Err(Reported);
         }
         Ok(())
+    }
+
+    /// Reports all relations that the table breaks, and succeeds if also all of its values are sound.
+    pub(super) fn agrees(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
+        self.relate(relations).and(self.sound())
     }
 }

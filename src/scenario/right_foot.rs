@@ -9,20 +9,17 @@
 //! file = "right.at2"
 //! ```
 
-use serde::Serialize;
-
 use super::hinges::Hinges;
-use super::record::{Record, Series};
-use super::relation::Relation;
-use super::rule::within;
+use super::prelude::*;
+use super::record::{Known, Record};
 use super::structure::Structure;
-use super::table::{Reading, Reported, Table};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
 
 /// Slower waves than this, in m/s, are a mistake of units.
 const SLOWEST_M_S: f64 = 1.0;
 const RECORD: &str = "record";
+const WAVE: &str = "apparent_velocity_m_s";
 
 /// Motion of the ground under the right foot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,25 +37,18 @@ pub enum RightFoot {
 }
 
 impl RightFoot {
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        known: &[Series],
-        gravity_m_s2: Option<f64>,
-    ) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<Self> {
         let delay_s = table.optional("delay_s", &within(&(-1e3..=1e3)));
-        let velocity_m_s = table.optional("apparent_velocity_m_s", &within(&(-1e6..=1e6)));
-        let record = table.table(RECORD, |table| Record::read(table, known, gravity_m_s2));
-        let keys = &["delay_s", "apparent_velocity_m_s", RECORD];
-        table.relate(&[Relation::OneOf(keys, None)])?;
+        let velocity_m_s = table.optional(WAVE, &within(&(-1e6..=1e6)));
+        let record = table.table(RECORD, |table| Record::read(table, known));
+        table.relate(&[OneOf(&["delay_s", WAVE, RECORD], None)])?;
+        let is_slow = |velocity_m_s: f64| velocity_m_s.abs() < SLOWEST_M_S;
+        let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that travels to the left";
+        table.refuse(velocity_m_s.is_some_and(is_slow), WAVE, wrong)?;
         let record = record.map(|(record, _)| Self::Record(Box::new(record)));
         let late = delay_s.map(Self::Late);
         let right = late.or(velocity_m_s.map(Self::Wave)).or(record);
-        let right = right.ok_or(Reported)?;
-        if velocity_m_s.is_some_and(|velocity_m_s| velocity_m_s.abs() < SLOWEST_M_S) {
-            let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that travels to the left";
-            return Err(table.wrong("apparent_velocity_m_s", wrong));
-        }
-        Ok(right)
+        right.ok_or(Reported)
     }
 
     /// Refuses feet that the structure, the model or a study cannot move differently; `outer` is the whole scenario.
@@ -78,14 +68,12 @@ impl RightFoot {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
-        if let Self::Record(_) = self {
-            for study in ["map", "suite"] {
-                if outer.gives(study) {
-                    let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
-                                 `apparent_velocity_m_s` there, with which both feet change";
-                    return Err(outer.wrong(study, wrong));
-                }
-            }
+        let changing = ["map", "suite"];
+        let mut changing = changing.into_iter().filter(|study| outer.gives(study));
+        if let (Self::Record(_), Some(study)) = (self, changing.next()) {
+            let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
+                         `apparent_velocity_m_s` there, with which both feet change";
+            return Err(outer.wrong(study, wrong));
         }
         Ok(())
     }
@@ -97,11 +85,6 @@ impl RightFoot {
             Self::Record(record) => Some(record),
             Self::Late(_) | Self::Wave(_) => None,
         }
-    }
-
-    /// Series of the record of the right foot.
-    pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
-        self.record().into_iter().flat_map(Record::series)
     }
 
     /// Delay in s for feet that are `apart_m` apart; `None` if the right foot has its own record.
@@ -124,15 +107,15 @@ impl RightFoot {
         gravity_m_s2: f64,
     ) -> GroundMotion {
         const IN_RANGE: &str = "the ranges of the keys are those of a delay";
-        let Some(delay_s) = self.delay_s(apart_m) else {
-            let right = self.record().map(|record| record.motion(gravity_m_s2));
-            let right = right.unwrap_or_else(GroundMotion::still);
-            return match (left.end_s(), right.end_s()) {
-                (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),
-                (left_s, right_s) if right_s < left_s => left.with_right_foot(right.stopping()),
-                _ => left.with_right_foot(right),
-            };
-        };
-        left.with_delayed_right_foot(delay_s).expect(IN_RANGE)
+        if let Some(delay_s) = self.delay_s(apart_m) {
+            return left.with_delayed_right_foot(delay_s).expect(IN_RANGE);
+        }
+        let right = self.record().map(|record| record.motion(gravity_m_s2));
+        let right = right.unwrap_or_else(GroundMotion::still);
+        match (left.end_s(), right.end_s()) {
+            (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),
+            (left_s, right_s) if right_s < left_s => left.with_right_foot(right.stopping()),
+            _ => left.with_right_foot(right),
+        }
     }
 }

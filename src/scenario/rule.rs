@@ -1,6 +1,7 @@
 //! Rules for single values: the allowed values of a key, in words, as a reader and as a JSON schema.
 
-use std::ops::{Bound, RangeBounds as _, RangeInclusive};
+use std::ops::Bound::{self, Excluded, Included, Unbounded};
+use std::ops::{RangeBounds as _, RangeInclusive};
 
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -25,7 +26,7 @@ pub(super) trait Rule {
 pub(super) struct Number(Bound<f64>, Bound<f64>, Option<&'static str>);
 
 /// Any finite number.
-pub(super) const ANY_NUMBER: Number = between(Bound::Unbounded, Bound::Unbounded);
+pub(super) const ANY_NUMBER: Number = between(Unbounded, Unbounded);
 
 /// A number between two bounds.
 pub(super) const fn between(low: Bound<f64>, high: Bound<f64>) -> Number {
@@ -34,15 +35,12 @@ pub(super) const fn between(low: Bound<f64>, high: Bound<f64>) -> Number {
 
 /// A number in a range.
 pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
-    between(
-        Bound::Included(*range.start()),
-        Bound::Included(*range.end()),
-    )
+    between(Included(*range.start()), Included(*range.end()))
 }
 
 /// A number above the first bound and up to the second.
 pub(super) const fn above(low: f64, high: f64) -> Number {
-    between(Bound::Excluded(low), Bound::Included(high))
+    between(Excluded(low), Included(high))
 }
 
 impl Number {
@@ -61,23 +59,21 @@ impl Rule for Number {
 
     fn allowed(&self) -> String {
         let why = self.2.map_or_else(String::new, |why| format!(" ({why})"));
-        if let (Bound::Included(low), Bound::Included(high)) = (self.0, self.1) {
-            return format!("a number from {} to {}{why}", short(low), short(high));
-        }
-        let bounds = [
-            match self.0 {
-                Bound::Included(low) => Some(format!("of at least {}", short(low))),
-                Bound::Excluded(low) => Some(format!("above {}", short(low))),
-                Bound::Unbounded => None,
-            },
-            match self.1 {
-                Bound::Included(high) => Some(format!("at most {}", short(high))),
-                Bound::Excluded(high) => Some(format!("below {}", short(high))),
-                Bound::Unbounded => None,
-            },
-        ];
-        let bounds: Vec<_> = bounds.into_iter().flatten().collect();
-        format!("a number {}{why}", bounds.join(" and "))
+        let low = match self.0 {
+            Included(low) => format!(" of at least {}", short(low)),
+            Excluded(low) => format!(" above {}", short(low)),
+            Unbounded => String::new(),
+        };
+        let high = match (self.0, self.1) {
+            (Included(low), Included(high)) => {
+                return format!("a number from {} to {}{why}", short(low), short(high));
+            }
+            (_, Unbounded) => return format!("a number{low}{why}"),
+            (_, Included(high)) => format!("at most {}", short(high)),
+            (_, Excluded(high)) => format!("below {}", short(high)),
+        };
+        let and = if low.is_empty() { "" } else { " and" };
+        format!("a number{low}{and} {high}{why}")
     }
 
     fn read(&self, value: &Value) -> Result<f64, String> {
@@ -88,7 +84,7 @@ impl Rule for Number {
                 .filter(|x| self.contains(*x))
                 .ok_or("is out of range".to_owned()),
             Value::String(text) if !is_finite(text) => Err("is not finite".to_owned()),
-            _ => Err(format!("is {}", kind(value))),
+            _ => Err(is(value)),
         }
     }
 
@@ -99,9 +95,9 @@ impl Rule for Number {
             (self.1, "maximum", "exclusiveMaximum"),
         ] {
             match bound {
-                Bound::Included(bound) => schema[inclusive] = json!(bound),
-                Bound::Excluded(bound) => schema[exclusive] = json!(bound),
-                Bound::Unbounded => {}
+                Included(bound) => schema[inclusive] = json!(bound),
+                Excluded(bound) => schema[exclusive] = json!(bound),
+                Unbounded => {}
             }
         }
         schema
@@ -119,15 +115,12 @@ impl<R: Rule> Rule for List<'_, R> {
     }
 
     fn read(&self, value: &Value) -> Result<Self::Read, String> {
-        let Value::Array(elements) = value else {
-            return Err(format!("is {}", kind(value)));
-        };
-        let read = |(index, element): (usize, &Value)| {
-            let place = index + 1;
+        let elements = value.as_array().ok_or_else(|| is(value))?;
+        let read = |(element, place): (&Value, usize)| {
             let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
             self.0.read(element).map_err(wrong)
         };
-        elements.iter().enumerate().map(read).collect()
+        elements.iter().zip(1..).map(read).collect()
     }
 
     fn schema(&self) -> Value {
@@ -159,22 +152,29 @@ impl<R: Rule> Rule for OneOrMore<'_, R> {
     }
 }
 
-/// True or false.
-pub(super) struct Switch;
+/// Any value of a kind: the kind in words and as a JSON schema, and the value of that kind.
+pub(super) struct Any<T>(&'static str, &'static str, fn(&Value) -> Option<T>);
 
-impl Rule for Switch {
-    type Read = bool;
+/// True or false.
+pub(super) const SWITCH: Any<bool> = Any("true or false", "boolean", Value::as_bool);
+/// Any string.
+pub(super) const TEXT: Any<String> = Any("a string", "string", |value| {
+    value.as_str().map(str::to_owned)
+});
+
+impl<T: Serialize> Rule for Any<T> {
+    type Read = T;
 
     fn allowed(&self) -> String {
-        "true or false".to_owned()
+        self.0.to_owned()
     }
 
-    fn read(&self, value: &Value) -> Result<bool, String> {
-        value.as_bool().ok_or_else(|| format!("is {}", kind(value)))
+    fn read(&self, value: &Value) -> Result<T, String> {
+        (self.2)(value).ok_or_else(|| is(value))
     }
 
     fn schema(&self) -> Value {
-        json!({ "type": "boolean" })
+        json!({ "type": self.1 })
     }
 }
 
@@ -199,7 +199,7 @@ impl Rule for Count {
         match count.filter(|count| self.range.contains(count)) {
             Some(count) => Ok(count),
             None if is_whole => Err("is out of range".to_owned()),
-            None => Err(format!("is {}", kind(value))),
+            None => Err(is(value)),
         }
     }
 
@@ -208,44 +208,24 @@ impl Rule for Count {
     }
 }
 
-/// Any string.
-pub(super) struct Text;
-
-impl Rule for Text {
-    type Read = String;
-
-    fn allowed(&self) -> String {
-        "a string".to_owned()
-    }
-
-    fn read(&self, value: &Value) -> Result<String, String> {
-        let text = value.as_str().map(str::to_owned);
-        text.ok_or_else(|| format!("is {}", kind(value)))
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "type": "string" })
-    }
-}
-
 /// One of several things, each by its name.
-pub(super) struct OneOf<T: 'static> {
+pub(super) struct Named<T: 'static> {
     all: &'static [T],
     name: fn(T) -> &'static str,
 }
 
 /// One of these things by its name.
-pub(super) const fn one_of<T>(all: &'static [T], name: fn(T) -> &'static str) -> OneOf<T> {
-    OneOf { all, name }
+pub(super) const fn one_of<T>(all: &'static [T], name: fn(T) -> &'static str) -> Named<T> {
+    Named { all, name }
 }
 
-impl<T: Copy> OneOf<T> {
+impl<T: Copy> Named<T> {
     fn names(&self) -> Vec<&'static str> {
         self.all.iter().map(|&one| (self.name)(one)).collect()
     }
 }
 
-impl<T: Copy + Serialize> Rule for OneOf<T> {
+impl<T: Copy + Serialize> Rule for Named<T> {
     type Read = T;
 
     fn allowed(&self) -> String {
@@ -254,9 +234,7 @@ impl<T: Copy + Serialize> Rule for OneOf<T> {
     }
 
     fn read(&self, value: &Value) -> Result<T, String> {
-        let Value::String(text) = value else {
-            return Err(format!("is {}", kind(value)));
-        };
+        let text = value.as_str().ok_or_else(|| is(value))?;
         let mut all = self.all.iter().copied();
         all.find(|&one| (self.name)(one) == text)
             .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
@@ -267,14 +245,18 @@ impl<T: Copy + Serialize> Rule for OneOf<T> {
     }
 }
 
+/// Says what a value of a wrong kind is.
+fn is(value: &Value) -> String {
+    format!("is {}", kind(value))
+}
+
 /// Suggests the known name nearest to `name`; empty when none is near.
 pub(super) fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
     // At least half the name in common: enough to match a forgotten unit or prefix, too much for a chance match.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
+    let known = known.iter().map(AsRef::as_ref);
     known
-        .iter()
-        .map(AsRef::as_ref)
         .map(|known: &str| (strsim::normalized_damerau_levenshtein(&name, known), known))
         .filter(|(likeness, _)| *likeness > NEAR)
         .max_by(|(a, _), (b, _)| a.total_cmp(b))

@@ -1,11 +1,6 @@
 //! Increasing numbers: a list, or a range with a count.
 
-use serde::Serialize;
-use serde_json::{Value, json};
-
-use super::rule::{Count, List, Number, Rule, one_of};
-use super::table::{Reading, Table};
-use crate::argument::short;
+use super::prelude::*;
 
 named! {
     /// How the numbers of a range are spaced.
@@ -54,18 +49,18 @@ impl Rule for Ascending<'_> {
             return Err("is a single number".to_owned());
         }
         let values = List(self.0).read(value)?;
-        if values.is_empty() {
-            Err("is empty".to_owned())
-        } else if values.is_sorted_by(|earlier, later| earlier < later) {
-            Ok(values)
-        } else {
-            Err("does not ascend".to_owned())
-        }
+        ensure(!values.is_empty(), || "is empty".to_owned())?;
+        ensure(ascend(&values), || "does not ascend".to_owned())?;
+        Ok(values)
     }
 
     fn schema(&self) -> Value {
         json!({ "type": "array", "items": self.0.schema(), "minItems": 1 })
     }
+}
+
+fn ascend(values: &[f64]) -> bool {
+    values.is_sorted_by(|earlier, later| earlier < later)
 }
 
 /// How many numbers a range may have.
@@ -118,30 +113,20 @@ impl Sequence {
         let spacings = one_of(Spacing::ALL, Spacing::name);
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
         table.sound()?;
-        if to <= from {
-            let wrong = format!("is not above `from`; must be above {}", short(from));
-            return Err(table.wrong("to", wrong));
-        }
-        if spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0 {
-            let wrong = "needs numbers of one sign; use \"linear\" here";
-            return Err(table.wrong("spacing", wrong));
-        }
+        let wrong = format!("is not above `from`; must be above {}", short(from));
+        table.refuse(to <= from, "to", wrong)?;
+        let crosses_zero = spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0;
+        let wrong = "needs numbers of one sign; use \"linear\" here";
+        table.refuse(crosses_zero, "spacing", wrong)?;
         let range = Self::Range {
             from,
             to,
             count,
             spacing,
         };
-        if range
-            .values()
-            .is_sorted_by(|earlier, later| earlier < later)
-        {
-            Ok(range)
-        } else {
-            let wrong =
-                "exceeds the number of floating-point numbers in the range; give a smaller one";
-            Err(table.wrong("count", wrong))
-        }
+        let wrong = "exceeds the number of floating-point numbers in the range; give a smaller one";
+        table.refuse(!ascend(&range.values()), "count", wrong)?;
+        Ok(range)
     }
 }
 
@@ -162,12 +147,8 @@ fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f
         _ if index == 0 => from,
         _ if index == last => to,
         Spacing::Linear => {
-            let step = (to - from) / last as f64;
-            round(
-                from * (1.0 - part) + to * part,
-                from.abs().max(to.abs()),
-                step,
-            )
+            let (largest, step) = (from.abs().max(to.abs()), (to - from) / last as f64);
+            round(from * (1.0 - part) + to * part, largest, step)
         }
         Spacing::Logarithmic => from * (to / from).powf(part),
     }

@@ -1,10 +1,6 @@
 //! Options of the computation of motion: `[simulation]`.
 
-use serde::Serialize;
-
-use super::rule::within;
-use super::table::{Reading, Table};
-use crate::argument::plain;
+use super::prelude::*;
 use crate::dynamics::model::Request;
 
 /// Options of the computation of motion.
@@ -28,32 +24,28 @@ impl Simulation {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let default = Request::default();
         let time_s = within(&Request::TIME_S);
-        let tolerance = within(&Request::RELATIVE_TOLERANCE);
-        let rest = within(&Request::REST_ENERGY_RATIO);
         let duration_s = table.optional("duration_s", &time_s);
         let output_step_s = table.or(OUTPUT_STEP_S, &time_s, default.output_step_s);
         if let (Ok(()), Some(duration_s)) = (table.sound(), duration_s)
             && let Some(wrong) = rows_fault(duration_s, output_step_s)
         {
             // The step is easier to change.
-            let both = [OUTPUT_STEP_S, "duration_s"];
-            let given = both.into_iter().find(|key| table.gives(key));
-            table.wrong(given.unwrap_or(OUTPUT_STEP_S), wrong);
+            let gives_step = table.gives(OUTPUT_STEP_S);
+            let key = if gives_step {
+                OUTPUT_STEP_S
+            } else {
+                "duration_s"
+            };
+            table.wrong(key, wrong);
         }
+        let [tolerance, rest_ratio] = [Request::RELATIVE_TOLERANCE, Request::REST_ENERGY_RATIO];
+        let mut or = |key, range, default| table.or(key, &within(&range), default);
         Ok(Self {
             duration_s,
             output_step_s,
-            relative_tolerance: table.or(
-                "relative_tolerance",
-                &tolerance,
-                default.relative_tolerance,
-            ),
-            rest_energy_ratio: table.or("rest_energy_ratio", &rest, default.rest_energy_ratio),
-            gravity_m_s2: table.or(
-                "gravity_m_s2",
-                &within(&Request::GRAVITY_M_S2),
-                default.gravity_m_s2,
-            ),
+            relative_tolerance: or("relative_tolerance", tolerance, default.relative_tolerance),
+            rest_energy_ratio: or("rest_energy_ratio", rest_ratio, default.rest_energy_ratio),
+            gravity_m_s2: or("gravity_m_s2", Request::GRAVITY_M_S2, default.gravity_m_s2),
         })
     }
 
@@ -72,19 +64,17 @@ impl Simulation {
 
     /// Checks that the output of a history that ends by default has at least one step and fits on a disk.
     pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> Reading<()> {
-        let fault = match self.duration_s {
-            None => rows_fault(end_s, self.output_step_s),
-            Some(_) => None,
+        let is_default = self.duration_s.is_none();
+        let fault = rows_fault(end_s, self.output_step_s).filter(|_| is_default);
+        let Some(wrong) = fault else {
+            return Ok(());
         };
-        match fault {
-            None => Ok(()),
-            Some(wrong) if table.gives_in("simulation", OUTPUT_STEP_S) => {
-                Err(table.wrong_in(&["simulation"], OUTPUT_STEP_S, wrong))
-            }
-            Some(wrong) => Err(table.wrong_itself(format!(
-                "{wrong}; give `duration_s` or `output_step_s` in [simulation]"
-            ))),
+        if table.gives_in("simulation", OUTPUT_STEP_S) {
+            return Err(table.wrong_in(&["simulation"], OUTPUT_STEP_S, wrong));
         }
+        Err(table.wrong_itself(format!(
+            "{wrong}; give `duration_s` or `output_step_s` in [simulation]"
+        )))
     }
 }
 
@@ -97,20 +87,14 @@ const AFTER_RATIO: f64 = 20.0;
 /// Why the output of a history is too short or too long, if it is.
 fn rows_fault(duration_s: f64, step_s: f64) -> Option<String> {
     let rows = duration_s / step_s;
-    if rows < 1.0 {
-        Some(format!(
-            "makes the output step of {} s longer than the run of {} s; the step must not exceed the run",
-            plain(step_s),
-            plain(duration_s)
-        ))
-    } else if rows > Request::MOST_SAMPLES {
-        Some(format!(
-            "makes {rows:.0} rows of output, every {} s for {} s; at most {:.0} are allowed",
-            plain(step_s),
-            plain(duration_s),
-            Request::MOST_SAMPLES
-        ))
-    } else {
-        None
+    let (step, run, most) = (plain(step_s), plain(duration_s), Request::MOST_SAMPLES);
+    match rows {
+        ..1.0 => Some(format!(
+            "makes the output step of {step} s longer than the run of {run} s; the step must not exceed the run"
+        )),
+        rows if rows > most => Some(format!(
+            "makes {rows:.0} rows of output, every {step} s for {run} s; at most {most:.0} are allowed"
+        )),
+        _ => None,
     }
 }

@@ -9,15 +9,8 @@
 //! ```
 
 use std::mem;
-use std::ops::Bound::{Excluded, Unbounded};
 
-use serde_json::{Map, Value};
-
-use super::bounds::{EMBRACE_DEG, MAGNITUDE, THICKNESS_RATIO};
-use super::relation::Relation::{OneOf, Requires};
-use super::rule::{Number, Rule as _, between, one_of, within};
-use super::table::{Reading, Reported, Table};
-use crate::argument::plain;
+use super::prelude::*;
 use crate::mechanics::arch::MeasuredAt;
 
 /// Keys that give the shape in a resolved scenario.
@@ -31,6 +24,7 @@ const GIVEN: [&str; 6] = [
     "thickness_m",
     "thickness_ratio",
 ];
+const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
 /// Spans and rises may be smaller than any radius.
 const LENGTH: Number = within(&(1e-6..=1e6));
@@ -60,20 +54,14 @@ impl Circular {
             MAGNITUDE.allowed()
         );
         let needs_span = "; give that too, or `mean_radius_m` without it";
-        table
-            .relate(&[
-                OneOf(&["mean_radius_m", "span_m"], Some(&radius)),
-                OneOf(&["thickness_ratio", "thickness_m"], None),
-                OneOf(&["rise_m", "embrace_deg"], None),
-                Requires("rise_m", "span_m", needs_span),
-                Requires("measured_at", "span_m", needs_span),
-                Requires(
-                    "span_m",
-                    "measured_at",
-                    " beside it: \"intrados\", \"mean\" or \"extrados\"",
-                ),
-            ])
-            .and(table.sound())?;
+        table.agrees(&[
+            OneOf(&["mean_radius_m", "span_m"], Some(&radius)),
+            OneOf(&["thickness_ratio", "thickness_m"], None),
+            OneOf(&["rise_m", "embrace_deg"], None),
+            Requires("rise_m", "span_m", needs_span),
+            Requires("measured_at", "span_m", needs_span),
+            Requires("span_m", "measured_at", LINES),
+        ])?;
         let embrace_deg = match (span_m, rise_m, embrace_deg) {
             (Some(span_m), Some(rise_m), _) => checked_embrace_deg(table, span_m, rise_m)?,
             (_, _, embrace_deg) => embrace_deg.ok_or(Reported)?,
@@ -93,18 +81,15 @@ impl Circular {
         };
         let [ratio, radius] = [thickness_ratio, mean_radius_m].map(plain);
         // An extrados radius of less than half the thickness gives a mean radius of the wrong sign.
-        if !THICKNESS_RATIO.contains(thickness_ratio) {
-            let wrong = format!(
-                "is out of range: {ratio} mean radii of {radius} m; must be at least a millionth of the mean radius and \
-                 below twice that"
-            );
-            return Err(table.wrong("thickness_m", wrong));
-        }
-        if !MAGNITUDE.contains(mean_radius_m) {
-            let allowed = MAGNITUDE.allowed();
-            let wrong = format!("makes a mean radius of {radius} m; that must be {allowed}");
-            return Err(table.wrong("span_m", wrong));
-        }
+        let wrong = format!(
+            "is out of range: {ratio} mean radii of {radius} m; must be at least a millionth of the mean radius and \
+             below twice that"
+        );
+        let is_ratio = THICKNESS_RATIO.contains(thickness_ratio);
+        table.refuse(!is_ratio, "thickness_m", wrong)?;
+        let allowed = MAGNITUDE.allowed();
+        let wrong = format!("makes a mean radius of {radius} m; that must be {allowed}");
+        table.refuse(!MAGNITUDE.contains(mean_radius_m), "span_m", wrong)?;
         Ok(Self {
             mean_radius_m,
             thickness_ratio,
@@ -149,12 +134,10 @@ pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
 /// Embrace angle of an arch of this span and rise, checked to be within its bounds.
 fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
-    if EMBRACE_DEG.contains(embrace_deg) {
-        return Ok(embrace_deg);
-    }
     let wrong = format!(
         "makes an embrace angle of {} degrees; must be from 1 to 180, which is a rise of at most half the span",
         plain(embrace_deg)
     );
-    Err(table.wrong("rise_m", wrong))
+    table.refuse(!EMBRACE_DEG.contains(embrace_deg), "rise_m", wrong)?;
+    Ok(embrace_deg)
 }

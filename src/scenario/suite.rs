@@ -13,16 +13,11 @@
 //! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
 //! every peak of `peaks_g`. `[ground]` is not used.
 
-use serde::ser::{Serialize, SerializeMap as _, Serializer};
-
-use super::listing::{Listing, layout_keys};
+use super::listing::{Listing, written};
+use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
-use super::relation::Relation;
-use super::rule::{Number, OneOrMore, Switch, Text, above, within};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
-use super::table::{Reading, Reported, Table};
-use crate::argument::{plain, short};
 
 named! {
     /// The measure of the levels of a suite, named by its key in `[suite]`.
@@ -89,6 +84,7 @@ pub struct Spectral {
 }
 
 const SPECTRAL_PERIOD_S: &str = "spectral_period_s";
+const PERIOD_S: Number = within(&(0.01..=100.0));
 const SPECTRAL_DAMPING_PERCENT: &str = "spectral_damping_percent";
 
 impl Spectral {
@@ -101,11 +97,7 @@ impl Spectral {
     fn read(table: &mut Table<'_>) -> Self {
         let default = Self::DEFAULT;
         Self {
-            period_s: table.or(
-                SPECTRAL_PERIOD_S,
-                &within(&(0.01..=100.0)),
-                default.period_s,
-            ),
+            period_s: table.or(SPECTRAL_PERIOD_S, &PERIOD_S, default.period_s),
             damping_percent: table.or(
                 SPECTRAL_DAMPING_PERCENT,
                 &within(&(0.0..=99.0)),
@@ -121,16 +113,16 @@ const MAX_CASES: usize = 1_000_000;
 impl Suite {
     /// Reads `[suite]` with its records; `None`: `[simulation]` is faulty.
     pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> Reading<Self> {
-        let patterns = table.required(RECORDS, &OneOrMore(&Text));
+        let patterns = table.required(RECORDS, &OneOrMore(&TEXT));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
-            let levels = Sequence::read(table, measure.name(), measure.range());
-            levels.map(|levels| (measure, levels))
+            let levels = Sequence::read(table, measure.name(), measure.range())?;
+            Some((measure, levels))
         });
         let levels: Vec<_> = levels.collect();
-        let both_signs = table.or("both_signs", &Switch, true);
+        let both_signs = table.or("both_signs", &SWITCH, true);
         let spectral = Spectral::read(table);
-        let related = table.relate(&[Relation::OneOf(&["scales", "peaks_g"], None)]);
+        let related = table.relate(&[OneOf(&["scales", "peaks_g"], None)]);
         let listing = Listing::read(table, &[(RECORDS, patterns)], format);
         related.and(table.sound())?;
         let (measure, levels) = levels.into_iter().next().ok_or(Reported)?;
@@ -164,17 +156,18 @@ impl Suite {
 
 impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        let files: Vec<_> = self.records.iter().map(|series| &series.file).collect();
-        map.serialize_entry(RECORDS, &files)?;
-        for (key, value) in layout_keys(self.records.iter()) {
-            map.serialize_entry(&key, &value)?;
-        }
-        map.serialize_entry(self.measure.name(), &self.levels)?;
-        map.serialize_entry("both_signs", &self.both_signs)?;
-        map.serialize_entry(SPECTRAL_PERIOD_S, &self.spectral.period_s)?;
-        map.serialize_entry(SPECTRAL_DAMPING_PERCENT, &self.spectral.damping_percent)?;
-        map.end()
+        let records = written(&[(RECORDS, &self.records)]);
+        let own = [
+            (self.measure.name(), json!(self.levels)),
+            ("both_signs", json!(self.both_signs)),
+            (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
+            (
+                SPECTRAL_DAMPING_PERCENT,
+                json!(self.spectral.damping_percent),
+            ),
+        ];
+        let own = own.map(|(key, value)| (key.to_owned(), value));
+        serializer.collect_map(records.into_iter().chain(own))
     }
 }
 
@@ -186,40 +179,29 @@ fn suits(
     strongest: Scaling,
     simulation: Option<&Simulation>,
 ) -> Result<(), String> {
-    let Some(&Simulation {
-        gravity_m_s2,
-        duration_s,
-        ..
-    }) = simulation
-    else {
+    let Some(simulation) = simulation else {
         return Ok(());
     };
-    let own_g = series.peak_g(gravity_m_s2);
-    if own_g == 0.0 {
-        return Err("is zero throughout".to_owned());
+    let own_g = series.peak_g(simulation.gravity_m_s2);
+    series.check_not_zero(simulation.gravity_m_s2)?;
+    if let Scaling::PeakG(peak_g) = strongest {
+        ensure(peak_g / own_g <= MAX_SCALE, || {
+            let (own, peak, most) = (plain(own_g), plain(peak_g), short(MAX_SCALE));
+            format!(
+                "has a peak of {own} g, which cannot be scaled to {peak} g: factors are at most {most}"
+            )
+        })?;
     }
-    if let Scaling::PeakG(peak_g) = strongest
-        && peak_g / own_g > MAX_SCALE
-    {
-        return Err(format!(
-            "has a peak of {} g, which cannot be scaled to {} g: factors are at most {}",
-            plain(own_g),
-            plain(peak_g),
-            short(MAX_SCALE)
-        ));
-    }
-    series.scaled(strongest).check_strength(gravity_m_s2)?;
+    let strongest = series.scaled(strongest);
+    strongest.check_strength(simulation.gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
-    if let Some(duration_s) = duration_s
-        && lasts_s > duration_s
-    {
-        return Err(format!(
-            "lasts {} s and would be cut off at {} s; give a longer `duration_s` in [simulation]",
-            plain(lasts_s),
-            plain(duration_s)
-        ));
-    }
-    Ok(())
+    let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
+    ensure(lasts_s <= duration_s, || {
+        let [lasts, end] = [lasts_s, duration_s].map(plain);
+        format!(
+            "lasts {lasts} s and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
+        )
+    })
 }
 
 /// The horizontal ground motion of a record.

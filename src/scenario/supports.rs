@@ -1,9 +1,7 @@
 //! Movements of the springings before time 0: `[supports]`.
 
-use super::rule::{Number, within};
+use super::prelude::*;
 use super::structure::Structure;
-use super::table::{Reading, Table};
-use crate::argument::{plain, short};
 use crate::mechanics::blocks::Supports;
 use crate::mechanics::settling::{Follower, Movement, Movements, Reached};
 
@@ -36,47 +34,42 @@ pub(super) fn check(
     let Ok(row) = structure.row() else {
         return Ok(());
     };
-    let mut wrong = |message: String| Err(table.wrong("supports", message));
     if row.supports == Supports::Left {
-        return wrong(
-            "needs two springings, of which one can move against the other, and this stands on one support: leave it out"
-                .to_owned(),
-        );
+        let alone = "needs two springings, of which one can move against the other, and this stands on one support: leave it out";
+        return Err(table.wrong("supports", alone));
     }
     let joints = &row.joints;
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
     let closer_m = -(movements.left.spread_m + movements.right.spread_m);
-    if closer_m >= apart_m {
-        return wrong(format!(
-            "pushes the springings {} m towards each other, and they are {} m apart: spread_m is positive outwards",
-            plain(closer_m),
-            short(apart_m)
-        ));
-    }
+    let wrong = format!(
+        "pushes the springings {} m towards each other, and they are {} m apart: spread_m is positive outwards",
+        plain(closer_m),
+        short(apart_m)
+    );
+    table.refuse(closer_m >= apart_m, "supports", wrong)?;
     let Ok(mut follower) = Follower::new(&row) else {
         return Ok(());
     };
-    match follower.move_supports(|part| *movements * part, 0.0, 1.0) {
-        Ok(Reached::Falls(part)) => wrong(format!(
+    let wrong = match follower.move_supports(|part| *movements * part, 0.0, 1.0) {
+        Ok(Reached::Falls(part)) => format!(
             "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
              `archrock spread` finds how far they may move",
             1e2 * part
-        )),
-        Ok(Reached::End) => match follower.stance.broken_tie() {
-            Some(tie) => {
-                let wrong = "breaks before the springings have gone the way of [supports], with joints that are rigid: give a larger \
-                             `breaks_at_strain`, or less movement";
-                Err(table.wrong_element("tie", tie, wrong))
-            }
-            None => Ok(()),
-        },
+        ),
+        Ok(Reached::End) => {
+            let Some(tie) = follower.stance.broken_tie() else {
+                return Ok(());
+            };
+            let wrong = "breaks before the springings have gone the way of [supports], with joints that are rigid: give a larger \
+                         `breaks_at_strain`, or less movement";
+            return Err(table.wrong_element("tie", tie, wrong));
+        }
         Err(error) => {
             let place = error.at().map_or_else(String::new, |part| {
                 format!(" beyond {:.2} % of this movement", 1e2 * part)
             });
-            wrong(format!(
-                "cannot be followed{place}: {error}; give another movement or other joints"
-            ))
+            format!("cannot be followed{place}: {error}; give another movement or other joints")
         }
-    }
+    };
+    Err(table.wrong("supports", wrong))
 }

@@ -9,7 +9,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::assignment::Assignment;
 use super::document::{Document, Entries, Span, kind};
@@ -55,54 +55,15 @@ pub(super) fn read_document<T>(
 pub(super) fn describe<T>(read: impl FnOnce(&mut Table<'_>) -> Reading<T>) -> Value {
     let document = Document::default();
     let mut table = Table::new(String::new(), &document.root, &document);
-    table.description = Some(Description::default());
+    table.description = Some(an_object());
     // An empty text is no valid scenario: only the keys count.
     let _ = read(&mut table);
-    table.description.map_or(Value::Null, Description::schema)
+    table.description.unwrap_or_default()
 }
 
-/// Keys of a table, their rules and relations.
-#[derive(Default)]
-struct Description {
-    properties: Map<String, Value>,
-    required: Vec<String>,
-    constraints: Vec<Value>,
-    /// Keys of any name that contains a dot.
-    dotted: Option<Value>,
-}
-
-impl Description {
-    /// Adds the allowed values of a key; if the key is read in two ways, both are allowed.
-    fn add(&mut self, key: &str, schema: Value) {
-        let dotted = key.contains('.');
-        let known = self.properties.get_mut(key);
-        match known {
-            _ if dotted => self.dotted = Some(schema),
-            None => {
-                self.properties.insert(key.to_owned(), schema);
-            }
-            Some(known) if *known == schema => {}
-            Some(known) => *known = json!({ "anyOf": [known.take(), schema] }),
-        }
-    }
-
-    fn schema(self) -> Value {
-        let mut schema = json!({
-            "type": "object",
-            "properties": self.properties,
-            "additionalProperties": false,
-        });
-        if let Some(dotted) = self.dotted {
-            schema["patternProperties"] = json!({ "\\.": dotted });
-        }
-        if !self.required.is_empty() {
-            schema["required"] = json!(self.required);
-        }
-        if !self.constraints.is_empty() {
-            schema["allOf"] = json!(self.constraints);
-        }
-        schema
-    }
+/// The JSON schema of a table without keys.
+fn an_object() -> Value {
+    json!({ "type": "object", "properties": {}, "additionalProperties": false })
 }
 
 /// A table of the file, and the faults found in it.
@@ -123,7 +84,8 @@ pub(super) struct Table<'a> {
     files: Vec<InputFile>,
     /// True if a value is unknown without a fault: its line may be one that is not TOML.
     is_partial: bool,
-    description: Option<Description>,
+    /// The JSON schema of the keys that were read, if they are collected.
+    description: Option<Value>,
 }
 
 impl<'a> Table<'a> {
@@ -180,9 +142,7 @@ impl<'a> Table<'a> {
     /// The value of a key that must be given.
     pub(super) fn required<R: Rule<Read: Default>>(&mut self, key: &str, rule: &R) -> R::Read {
         let value = self.optional(key, rule);
-        if let Some(description) = &mut self.description {
-            description.required.push(key.to_owned());
-        }
+        self.describe("required", || json!(key));
         self.needed(key, rule, value)
     }
 
@@ -203,16 +163,14 @@ impl<'a> Table<'a> {
     pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Read) -> R::Read {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
-            description.properties[key]["default"] = json!(default);
+            description["properties"][key]["default"] = json!(default);
         }
         value.unwrap_or(default)
     }
 
     /// The value of a key that can be left out.
     pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Read> {
-        if let Some(description) = &mut self.description {
-            description.add(key, rule.schema());
-        }
+        self.describe_key(key, || rule.schema());
         match rule.read(self.entry(key, false)?) {
             Ok(value) => Some(value),
             Err(wrong) => {
@@ -237,21 +195,16 @@ impl<'a> Table<'a> {
         key: &str,
         read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
     ) -> Reading<Option<T>> {
-        let Some(entry) = self.entry(key, true) else {
-            if self.description.is_some() {
-                self.descend(key, None, read)?;
+        match self.entry(key, true) {
+            Some(Value::Object(entries)) => {
+                let path = format!("{}/{key}", self.path);
+                self.descend(key, Some((path, entries)), read).map(Some)
             }
-            return if self.may_give(&[key]) {
-                Err(Reported)
-            } else {
-                Ok(None)
-            };
-        };
-        let Value::Object(entries) = entry else {
-            return Err(self.wrong(key, format!("is {}; must be a table", kind(entry))));
-        };
-        self.descend(key, Some((format!("{}/{key}", self.path), entries)), read)
-            .map(Some)
+            Some(entry) => Err(self.wrong(key, format!("is {}; must be a table", kind(entry)))),
+            None if self.describes() => self.descend(key, None, read).map(Some),
+            None if self.may_give(&[key]) => Err(Reported),
+            None => Ok(None),
+        }
     }
 
     /// The tables of an array `[[key]]` that are right, each read by `read`; empty if not given.
@@ -263,10 +216,10 @@ impl<'a> Table<'a> {
         let Some(entry) = self.entry(key, true) else {
             if self.describes() {
                 let _ = self.descend(key, None, read);
-                let known = self.description.as_mut();
-                if let Some(items) = known.and_then(|it| it.properties.get_mut(key)) {
-                    *items = json!({ "type": "array", "items": items.take() });
-                }
+            }
+            if let Some(description) = &mut self.description {
+                let items = &mut description["properties"][key];
+                *items = json!({ "type": "array", "items": items.take() });
             }
             return Vec::new();
         };
@@ -361,11 +314,30 @@ impl<'a> Table<'a> {
         self.description.is_some()
     }
 
-    /// Adds a relation between keys to the description.
-    pub(super) fn constrain(&mut self, schema: impl FnOnce() -> Value) {
-        if let Some(description) = &mut self.description {
-            description.constraints.push(schema());
+    /// Adds an element to a list of the description.
+    pub(super) fn describe(&mut self, list: &str, schema: impl FnOnce() -> Value) {
+        match self.description.as_mut().map(|known| &mut known[list]) {
+            Some(Value::Array(known)) => known.push(schema()),
+            Some(known) => *known = json!([schema()]),
+            None => {}
         }
+    }
+
+    /// Adds the allowed values of a key to the description; if the key is read in two ways, both are allowed. A key with a dot stands for
+    /// all such keys.
+    fn describe_key(&mut self, key: &str, schema: impl FnOnce() -> Value) {
+        let Some(description) = &mut self.description else {
+            return;
+        };
+        let known = match key.contains('.') {
+            true => &mut description["patternProperties"]["\\."],
+            false => &mut description["properties"][key],
+        };
+        *known = match (known.take(), schema()) {
+            (Value::Null, schema) => schema,
+            (known, schema) if known == schema || key.contains('.') => schema,
+            (known, schema) => json!({ "anyOf": [known, schema] }),
+        };
     }
 
     /// Number of faults that have been found.
@@ -396,6 +368,28 @@ impl<'a> Table<'a> {
         self.wrong_in(&[], key, message)
     }
 
+    /// Records that the given value of `key` is wrong, if it is.
+    pub(super) fn refuse(
+        &mut self,
+        is_wrong: bool,
+        key: &str,
+        message: impl fmt::Display,
+    ) -> Reading<()> {
+        if is_wrong {
+            return Err(self.wrong(key, message));
+        }
+        Ok(())
+    }
+
+    /// The result of work with the given value of `key`; an error continues the key and its value.
+    pub(super) fn accept<T>(
+        &mut self,
+        key: &str,
+        result: Result<T, impl fmt::Display>,
+    ) -> Reading<T> {
+        result.map_err(|wrong| self.wrong(key, wrong))
+    }
+
     /// Records that the given value of `key` is wrong in nested tables inside this one. If the innermost table does not give it, the
     /// tables around it are searched; if none does, it is missing in the innermost table that is given.
     pub(super) fn wrong_in(
@@ -415,22 +409,19 @@ impl<'a> Table<'a> {
         let innermost = around.last().and_then(|(path, _)| self.place_of(path));
         // With nested tables, only those are searched.
         let mut searched = around.iter().skip(tables.len().min(1)).rev();
-        let found = searched.find_map(|(path, entries)| {
-            let value = entries.get(key)?;
-            Some((format!("{path}/{key}"), value))
-        });
+        let found =
+            searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
         let Some((path, value)) = found else {
-            return self.fault(
-                innermost.unwrap_or(self.place),
-                format!("`{key}` {message}"),
-            );
+            let place = innermost.unwrap_or(self.place);
+            return self.fault(place, format!("`{key}` {message}"));
         };
-        let message = match value {
-            Value::Object(_) => format!("table `{key}` {message}"),
-            _ if self.document.is_array_of_tables(&path, key) => format!("`[[{key}]]` {message}"),
-            _ => format!("`{key} = {}` {message}", self.document.quote(&path, value)),
+        let given = match value {
+            Value::Object(_) => format!("table `{key}`"),
+            _ if self.document.is_array_of_tables(&path, key) => format!("`[[{key}]]`"),
+            _ => format!("`{key} = {}`", self.document.quote(&path, value)),
         };
-        self.fault(self.place_of(&path).unwrap_or_default(), message)
+        let place = self.place_of(&path).unwrap_or_default();
+        self.fault(place, format!("{given} {message}"))
     }
 
     /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
@@ -494,7 +485,7 @@ impl<'a> Table<'a> {
         let mut table = Table {
             place: self.place_of(&path).unwrap_or(self.place),
             path,
-            description: self.description.as_ref().map(|_| Description::default()),
+            description: self.description.as_ref().map(|_| an_object()),
             ..Table::new(name, entries, self.document)
         };
         let value = read(&mut table);
@@ -503,9 +494,7 @@ impl<'a> Table<'a> {
         self.faults.append(&mut table.faults);
         self.files.append(&mut table.files);
         self.is_partial |= table.is_partial;
-        if let (Some(outer), Some(inner)) = (&mut self.description, table.description) {
-            outer.add(key, inner.schema());
-        }
+        self.describe_key(key, || table.description.unwrap_or_default());
         value
     }
 
@@ -515,24 +504,22 @@ impl<'a> Table<'a> {
             return;
         }
         let known: Vec<&str> = self.known.iter().map(|(key, _)| key.as_str()).collect();
-        for key in self.entries.keys() {
-            if !known.contains(&key.as_str()) {
-                let mut replaced = REPLACED.iter();
-                let replaced = replaced.find(|(table, old, _)| self.name == *table && key == old);
-                let message = match replaced {
-                    Some((_, key, successor)) => format!("`{key}` in {} {successor}", self.name),
-                    None => format!(
-                        "unknown key `{}` in {}{}; known keys: {}",
-                        excerpt(key),
-                        self.name,
-                        did_you_mean(key, &known),
-                        known.join(", ")
-                    ),
-                };
-                let span = self.document.spans.get(&format!("{}/{key}", self.path));
-                let (text, offset) = span.map_or((0, 0), |span| (span.text, span.key));
-                self.faults.push(Fault::new(text, offset, message));
-            }
+        let unknown = self.entries.keys();
+        for key in unknown.filter(|key| !known.contains(&key.as_str())) {
+            let mut replaced = REPLACED.iter();
+            let message = match replaced.find(|(table, old, _)| self.name == *table && key == old) {
+                Some((_, key, successor)) => format!("`{key}` in {} {successor}", self.name),
+                None => format!(
+                    "unknown key `{}` in {}{}; known keys: {}",
+                    excerpt(key),
+                    self.name,
+                    did_you_mean(key, &known),
+                    known.join(", ")
+                ),
+            };
+            let span = self.document.spans.get(&format!("{}/{key}", self.path));
+            let (text, offset) = span.map_or((0, 0), |span| (span.text, span.key));
+            self.faults.push(Fault::new(text, offset, message));
         }
     }
 }

@@ -11,12 +11,8 @@
 //! ```
 
 use nalgebra::Vector2;
-use serde::Serialize;
 
-use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
-use super::rule::{Count, List, Number, one_of, within};
-use super::table::{Reading, Table};
-use crate::argument::short;
+use super::prelude::*;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError};
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::Masonry;
@@ -80,10 +76,10 @@ impl TieTable {
     /// Reads all of `[[tie]]`.
     pub(super) fn read_all(table: &mut Table<'_>) -> Vec<Self> {
         let ties = table.tables("tie", Self::read);
-        if ties.len() > MOST_TIES {
+        let count = ties.len();
+        if count > MOST_TIES {
             let wrong = format!(
-                "is one of {} ties; must be at most {MOST_TIES}: join those that lie side by side",
-                ties.len()
+                "is one of {count} ties; must be at most {MOST_TIES}: join those that lie side by side"
             );
             table.wrong_element("tie", MOST_TIES, wrong);
         }
@@ -116,7 +112,7 @@ impl TieTable {
             Requires("to_block", "to_m", " beside it"),
             OneOf(&["area_mm2", "stiffness_n_m"], None),
             Together(&["area_mm2", "modulus_gpa"]),
-            AtMostOne(&["yield_force_n", "yield_stress_mpa"], "give one of them"),
+            AtMostOne(&["yield_force_n", "yield_stress_mpa"], GIVE_ONE),
             Requires("yield_stress_mpa", "area_mm2", " beside it"),
         ])?;
         Ok(read)
@@ -135,14 +131,13 @@ impl TieTable {
             (Some(area_mm2), Some(modulus_gpa), _) => 1e3 * area_mm2 * modulus_gpa / length_m,
             (_, _, stiffness_n_m) => stiffness_n_m.unwrap_or(0.0),
         };
-        if stiffness_n_m > STIFFEST_N_M {
-            return Err(format!(
-                "has a stiffness of {} N/m by its section and its length of {} m; must be at most {STIFFEST_N_M:e} N/m: give a smaller \
-                 `area_mm2` or `modulus_gpa`",
-                short(stiffness_n_m),
-                short(length_m)
-            ));
-        }
+        ensure(stiffness_n_m <= STIFFEST_N_M, || {
+            let [stiffness, length] = [stiffness_n_m, length_m].map(short);
+            format!(
+                "has a stiffness of {stiffness} N/m by its section and its length of {length} m; must be at most {STIFFEST_N_M:e} N/m: give a \
+                 smaller `area_mm2` or `modulus_gpa`"
+            )
+        })?;
         let by_section = self.yield_stress_mpa.zip(self.area_mm2);
         let by_section = by_section.map(|(mpa, mm2)| mpa * mm2);
         let tie = Tie {
@@ -152,25 +147,25 @@ impl TieTable {
             yield_force_n: self.yield_force_n.or(by_section).unwrap_or(f64::INFINITY),
             breaks_at_strain: self.breaks_at_strain.unwrap_or(f64::INFINITY),
         };
-        match tie.check(row.blocks.len(), row.size_m) {
-            Ok(()) => Ok(tie),
-            Err(TieError::OnSupports) if self.between.is_some() => Err(
+        Err(match tie.check(row.blocks.len(), row.size_m) {
+            Ok(()) => return Ok(tie),
+            Err(TieError::OnSupports) if self.between.is_some() => {
                 "is between springings that both stand on rigid ground, which a tie cannot move: give [piers], or \
                  tie voussoirs with `height_m`"
-                    .to_owned(),
-            ),
-            Err(TieError::OneBlock(block)) => Err(format!(
+                    .to_owned()
+            }
+            Err(TieError::OneBlock(block)) => format!(
                 "has both ends on block {}, which is rigid: tie two blocks, or a block and the ground (block 0)",
                 block + 1
-            )),
-            Err(TieError::OnSupports) => Err(
-                "has both ends on the ground, which a tie cannot move: give one of them on a block".to_owned(),
             ),
-            Err(TieError::NoLength) => {
-                Err("has both ends at one point: give two points that are apart".to_owned())
+            Err(TieError::OnSupports) => {
+                "has both ends on the ground, which a tie cannot move: give one of them on a block".to_owned()
             }
-            Err(error) => Err(format!("is none: {error}")),
-        }
+            Err(TieError::NoLength) => {
+                "has both ends at one point: give two points that are apart".to_owned()
+            }
+            Err(error) => format!("is none: {error}"),
+        })
     }
 
     fn ends(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<[Anchor; 2], String> {
@@ -183,35 +178,23 @@ impl TieTable {
         if let Some(height_m) = self.height_m {
             return at_height(row, height_m);
         }
-        let Some([left, right]) = springings else {
-            return Err(
-                "is between springings, which only arches given by their dimensions have: give `from_m` and `to_m`"
-                    .to_owned(),
-            );
+        let missing = "is between springings, which only arches given by their dimensions have: give `from_m` and `to_m`";
+        let [left, right] = springings.ok_or(missing)?;
+        let end = |joint: usize, block: Option<usize>| {
+            let at_m = row.joints[joint].intrados_m;
+            Anchor { block, at_m }
         };
         // The piers of the arch: the block before the left springing, and the one behind the right.
-        let at_m = |joint: usize| row.joints[joint].intrados_m;
-        let blocks = row.blocks.len();
-        Ok([
-            Anchor {
-                block: left.checked_sub(1),
-                at_m: at_m(left),
-            },
-            Anchor {
-                block: (right < blocks).then_some(right),
-                at_m: at_m(right),
-            },
-        ])
+        let behind = (right < row.blocks.len()).then_some(right);
+        Ok([end(left, left.checked_sub(1)), end(right, behind)])
     }
 }
 
 fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
     let numbers = table.optional(key, &List(&COORDINATE_M))?;
-    if let [x_m, y_m] = numbers[..] {
-        return Some([x_m, y_m]);
-    }
-    table.wrong(key, "has not two elements; must be a point [x, y] in m");
-    None
+    let point = <[f64; 2]>::try_from(numbers);
+    let wrong = "has not two elements; must be a point [x, y] in m";
+    table.accept(key, point.map_err(|_| wrong)).ok()
 }
 
 /// A point of a block, or of the ground if the block is 0.
@@ -220,74 +203,67 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
     let blocks = row.blocks.len();
     let ground = || format!("for a point of the ground give `{end}_block = 0`");
-    let on = |block: Option<usize>| Ok(Anchor { block, at_m });
-    if let Some(number) = block {
-        let Some(index) = number.checked_sub(1) else {
-            return on(None);
-        };
-        if index >= blocks {
-            return Err(format!(
-                "has `{end}_block = {number}`: there are {blocks} blocks, counted from 1; 0 is the ground"
-            ));
+    let block = match (block, &row.blocks_at(at_m)[..]) {
+        (Some(0), _) => None,
+        (Some(number), _) => {
+            ensure(number <= blocks, || {
+                format!(
+                    "has `{end}_block = {number}`: there are {blocks} blocks, counted from 1; 0 is the ground"
+                )
+            })?;
+            let away_m = row.distance_m(number - 1, at_m);
+            ensure(away_m <= NEAR_RATIO * row.size_m, || {
+                format!(
+                    "holds on at {point}, which is {away_m:.4} m away from block {number}: give a point of that block; {}",
+                    ground()
+                )
+            })?;
+            Some(number - 1)
         }
-        let away_m = row.distance_m(index, at_m);
-        if away_m > NEAR_RATIO * row.size_m {
-            return Err(format!(
-                "holds on at {point}, which is {away_m:.4} m away from block {number}: give a point of that block; {}",
-                ground()
-            ));
-        }
-        return on(Some(index));
-    }
-    match row.blocks_at(at_m)[..] {
-        [index] => on(Some(index)),
-        [] => {
-            let nearest = (0..blocks)
-                .map(|index| (row.distance_m(index, at_m), index + 1))
-                .min_by(|one, other| one.0.total_cmp(&other.0));
+        (None, [index]) => Some(*index),
+        (None, []) => {
+            let away = (0..blocks).map(|index| (row.distance_m(index, at_m), index + 1));
+            let nearest = away.min_by(|one, other| one.0.total_cmp(&other.0));
             let nearest = nearest.map_or(String::new(), |(away_m, number)| {
                 format!("; the nearest, {number}, is {away_m:.4} m away")
             });
-            Err(format!(
+            return Err(format!(
                 "holds on at {point}, which is in no block{nearest}: give a point of a block; {}",
                 ground()
-            ))
+            ));
         }
-        ref these => {
+        (None, these) => {
             let numbers: Vec<String> = these.iter().map(|index| (index + 1).to_string()).collect();
-            Err(format!(
+            return Err(format!(
                 "holds on at {point}, which is on the edge of blocks {}: choose one of them by `{end}_block`",
                 numbers.join(" and ")
-            ))
+            ));
         }
-    }
+    };
+    Ok(Anchor { block, at_m })
 }
 
 /// The two points of the intrados, taken as straight from joint to joint, at a height.
 fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     let pairs = row.joints.windows(2).enumerate();
-    let crossings: Vec<Anchor> = pairs
-        .filter_map(|(block, pair)| {
-            let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
-            let crosses = (from.y <= height_m) != (to.y <= height_m);
-            crosses.then(|| Anchor {
-                block: Some(block),
-                at_m: from + (to - from) * ((height_m - from.y) / (to.y - from.y)),
-            })
+    let crossings = pairs.filter_map(|(block, pair)| {
+        let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
+        let crosses = (from.y <= height_m) != (to.y <= height_m);
+        crosses.then(|| Anchor {
+            block: Some(block),
+            at_m: from + (to - from) * ((height_m - from.y) / (to.y - from.y)),
         })
-        .collect();
-    match crossings[..] {
-        [left, right] => Ok([left, right]),
-        _ => {
-            let corners = row.joints.iter().map(|joint| joint.intrados_m.y);
-            let lowest = corners.clone().fold(f64::INFINITY, f64::min);
-            let highest = corners.fold(f64::NEG_INFINITY, f64::max);
-            Err(format!(
-                "is at a height of {height_m:?} m, where the intrados is not crossed on both sides: give a height between {lowest:.4} \
-                 and {highest:.4} m, or `from_m` and `to_m`"
-            ))
-        }
-    }
+    });
+    let crossings: Vec<Anchor> = crossings.collect();
+    <[Anchor; 2]>::try_from(crossings).map_err(|_| {
+        let corners = row.joints.iter().map(|joint| joint.intrados_m.y);
+        let lowest = corners.clone().fold(f64::INFINITY, f64::min);
+        let highest = corners.fold(f64::NEG_INFINITY, f64::max);
+        format!(
+            "is at a height of {height_m:?} m, where the intrados is not crossed on both sides: give a height between {lowest:.4} \
+             and {highest:.4} m, or `from_m` and `to_m`"
+        )
+    })
 }
 
 /// A structure with its ties, which `tied` adds to it.
@@ -297,9 +273,10 @@ fn bound<T>(
     (row, springings): (&Row, Option<[usize; 2]>),
     tied: impl FnOnce(Vec<Tie>) -> Result<T, (usize, TieError)>,
 ) -> Reading<T> {
-    let each = ties.iter().enumerate();
-    let placed =
-        each.map(|(index, tie)| tie.placed(row, springings).map_err(|wrong| (index, wrong)));
+    let placed = ties.iter().enumerate().map(|(index, tie)| {
+        let placed = tie.placed(row, springings);
+        placed.map_err(|wrong| (index, wrong))
+    });
     let placed = placed.collect::<Result<Vec<_>, _>>();
     placed
         .and_then(|ties| tied(ties).map_err(|(index, error)| (index, error.to_string())))

@@ -11,16 +11,10 @@
 //! Every number that is a key of another table may be uncertain. A sample gives each of them a value, from one point of
 //! a Sobol sequence with Owen scrambling.
 
-use serde::{Serialize, Serializer};
-use serde_json::{Map, Value};
-
 use super::Scenario;
-use super::relation::Relation::{AtMostOne, OneOf, Requires, Together};
-use super::rule::{ANY_NUMBER, Count, Switch, above, one_of};
+use super::prelude::*;
 use super::sequence::Spacing;
-use super::table::{Reading, Reported, Table};
 use super::variant::{number, parts, value};
-use crate::argument::{plain, short};
 use crate::bisection::{Width, bisect, middle};
 
 named! {
@@ -113,7 +107,7 @@ impl Spread {
             Requires("distribution", "deviation", " beside it"),
             AtMostOne(&["from", "distribution"], SPREAD),
         ];
-        table.relate(&relations).and(table.sound())?;
+        table.agrees(&relations)?;
         let Some((from, to)) = from.zip(to) else {
             return Ok(Self::About {
                 deviation: deviation.ok_or(Reported)?,
@@ -121,14 +115,14 @@ impl Spread {
             });
         };
         let spacing = spacing.unwrap_or(Spacing::Linear);
-        if to <= from {
-            let wrong = format!("is not above `from`; must be above {}", short(from));
-            return Err(table.wrong("to", wrong));
-        }
-        if spacing == Spacing::Logarithmic && from <= 0.0 {
-            let wrong = "needs numbers above 0; use \"linear\" here";
-            return Err(table.wrong("spacing", wrong));
-        }
+        let wrong = format!("is not above `from`; must be above {}", short(from));
+        table.refuse(to <= from, "to", wrong)?;
+        let is_wrong = spacing == Spacing::Logarithmic && from <= 0.0;
+        table.refuse(
+            is_wrong,
+            "spacing",
+            "needs numbers above 0; use \"linear\" here",
+        )?;
         Ok(Self::Range { from, to, spacing })
     }
 
@@ -185,7 +179,7 @@ impl Uncertain {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
-        let total_indices = table.or(TOTAL_INDICES, &Switch, false);
+        let total_indices = table.or(TOTAL_INDICES, &SWITCH, false);
         let mut keys = Vec::new();
         for key in table.keys_of_other_tables() {
             if let Some(spread) = table.table(&key, Spread::read) {
@@ -200,10 +194,9 @@ impl Uncertain {
                  \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
             )));
         }
-        if total_indices && 2 * keys.len() > MAX_KEYS {
-            let wrong = format!("goes with at most {} keys", MAX_KEYS / 2);
-            return Err(table.wrong(TOTAL_INDICES, wrong));
-        }
+        let are_many = total_indices && 2 * keys.len() > MAX_KEYS;
+        let wrong = format!("goes with at most {} keys", MAX_KEYS / 2);
+        table.refuse(are_many, TOTAL_INDICES, wrong)?;
         Ok(Self {
             keys,
             samples,
@@ -248,21 +241,18 @@ impl Uncertain {
     ) -> Reading<Self> {
         let mut faulty = Ok(());
         for index in 0..self.keys.len() {
-            if let Err(wrong) = self.complete_key(index, resolved, scenario) {
+            let (before, others) = self.keys.split_at_mut(index);
+            if let Err(wrong) = others[0].complete(before, resolved, scenario) {
                 faulty = Err(table.wrong_in(&[TABLE], &self.keys[index].key, wrong));
             }
         }
         faulty?;
-        // Reading a scenario takes time: if all keys are allowed together, each is.
-        let all_at = |part: &f64| {
-            let keys = self.keys.iter();
-            keys.map(|key| (&*key.key, key.at(*part)))
-                .collect::<Vec<_>>()
+        let allows = |keys: &[UncertainKey], part: f64| {
+            let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(part))).collect();
+            scenario.with_values(&values)
         };
-        if PROBED
-            .iter()
-            .all(|part| scenario.with_values(&all_at(part)).is_ok())
-        {
+        // Reading a scenario takes time: if all keys are allowed together, each is.
+        if PROBED.iter().all(|part| allows(&self.keys, *part).is_ok()) {
             return Ok(self);
         }
         for key in &self.keys {
@@ -273,9 +263,7 @@ impl Uncertain {
         faulty?;
         // Each key is allowed by itself; two keys that fix the same quantity are not allowed together.
         for count in 2..=self.keys.len() {
-            let keys = &self.keys[..count];
-            let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(0.5))).collect();
-            if let Err(wrong) = scenario.with_values(&values) {
+            if let Err(wrong) = allows(&self.keys[..count], 0.5) {
                 let wrong = format!("contradicts the keys before it: {wrong}");
                 return Err(table.wrong_in(&[TABLE], &self.keys[count - 1].key, wrong));
             }
@@ -283,58 +271,11 @@ impl Uncertain {
         Ok(self)
     }
 
-    /// Adds the scenario's own value of a key, and refuses a key that is no number.
-    fn complete_key(
-        &mut self,
-        index: usize,
-        resolved: &Value,
-        scenario: &Scenario,
-    ) -> Result<(), String> {
-        let (before, [key, ..]) = self.keys.split_at_mut(index) else {
-            return Ok(());
-        };
-        if before
-            .iter()
-            .any(|other| parts(&other.key) == parts(&key.key))
-        {
-            return Err("is the same as a key before it; leave one out".to_owned());
-        }
-        // Where the file gives another number, a length may be written without a point.
-        let resolved = number(resolved, &key.key);
-        let is_given = resolved.is_none();
-        let given = || value(&scenario.to_resolved_json(), &key.key).cloned();
-        match resolved.or_else(given) {
-            Some(Value::Number(number)) if number.is_f64() || is_given => {
-                key.own = number.as_f64();
-            }
-            Some(Value::Number(number)) => {
-                return Err(format!(
-                    "is the whole number {number} in the scenario; only numbers that may have a fraction are uncertain"
-                ));
-            }
-            Some(Value::Null) | None => {}
-            Some(_) => {
-                return Err("is no number in the scenario; only numbers are uncertain".to_owned());
-            }
-        }
-        if key.own.is_none() && matches!(key.spread, Spread::About { .. }) {
-            return Err(format!(
-                "has no value in the scenario from which it could deviate: give {} there, or a range here",
-                key.key
-            ));
-        }
-        Ok(())
-    }
-
     /// Number of cases. With total indices, behind all samples, each sample has one more case for each key, in which only that key
     /// has another value.
     #[must_use]
     pub fn cases(&self) -> usize {
-        let keys = if self.total_indices {
-            self.keys.len()
-        } else {
-            0
-        };
+        let keys = usize::from(self.total_indices) * self.keys.len();
         self.samples.saturating_mul(1 + keys)
     }
 
@@ -366,11 +307,8 @@ impl Uncertain {
     /// The values of a sample, counted from 0, in the order of the keys.
     #[must_use]
     pub fn values(&self, sample: usize) -> Vec<f64> {
-        let parts = self.point(sample).into_iter();
-        parts
-            .zip(&self.keys)
-            .map(|(part, key)| key.at(part))
-            .collect()
+        let parts = self.point(sample).into_iter().zip(&self.keys);
+        parts.map(|(part, key)| key.at(part)).collect()
     }
 
     /// The scenario with these values of the keys, without its studies and with nothing uncertain.
@@ -399,6 +337,40 @@ fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
 const PROBED: [f64; 3] = [0.0, 1.0, 0.381_966];
 
 impl UncertainKey {
+    /// Adds the scenario's own value, and refuses a key that is no number or one of those before it.
+    fn complete(
+        &mut self,
+        before: &[Self],
+        resolved: &Value,
+        scenario: &Scenario,
+    ) -> Result<(), String> {
+        let mut before = before.iter();
+        let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
+        ensure(!is_known, || {
+            "is the same as a key before it; leave one out".to_owned()
+        })?;
+        // Where the file gives another number, a length may be written without a point.
+        let resolved = number(resolved, &self.key);
+        let is_given = resolved.is_none();
+        let given = || value(&scenario.to_resolved_json(), &self.key).cloned();
+        let own = resolved.or_else(given).unwrap_or_default();
+        self.own = own.as_f64();
+        ensure(is_given || !own.is_i64() && !own.is_u64(), || {
+            format!(
+                "is the whole number {own} in the scenario; only numbers that may have a fraction are uncertain"
+            )
+        })?;
+        let wrong = || "is no number in the scenario; only numbers are uncertain".to_owned();
+        ensure(own.is_number() || own.is_null(), wrong)?;
+        let is_enough = self.own.is_some() || matches!(self.spread, Spread::Range { .. });
+        ensure(is_enough, || {
+            let key = &self.key;
+            format!(
+                "has no value in the scenario from which it could deviate: give {key} there, or a range here"
+            )
+        })
+    }
+
     /// Refuses values that the scenario does not allow, with its own values of all other keys.
     fn check(&self, scenario: &Scenario) -> Result<(), String> {
         let largest = self.at(0.0).abs().max(self.at(1.0).abs());
@@ -409,10 +381,8 @@ impl UncertainKey {
             scenario
                 .with_values(&[(&self.key, value)])
                 .map_err(|wrong| {
-                    format!(
-                        "reaches {}, which the scenario does not allow: {wrong}",
-                        plain(value)
-                    )
+                    let value = plain(value);
+                    format!("reaches {value}, which the scenario does not allow: {wrong}")
                 })?;
         }
         Ok(())

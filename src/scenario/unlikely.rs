@@ -2,10 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::bounds::LIKELY_EMBRACE_DEG;
+use super::prelude::*;
 use super::structure::bounds_m;
 use super::{Format, Ground, PulseGround, Scaling, Scenario, Series, Structure};
-use crate::argument::{plain, short};
 use crate::dynamics::model::Model;
 use crate::mechanics::sway::Sway;
 
@@ -49,10 +48,10 @@ impl Scenario {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let of_series = |series: &Series| series.unlikely(gravity_m_s2);
         let mut unlikely = self.structure.unlikely();
-        unlikely.extend((!GRAVITY_M_S2.contains(&gravity_m_s2)).then(|| {
+        if !GRAVITY_M_S2.contains(&gravity_m_s2) {
             let gravity = plain(gravity_m_s2);
-            format!("gravity is {gravity} m/s2, not that of the Earth")
-        }));
+            unlikely.push(format!("gravity is {gravity} m/s2, not that of the Earth"));
+        }
         match &self.ground {
             Some(Ground::Record(record)) => unlikely.extend(record.series().flat_map(of_series)),
             Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, starts_g)),
@@ -62,10 +61,9 @@ impl Scenario {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         let mut records = records.map(of_series).filter(|faults| !faults.is_empty());
         unlikely.extend(records.next().into_iter().flatten());
-        unlikely.extend(match records.count() {
-            0 => None,
-            others => Some(format!("{others} more records of the suite are like that")),
-        });
+        let others = records.count();
+        let more = format!("{others} more records of the suite are like that");
+        unlikely.extend(Some(more).filter(|_| others > 0));
         unlikely.extend(self.takes_long());
         unlikely
     }
@@ -77,11 +75,9 @@ impl Scenario {
     ) -> Option<String> {
         let (along_g, up_g) = (pulse.amplitude_g.abs(), pulse.vertical_amplitude_g.abs());
         let peak_g = along_g.max(up_g);
+        let unit = "is its amplitude in units of gravity?";
         if peak_g > *PEAK_G.end() {
-            let peak = plain(peak_g);
-            return Some(format!(
-                "the pulse peaks at {peak} g: is its amplitude in units of gravity?"
-            ));
+            return Some(format!("the pulse peaks at {} g: {unit}", plain(peak_g)));
         }
         // On springings that have moved the structure stands on three hinges, and a fraction of its own strength starts it.
         if self.motion.supports().is_some() {
@@ -92,7 +88,7 @@ impl Scenario {
         (times > PEAK_OVER_INCIPIENT).then(|| {
             let peak = plain(along_g);
             format!(
-                "the pulse peaks at {peak} g, {times:.0} times what starts the structure: is its amplitude in units of gravity?"
+                "the pulse peaks at {peak} g, {times:.0} times what starts the structure: {unit}"
             )
         })
     }
@@ -126,7 +122,7 @@ fn starts_g(model: &dyn Model) -> Option<f64> {
 
 impl Structure {
     fn unlikely(&self) -> Vec<String> {
-        let (what, longest_m) = match self {
+        let longest = match self {
             Self::Arch(arch) => {
                 let (radius_m, embrace_deg) = (arch.mean_radius_m, arch.embrace_deg);
                 let thick_m = radius_m * arch.thickness_ratio;
@@ -141,20 +137,23 @@ impl Structure {
                     .flatten()
                     .collect();
             }
-            Self::Column(column) => ("column", column.height_m.max(column.width_m)),
+            Self::Column(column) => {
+                let longest_m = column.height_m.max(column.width_m);
+                long("the column measures", longest_m, SIZE_M)
+            }
             Self::Masonry(masonry) => {
                 let [low_m, high_m] = bounds_m(&masonry.row);
-                ("structure", (high_m - low_m).max())
+                long("the structure measures", (high_m - low_m).max(), SIZE_M)
             }
         };
-        let long = long(&format!("the {what} measures"), longest_m, SIZE_M);
-        long.into_iter().collect()
+        longest.into_iter().collect()
     }
 }
 
 /// Warns that a length is larger than usual, and names a unit in which it would be usual.
 fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
-    let unit = if length_m > 10.0 * usual_m {
+    let is_huge = length_m > 10.0 * usual_m;
+    let unit = if is_huge {
         "millimetres"
     } else {
         "centimetres"

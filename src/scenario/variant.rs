@@ -1,9 +1,8 @@
 //! A scenario with values that differ from those in its text.
 
-use serde_json::Value;
-
 use super::document::Document;
-use super::{Changes, Scenario, Series, shown, span, table};
+use super::prelude::*;
+use super::{Assignment, Changes, Scenario, Series, span, table};
 
 /// Tables that describe a study or the check, not the structure or ground motion under study.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
@@ -23,25 +22,40 @@ impl Scenario {
             }
         }
         make_room(&mut resolved, values);
+        let set = values.iter().map(|(key, value)| assignment(key, *value));
+        let set = set.collect::<Result<Vec<_>, String>>()?;
         let mut document = Document::of_json(resolved, &self.files.folder);
-        for (key, value) in values {
-            let parts = parts(key);
-            return Err(match parts[..] {
-                [study, ..] if STUDIES.contains(&study) => format!(
-                    "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{study}] describes a study"
-                ),
-                [_, _, ..] if parts.iter().all(|part| is_name(part)) => {
-                    document.put_number(&parts, *value)?;
-                    continue;
-                }
-                _ => format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
-            });
-        }
+        document.assign(&set);
         let known: Vec<Series> = self.series().cloned().collect();
         let changes = Changes::default();
         table::read_document(document, |table| Self::read_table(table, &known, &changes))
             .map_err(|faults| shown(&faults[0].message))
     }
+}
+
+/// Sets a number of the structure or of its motion.
+fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
+    let parts = parts(key);
+    if STUDIES.contains(&parts[0]) {
+        return Err(format!(
+            "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{}] describes a study",
+            parts[0]
+        ));
+    }
+    ensure(
+        parts.len() > 1 && parts.iter().all(|part| is_name(part)),
+        || format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
+    )?;
+    // Whole numbers may stand for counts.
+    let number = match value.fract() == 0.0 && value.abs() < 1e15 {
+        true => format!("{value:.0}"),
+        false => format!("{value:?}").to_lowercase(),
+    };
+    Ok(Assignment {
+        given: key.to_owned(),
+        text: format!("{} = {number}", parts.join(".")),
+        depth: parts.len(),
+    })
 }
 
 /// Whether a text is a key of TOML without quotation marks.
@@ -115,9 +129,8 @@ fn make_room(table: &mut Value, values: &[(&str, f64)]) {
     ) && let Some(last_deg) = joints_deg.last().and_then(Value::as_f64)
     {
         let angles_deg = joints_deg.iter().filter_map(Value::as_f64);
-        let mut angles_deg: Vec<f64> = angles_deg
-            .map(|angle_deg| angle_deg / last_deg * embrace_deg)
-            .collect();
+        let angles_deg = angles_deg.map(|angle_deg| angle_deg / last_deg * embrace_deg);
+        let mut angles_deg: Vec<f64> = angles_deg.collect();
         if let Some(last) = angles_deg.last_mut() {
             *last = embrace_deg;
         }

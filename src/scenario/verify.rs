@@ -29,18 +29,11 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::ops::Bound::{Excluded, Unbounded};
 use std::path::Path;
 
-use serde::Serialize;
-use serde::ser::{SerializeMap as _, Serializer};
-
-use super::bounds::MAGNITUDE;
-use super::listing::{Listing, layout_keys};
+use super::listing::{Listing, written};
+use super::prelude::*;
 use super::record::{Format, LineFault, Series, faulty, read_numbers};
-use super::relation::Relation::{OneOf, Together};
-use super::rule::{Number, OneOrMore, Text, above, between, one_of, within};
-use super::table::{Reading, Reported, Table};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use crate::dynamics::demand::points::PointSpectrum;
@@ -129,17 +122,15 @@ pub struct Verify {
     pub records: Records,
 }
 
-/// Records of the motion at the place of the mechanism, for each limit state; empty for a state that is not checked with records.
+/// Records of the motion at the place of the mechanism, for each limit state that is checked with records.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Records {
-    /// For SLV.
-    pub slv: Vec<Series>,
-    /// For SLC.
-    pub slc: Vec<Series>,
-}
+pub struct Records(ByState<Vec<Series>>);
 
-const SLV_RECORDS: &str = "slv_records";
-const SLC_RECORDS: &str = "slc_records";
+/// Keys that name the records of a limit state.
+const RECORDS: [(LimitState, &str); 2] = [
+    (LimitState::Slv, "slv_records"),
+    (LimitState::Slc, "slc_records"),
+];
 /// The least number of records of which the worst counts (NTC 2018, § 7.3.5).
 const LEAST_RECORDS: usize = 3;
 
@@ -147,18 +138,11 @@ impl Records {
     /// The records of a state.
     #[must_use]
     pub fn of(&self, state: LimitState) -> &[Series] {
-        match state {
-            LimitState::Sld => &[],
-            LimitState::Slv => &self.slv,
-            LimitState::Slc => &self.slc,
-        }
+        self.0.get(&state).map_or(&[], Vec::as_slice)
     }
 
     fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
-        let patterns = [SLV_RECORDS, SLC_RECORDS].map(|key| {
-            let patterns = table.optional(key, &OneOrMore(&Text));
-            patterns.map(|patterns| (key, patterns))
-        });
+        let patterns = RECORDS.map(|(_, key)| Some((key, table.optional(key, &OneOrMore(&TEXT))?)));
         let given: Vec<_> = patterns.into_iter().flatten().collect();
         if given.is_empty() && !table.describes() {
             return Ok(Self::default());
@@ -167,27 +151,25 @@ impl Records {
         let listing = Listing::read(table, &given, format);
         table.sound()?;
         let gravity_m_s2 = gravity_m_s2.ok_or(Reported)?;
-        let accept = |series: &Series| match series.peak_g(gravity_m_s2) {
-            0.0 => Err("is zero throughout".to_owned()),
-            _ => series.check_strength(gravity_m_s2),
+        let accept = |series: &Series| {
+            series.check_not_zero(gravity_m_s2)?;
+            series.check_strength(gravity_m_s2)
         };
         let mut records = Self::default();
         for (key, series) in listing.series(table, accept)? {
             table.note_file(&series.file);
-            match key {
-                SLV_RECORDS => records.slv.push(series),
-                _ => records.slc.push(series),
-            }
+            let [(slv, slv_records), (slc, _)] = RECORDS;
+            let state = if key == slv_records { slv } else { slc };
+            records.0.entry(state).or_default().push(series);
         }
-        for (key, found) in [(SLV_RECORDS, &records.slv), (SLC_RECORDS, &records.slc)] {
-            let count = found.len();
-            if table.gives(key) && count < LEAST_RECORDS {
-                let wrong = format!(
-                    "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
-                     (NTC 2018, § 7.3.5)"
-                );
-                table.wrong(key, wrong);
-            }
+        for (state, key) in RECORDS {
+            let count = records.of(state).len();
+            let is_few = table.gives(key) && count < LEAST_RECORDS;
+            let wrong = format!(
+                "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
+                 (NTC 2018, § 7.3.5)"
+            );
+            let _ = table.refuse(is_few, key, wrong);
         }
         Ok(records)
     }
@@ -195,18 +177,7 @@ impl Records {
 
 impl Serialize for Records {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (key, records) in [(SLV_RECORDS, &self.slv), (SLC_RECORDS, &self.slc)] {
-            if !records.is_empty() {
-                let files: Vec<_> = records.iter().map(|series| &series.file).collect();
-                map.serialize_entry(key, &files)?;
-            }
-        }
-        let all = self.slv.iter().chain(&self.slc);
-        for (key, value) in layout_keys(all) {
-            map.serialize_entry(&key, &value)?;
-        }
-        map.end()
+        written(&RECORDS.map(|(state, key)| (key, self.of(state)))).serialize(serializer)
     }
 }
 
@@ -237,16 +208,11 @@ impl Default for Verify {
 impl Verify {
     /// Reads `[verify]`, whose files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
-        let default = Self::default();
         let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
-            confidence_factor: table.or(
-                "confidence_factor",
-                &CONFIDENCE,
-                default.confidence_factor,
-            ),
-            behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, default.behaviour_factor),
-            sides: table.or("sides", &sides, default.sides),
+            confidence_factor: table.or("confidence_factor", &CONFIDENCE, CONFIDENCE_FACTOR),
+            behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, BEHAVIOUR_FACTOR),
+            sides: table.or("sides", &sides, CheckedSides::Both),
             free_standing: table.table("free_standing", FreeStanding::read),
             records: Records::read(table, gravity_m_s2)?,
         })
@@ -254,22 +220,17 @@ impl Verify {
 
     /// Refuses records for states that are not checked, and records if only one side is checked.
     pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> Reading<()> {
-        for (key, state) in [
-            (SLV_RECORDS, LimitState::Slv),
-            (SLC_RECORDS, LimitState::Slc),
-        ] {
-            if self.records.of(state).is_empty() {
-                continue;
-            }
-            let asked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
-            if !asked {
-                let wrong = format!("needs [demand.{}], which sets the limits", state.name());
-                return Err(table.wrong_in(&["verify"], key, wrong));
-            }
-            if self.sides != CheckedSides::Both {
-                let wrong = "goes with sides = \"both\": histories sway to both sides";
-                return Err(table.wrong_in(&["verify"], key, wrong));
-            }
+        let has_records = |(state, _): &(LimitState, _)| !self.records.of(*state).is_empty();
+        for (state, key) in RECORDS.into_iter().filter(has_records) {
+            let is_checked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
+            let wrong = match self.sides {
+                _ if !is_checked => {
+                    format!("needs [demand.{}], which sets the limits", state.name())
+                }
+                CheckedSides::Both => continue,
+                _ => "goes with sides = \"both\": histories sway to both sides".to_owned(),
+            };
+            return Err(table.wrong_in(&["verify"], key, wrong));
         }
         Ok(())
     }
@@ -277,29 +238,22 @@ impl Verify {
 
 impl FreeStanding {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
         let t0_s = table.optional("t0_s", &PERIOD_S);
-        let read = (
-            table.optional("kappa", &above(0.0, 100.0)),
-            table.optional("length_m", &MAGNITUDE),
-            table.optional("thickness_m", &MAGNITUDE),
-            table.optional("modulus_gpa", &above(0.0, 1e3)),
-        );
-        table
-            .relate(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])
-            .and(table.sound())?;
-        match (t0_s, read) {
-            (Some(t0_s), _) => Ok(Self::Period { t0_s }),
-            (None, (Some(kappa), Some(length_m), Some(thickness_m), Some(modulus_gpa))) => {
-                Ok(Self::Elastic {
-                    kappa,
-                    length_m,
-                    thickness_m,
-                    modulus_gpa,
-                })
-            }
-            _ => Err(Reported),
+        let kappa = table.optional("kappa", &above(0.0, 100.0));
+        let length_m = table.optional("length_m", &MAGNITUDE);
+        let thickness_m = table.optional("thickness_m", &MAGNITUDE);
+        let modulus_gpa = table.optional("modulus_gpa", &above(0.0, 1e3));
+        let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
+        table.agrees(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])?;
+        if let Some(t0_s) = t0_s {
+            return Ok(Self::Period { t0_s });
         }
+        Ok(Self::Elastic {
+            kappa: kappa.ok_or(Reported)?,
+            length_m: length_m.ok_or(Reported)?,
+            thickness_m: thickness_m.ok_or(Reported)?,
+            modulus_gpa: modulus_gpa.ok_or(Reported)?,
+        })
     }
 }
 
@@ -476,11 +430,9 @@ impl Demand {
     ) -> Reading<Self> {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
         let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
-            for key in CODE_KEYS {
-                if table.gives(key) {
-                    let wrong = "goes with ag_g, f0 and tc_star_s; spectra from files are taken as they are: leave it out";
-                    return Err(table.wrong(key, wrong));
-                }
+            if let Some(key) = CODE_KEYS.into_iter().find(|key| table.gives(key)) {
+                let wrong = "goes with ag_g, f0 and tc_star_s; spectra from files are taken as they are: leave it out";
+                return Err(table.wrong(key, wrong));
             }
             Self::Points(points(table)?)
         } else {
@@ -511,11 +463,10 @@ impl CodeDemand {
         let categories = one_of(Topography::ALL, Topography::name);
         let category = table.optional("topography", &categories);
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
-        let keys = &["topography", "topographic_factor"];
-        let site = table.relate(&[OneOf(keys, None)]).and(table.sound());
+        let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
         let category = category.map(Relief::Topography);
         let relief = category.or(factor.map(Relief::TopographicFactor));
-        let site = site.ok().zip(relief).map(|((), relief)| Site {
+        let site = relief.filter(|_| is_site.is_ok()).map(|relief| Site {
             soil,
             topographic_factor: relief.factor(),
         });
@@ -551,10 +502,9 @@ impl Height {
     fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> Reading<Self> {
         let modes = table.tables("modes", BuildingMode::read);
         table.sound()?;
+        let missing = "lacks `modes`: give the modes of the building, at least the first";
         if modes.is_empty() {
-            return Err(table.wrong_itself(
-                "lacks `modes`: give the modes of the building, at least the first",
-            ));
+            return Err(table.wrong_itself(missing));
         }
         for state in LimitState::ALL {
             let lacks = |mode: &BuildingMode| !mode.states.contains_key(state);
@@ -606,15 +556,15 @@ impl BuildingMode {
 
 impl PointDemand {
     fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> Reading<Self> {
-        let spectrum = table.required("spectrum", &Text);
+        let spectrum = table.required("spectrum", &TEXT);
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
         let default = StateRule::circolare(state, confidence_factor);
         let rule = default.map(|default| {
             table.table_or_defaults("state", |table| StateRule::read(table, default))
         });
         table.sound()?;
-        let points = read_points(&table.path(&spectrum), damping_percent)
-            .map_err(|wrong| table.wrong("spectrum", wrong))?;
+        let points = read_points(&table.path(&spectrum), damping_percent);
+        let points = table.accept("spectrum", points)?;
         table.note_file(&spectrum);
         Ok(Self {
             spectrum,
@@ -642,17 +592,11 @@ impl StateRule {
 /// Reads the points of a spectrum from a file; the error explains the fault in the file.
 fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, String> {
     let rows = read_numbers::<2>(path)?;
-    let points = rows
-        .iter()
-        .map(|(_, [period_s, acceleration_g])| (*period_s, *acceleration_g));
+    let points = rows.iter().map(|(_, [period_s, at_g])| (*period_s, *at_g));
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
-        let line = error.row.and_then(|row| rows.get(row)).map(|row| row.0);
-        match line {
-            Some(line) => {
-                let message = error.to_string();
-                faulty(path, &LineFault { line, message })
-            }
-            None => error.to_string(),
-        }
+        let (line, message) = (error.row.and_then(|row| rows.get(row)), error.to_string());
+        line.map_or(message.clone(), |(line, _)| {
+            faulty(path, &LineFault::on(*line)(message))
+        })
     })
 }

@@ -4,15 +4,15 @@
 
 use std::collections::HashMap;
 
-use super::samples::{Contents, LineFault, Values, checked_step, number};
+use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number};
 use super::unit::{Recorded, Unit};
-use crate::scenario::error::excerpt;
+use crate::scenario::prelude::*;
 
 /// Number of lines that may make up the header.
 const MAX_HEADER_LINES: usize = 200;
 
 /// Reads the samples; the first is at time zero.
-pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFault> {
+pub(super) fn parse(text: &str, quantity: Recorded) -> Parsed<Contents> {
     const STEP: &str = "SAMPLING_INTERVAL_S";
     let (mut header, mut last) = (HashMap::new(), 0);
     for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
@@ -46,9 +46,6 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Result<Contents, LineFaul
 }
 
 fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
-    if held.eq_ignore_ascii_case(quantity.name()) {
-        return Ok(());
-    }
     let wanted = match quantity {
         Recorded::Acceleration => "an acceleration history",
         Recorded::Velocity => "a velocity history",
@@ -57,10 +54,9 @@ fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
         "VELOCITY" => ", unless you give `quantity = \"velocity\"`",
         _ => "",
     };
-    Err(format!(
-        "the file holds {}; must be {wanted}{unless}",
-        excerpt(held)
-    ))
+    ensure(held.eq_ignore_ascii_case(quantity.name()), || {
+        format!("the file holds {}; must be {wanted}{unless}", excerpt(held))
+    })
 }
 
 #[cfg(test)]

@@ -4,9 +4,11 @@
 //! many wordings. Accelerations follow, in units of gravity unless a line says otherwise, or velocities. Fortran wrote
 //! them several to a line, in fixed width, so that a minus sign may be all that separates two of them.
 
-use super::samples::{Contents, LineFault, MAX_SAMPLES, Values, checked_step, number};
+use super::samples::{
+    Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
+};
 use super::unit::{Recorded, Unit};
-use crate::argument::plain;
+use crate::scenario::prelude::*;
 
 /// The header is searched up to this line.
 const MAX_HEADER_LINES: usize = 64;
@@ -14,41 +16,37 @@ const MAX_HEADER_LINES: usize = 64;
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
-pub(super) fn parse(
-    text: &str,
-    unit: Option<Unit>,
-    quantity: Recorded,
-) -> Result<Contents, LineFault> {
-    let header = Header::parse(text, unit, quantity)?;
+pub(super) fn parse(text: &str, unit: Option<Unit>, quantity: Recorded) -> Parsed<Contents> {
+    let Header {
+        line,
+        count,
+        step_s,
+        unit: named,
+    } = Header::parse(text, unit, quantity)?;
     let gravity = Some(Unit::Gravity).filter(|_| quantity == Recorded::Acceleration);
-    let unit = unit.or(header.unit).or(gravity);
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
-    let unit = unit.ok_or_else(|| LineFault::on(header.line)(missing))?;
-    let values = Values::below(text, header.line, words)?;
-    values.check_count((header.line, header.count), "NPTS")?;
-    let samples = values.evenly(header.step_s, header.line, "DT")?;
-    Ok(Contents::new(samples, unit))
+    let unit = unit.or(named).or(gravity);
+    let unit = unit.ok_or_else(|| LineFault::on(line)(missing))?;
+    let values = Values::below(text, line, words)?;
+    values.check_count((line, count), "NPTS")?;
+    Ok(Contents::new(values.evenly(step_s, line, "DT")?, unit))
 }
 
 /// The numbers of a line as written, even where only a sign separates them.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     // Some files end with the end-of-file character of DOS.
     let blank = |c: char| c.is_whitespace() || c == ',' || c == '\u{1a}';
-    line.split(blank).flat_map(|run| {
-        let mut rest = run;
+    line.split(blank).flat_map(|mut rest| {
         std::iter::from_fn(move || {
-            if rest.is_empty() {
-                return None;
-            }
             let bytes = rest.as_bytes();
             let is_next = |&at: &usize| {
                 matches!(bytes[at], b'+' | b'-')
                     && !matches!(bytes[at - 1], b'e' | b'E' | b'd' | b'D')
             };
             let end = (1..bytes.len()).find(is_next).unwrap_or(bytes.len());
-            let (word, others) = rest.split_at(end);
-            rest = others;
-            Some(word)
+            let word;
+            (word, rest) = rest.split_at(end);
+            Some(word).filter(|word| !word.is_empty())
         })
     })
 }
@@ -64,41 +62,46 @@ struct Header {
     unit: Option<Unit>,
 }
 
-/// A part of the line with the numbers that matters.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Item {
-    Count,
-    Step,
-    Number(f64),
-}
+const COUNT: &str = "NPTS";
+const STEP: &str = "DT";
 
 impl Header {
-    fn parse(text: &str, known: Option<Unit>, quantity: Recorded) -> Result<Self, LineFault> {
+    fn parse(text: &str, known: Option<Unit>, quantity: Recorded) -> Parsed<Self> {
         let (mut unit, mut items, mut last) = (None, Vec::new(), 1);
-        for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
-            last = number;
-            let end = line.char_indices().nth(MAX_HEADER_LINE_CHARS);
-            let line = end.map_or(line, |(end, _)| &line[..end]);
-            let fault = LineFault::on::<String>(number);
-            if let Some(what) = wrong_quantity(line, quantity) {
-                return Err(fault(what));
-            }
-            if let Some(named) = unit_named(line) {
+        for (text, line) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
+            last = line;
+            let end = text.char_indices().nth(MAX_HEADER_LINE_CHARS);
+            let text = end.map_or(text, |(end, _)| &text[..end]);
+            let fault = LineFault::on::<String>(line);
+            check_quantity(text, quantity).map_err(fault)?;
+            if let Some(named) = unit_named(text) {
                 let remedy = "give `unit`: what the samples are in";
                 unit = match known {
                     Some(_) => Unit::written(named).or(known),
                     None => Some(Unit::of_header(named, quantity, remedy).map_err(fault)?),
                 };
             }
-            let here = Item::all(line);
-            let begins = here.contains(&Item::Count);
+            let begins = header_words(text).any(|word| word.eq_ignore_ascii_case(COUNT));
             if begins || !items.is_empty() {
-                items.extend(here);
+                items.extend(header_words(text).filter(|word| is_item(word)));
             }
-            if items.contains(&Item::Step) {
+            if position(&items, STEP).is_some() {
                 let missing = || fault("gives no numbers for NPTS and DT".to_owned());
                 let (count, step_s) = values(&items).ok_or_else(missing)?;
-                return Self::checked(number, count, step_s, unit).map_err(fault);
+                let step_s = checked_step(STEP, step_s).map_err(fault)?;
+                let is_count = count.fract() == 0.0 && (2.0..=MAX_SAMPLES as f64).contains(&count);
+                ensure(is_count, || {
+                    let count = plain(count);
+                    fault(format!(
+                        "{COUNT} is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
+                    ))
+                })?;
+                return Ok(Self {
+                    line,
+                    count,
+                    step_s,
+                    unit,
+                });
             }
             // The number of samples and their spacing may be on two consecutive lines.
             if !items.is_empty() && !begins {
@@ -111,57 +114,30 @@ impl Header {
         };
         Err(LineFault::on(last)(message))
     }
-
-    fn checked(line: usize, count: f64, step_s: f64, unit: Option<Unit>) -> Result<Self, String> {
-        let step_s = checked_step("DT", step_s)?;
-        if !(count.fract() == 0.0 && (2.0..=MAX_SAMPLES as f64).contains(&count)) {
-            let count = plain(count);
-            return Err(format!(
-                "NPTS is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
-            ));
-        }
-        Ok(Self {
-            line,
-            count,
-            step_s,
-            unit,
-        })
-    }
 }
 
-impl Item {
-    fn all(line: &str) -> Vec<Self> {
-        let parts = line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c));
-        parts
-            .filter_map(|part| {
-                if part.eq_ignore_ascii_case("NPTS") {
-                    Some(Self::Count)
-                } else if part.eq_ignore_ascii_case("DT") {
-                    Some(Self::Step)
-                } else {
-                    leading_number(part).map(Self::Number)
-                }
-            })
-            .collect()
-    }
+/// Whether a word of the header is a label or a number.
+fn is_item(word: &str) -> bool {
+    position(&[word], COUNT).is_some()
+        || position(&[word], STEP).is_some()
+        || leading_number(word).is_some()
+}
+
+fn position(items: &[&str], label: &str) -> Option<usize> {
+    items
+        .iter()
+        .position(|item| item.eq_ignore_ascii_case(label))
 }
 
 /// Number of samples and time step: the number after each label, or else the first two numbers in
 /// the order of the labels, as in `4096 0.01 NPTS, DT`.
-fn values(items: &[Item]) -> Option<(f64, f64)> {
-    let position = |label: Item| items.iter().position(|item| *item == label);
-    let (count, step) = (position(Item::Count)?, position(Item::Step)?);
-    let after = |at: usize| match items.get(at + 1) {
-        Some(Item::Number(x)) => Some(*x),
-        _ => None,
-    };
+fn values(items: &[&str]) -> Option<(f64, f64)> {
+    let (count, step) = (position(items, COUNT)?, position(items, STEP)?);
+    let after = |at: usize| leading_number(items.get(at + 1)?);
     if let (Some(count), Some(step)) = (after(count), after(step)) {
         return Some((count, step));
     }
-    let mut numbers = items.iter().filter_map(|item| match item {
-        Item::Number(x) => Some(*x),
-        _ => None,
-    });
+    let mut numbers = items.iter().filter_map(|item| leading_number(item));
     let (first, second) = (numbers.next()?, numbers.next()?);
     Some(if count < step {
         (first, second)
@@ -181,23 +157,24 @@ fn leading_number(word: &str) -> Option<f64> {
         .find_map(|end| number(&word[..end]).ok())
 }
 
-/// Explains why a line of the header shows that the file holds something other than the wanted quantity.
-fn wrong_quantity(line: &str, wanted: Recorded) -> Option<String> {
+/// Refuses a file if a line of its header shows that it holds something other than the wanted quantity.
+fn check_quantity(line: &str, wanted: Recorded) -> Result<(), String> {
     let line = line.to_ascii_uppercase();
-    let holds = |name: &str| line.contains(&format!("{} TIME", name.to_ascii_uppercase()));
-    if holds("displacement") {
-        let wrong =
-            "the file holds a displacement history; must be an acceleration or velocity history";
-        return Some(wrong.to_owned());
-    }
-    let other = Recorded::ALL.iter().find(|quantity| holds(quantity.name()));
-    let wrong = match other.filter(|quantity| **quantity != wanted)? {
-        Recorded::Velocity => "the file holds a velocity history: give `quantity = \"velocity\"`",
-        Recorded::Acceleration => {
+    let holds = |name: &str| line.contains(&format!("{name} TIME"));
+    let (velocities, accelerations) = (holds("VELOCITY"), holds("ACCELERATION"));
+    Err(match wanted {
+        _ if holds("DISPLACEMENT") => {
+            "the file holds a displacement history; must be an acceleration or velocity history"
+        }
+        Recorded::Acceleration if velocities && !accelerations => {
+            "the file holds a velocity history: give `quantity = \"velocity\"`"
+        }
+        Recorded::Velocity if accelerations => {
             "the file holds an acceleration history: leave out `quantity = \"velocity\"`"
         }
-    };
-    Some(wrong.to_owned())
+        _ => return Ok(()),
+    }
+    .to_owned())
 }
 
 /// The unit that a line of the header names.

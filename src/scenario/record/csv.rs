@@ -8,17 +8,14 @@ use std::io::Read as _;
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
 use super::layout::{COLUMN_NUMBER, Decimal, Layout, TableColumn, Times};
-use super::samples::{
-    Contents, LineFault, MAX_SAMPLES, MAX_TIME_S, MIN_STEP_S, Samples, Values, in_range, number,
-};
-use crate::argument::{plain, short};
-use crate::scenario::error::excerpt;
+use super::samples::*;
+use crate::scenario::prelude::*;
 
 /// Reads the samples, in the unit of the file.
 ///
 /// Blank lines and lines that begin with `#` are skipped. The first of the other lines may hold the names of
 /// the columns; it must if a column is chosen by name.
-pub(super) fn parse(text: &str, layout: &Layout) -> Result<Contents, LineFault> {
+pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let table = without_first(text, layout.skip_rows);
     let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
         return Err(LineFault::on(1)("a table needs its times and its unit"));
@@ -35,28 +32,25 @@ pub(super) fn parse(text: &str, layout: &Layout) -> Result<Contents, LineFault> 
 }
 
 /// Reads a table with one sample per row.
-fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Result<Samples, LineFault> {
+fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Parsed<Samples> {
     let mut rows = Rows::new(text, layout.decimal);
-    let Some(first) = rows.next()? else {
-        return Err(nothing(text));
-    };
+    let first = rows.next().ok_or_else(|| nothing(text))?;
     let columns = Columns::find(layout, times, &first)?;
     let unit_s = columns.time_unit_s(&first);
     let (mut times_s, mut values) = (Vec::new(), Values::default());
     values.line = first.line;
-    let (header, mut next) = if columns.has_names {
-        (Some(first), rows.next()?)
+    let begin = if columns.has_names {
+        let second = rows.next();
+        first.check_names(second.as_ref().filter(|_| columns.by_name))?;
+        second
     } else {
-        (None, Some(first))
+        Some(first)
     };
-    while let Some(row) = next {
-        let is_first = values.values.is_empty();
-        if let Some(header) = header.as_ref().filter(|_| is_first) {
-            rows.check_names(header, &row, columns.by_name)?;
-        }
-        let [time_s, value] = columns.values(&row).map_err(|message| {
-            let hint = is_first.then(|| rows.where_they_begin(|row| columns.values(row).is_ok()));
-            row.fault(message + &hint.unwrap_or_default())
+    for row in begin.into_iter().chain(rows) {
+        let [time_s, value] = columns.values(&row).map_err(|wrong| {
+            let rows = Rows::new(text, layout.decimal);
+            let hint = begin_below(&row, rows, &values, |row| columns.values(row).is_ok());
+            row.fault(wrong + &hint)
         })?;
         columns.check_count(&row).map_err(LineFault::on(row.line))?;
         values.push(row.line, value)?;
@@ -65,7 +59,6 @@ fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Result<Samples, 
             check_time(time_s, times_s.last().copied()).map_err(LineFault::on(row.line))?;
             times_s.push(time_s);
         }
-        next = rows.next()?;
     }
     match *times {
         Times::Step(step_s) => {
@@ -81,8 +74,7 @@ fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Result<Samples, 
 
 /// Reports that a table has no rows.
 fn nothing(text: &str) -> LineFault {
-    let lines_that_are_not = |line: &&str| line.is_empty();
-    let line = text.lines().take_while(lines_that_are_not).count();
+    let line = text.lines().take_while(|line| line.is_empty()).count();
     LineFault::on(line.max(1))("there are no samples")
 }
 
@@ -100,42 +92,35 @@ fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
 
 /// Refuses a time that is out of range, or not later than the time before it.
 fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
-    if time_s.abs() > MAX_TIME_S {
+    ensure(time_s.abs() <= MAX_TIME_S, || {
         let (time, most) = (plain(time_s), short(MAX_TIME_S));
-        return Err(format!(
-            "the time {time} s is out of range; its magnitude must be at most {most} s"
-        ));
-    }
-    match before_s {
-        Some(before_s) if time_s - before_s < MIN_STEP_S => {
-            let [time, before, least] = [time_s, before_s, MIN_STEP_S].map(short);
-            Err(format!(
-                "the time does not increase: {time} s follows {before} s; allowed are steps of at least {least} s"
-            ))
-        }
-        _ => Ok(()),
-    }
+        format!("the time {time} s is out of range; its magnitude must be at most {most} s")
+    })?;
+    let before_s = before_s.unwrap_or(f64::NEG_INFINITY);
+    ensure(time_s - before_s >= MIN_STEP_S, || {
+        let [time, before, least] = [time_s, before_s, MIN_STEP_S].map(short);
+        format!(
+            "the time does not increase: {time} s follows {before} s; allowed are steps of at least {least} s"
+        )
+    })
 }
 
 /// The columns of times and accelerations in a row, counted from 0.
-struct Columns {
+struct Columns<'a> {
+    layout: &'a Layout,
     /// `None` if times are at even steps.
     time: Option<usize>,
     acceleration: usize,
-    /// Whether the acceleration column was chosen; if not, there must be no other.
-    is_chosen: bool,
-    decimal: Decimal,
     /// Whether a column is chosen by its name.
     by_name: bool,
     /// Whether the first row has names instead of numbers.
     has_names: bool,
 }
 
-impl Columns {
-    fn find(layout: &Layout, times: &Times, first: &Row<'_>) -> Result<Self, LineFault> {
+impl<'a> Columns<'a> {
+    fn find(layout: &'a Layout, times: &Times, first: &Row<'_>) -> Parsed<Self> {
         let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
-        let index =
-            |column: &TableColumn| column.index(&names).map_err(|message| first.fault(message));
+        let index = |column: &TableColumn| column.index(&names).map_err(|wrong| first.fault(wrong));
         let time = match times {
             Times::Column(column) => Some(column),
             Times::Step(_) => None,
@@ -143,22 +128,17 @@ impl Columns {
         let chosen = layout.acceleration_column.as_ref();
         let is_name = |column: &&TableColumn| matches!(column, TableColumn::Name(_));
         let by_name = time.iter().chain(&chosen).any(is_name);
-        let (time, acceleration) = (
-            time.map(index).transpose()?,
-            chosen.map_or(Ok(usize::from(time.is_some())), index)?,
-        );
-        let mut read = time.iter().chain([&acceleration]);
-        let is_named = |at: &usize| {
-            let cell = names.get(*at);
-            cell.is_none_or(|cell| names_column(cell, layout.decimal))
-        };
+        let time = time.map(index).transpose()?;
+        let acceleration = chosen.map_or(Ok(usize::from(time.is_some())), index)?;
+        let mut read = time.iter().chain([&acceleration]).map(|at| names.get(*at));
+        let has_names =
+            by_name || read.all(|cell| cell.is_none_or(|cell| names_column(cell, layout.decimal)));
         Ok(Self {
-            has_names: by_name || read.all(is_named),
+            layout,
             time,
             acceleration,
-            is_chosen: chosen.is_some(),
-            decimal: layout.decimal,
             by_name,
+            has_names,
         })
     }
 
@@ -178,7 +158,7 @@ impl Columns {
     /// Time, or zero if the table has none, and acceleration.
     fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
         let value = |index: usize| match row.cells().nth(index) {
-            Some(cell) => self.decimal.number(cell),
+            Some(cell) => self.layout.decimal.number(cell),
             None => Err(self.no_column(index, row)),
         };
         let time_s = self.time.map_or(Ok(0.0), value)?;
@@ -187,11 +167,10 @@ impl Columns {
 
     /// Refuses a row with several columns if none was chosen.
     fn check_count(&self, row: &Row<'_>) -> Result<(), String> {
-        let (count, samples) = (row.count(), row.count() - usize::from(self.time.is_some()));
-        if self.is_chosen || samples <= 1 {
-            return Ok(());
-        }
-        Err(match self.time {
+        let count = row.count();
+        let is_chosen = self.layout.acceleration_column.is_some();
+        let is_one = count - usize::from(self.time.is_some()) <= 1;
+        ensure(is_chosen || is_one, || match self.time {
             None => format!(
                 "there are {count} columns: give `acceleration_column`, the one to read, or `wrapped = true`, if a \
                  row holds {count} samples, one after another"
@@ -246,18 +225,16 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
 const MAX_NUMBER: f64 = 1e6;
 
 /// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
-pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N])>, LineFault> {
-    let mut rows = Rows::new(text, Decimal::Point);
+pub(super) fn numbers<const N: usize>(text: &str) -> Parsed<Vec<(usize, [f64; N])>> {
     let mut found = Vec::new();
-    while let Some(row) = rows.next()? {
-        if found.is_empty() && row.cells().all(|cell| names_column(cell, Decimal::Point)) {
+    for row in Rows::new(text, Decimal::Point) {
+        if found.is_empty() && row.has_no_number(Decimal::Point) {
             continue;
         }
-        let values = row.cells().map(|cell| match number(cell)? {
-            value if value.abs() <= MAX_NUMBER => Ok(value),
-            value => Err(format!(
-                "`{value:?}` is out of range; must be within 1e6 of zero"
-            )),
+        let values = row.cells().map(|cell| {
+            let value = number(cell)?;
+            let wrong = || format!("`{value:?}` is out of range; must be within 1e6 of zero");
+            ensure(value.abs() <= MAX_NUMBER, wrong).map(|()| value)
         });
         let values = values.collect::<Result<Vec<_>, String>>();
         let values = <[f64; N]>::try_from(values.map_err(LineFault::on(row.line))?);
@@ -265,9 +242,8 @@ pub(super) fn numbers<const N: usize>(text: &str) -> Result<Vec<(usize, [f64; N]
             let (text, count) = (excerpt(row.text), values.len());
             row.fault(format!("`{text}` has {count} cells, not {N}"))
         })?;
-        if found.len() == MAX_SAMPLES {
-            return Err(row.fault(format!("more than {MAX_SAMPLES} rows")));
-        }
+        let many = || row.fault(format!("more than {MAX_SAMPLES} rows"));
+        ensure(found.len() < MAX_SAMPLES, many)?;
         found.push((row.line, values));
     }
     Ok(found)
@@ -325,54 +301,45 @@ impl<'a> Rows<'a> {
             reader,
         }
     }
+}
 
-    fn next(&mut self) -> Result<Option<Row<'a>>, LineFault> {
+impl<'a> Iterator for Rows<'a> {
+    type Item = Row<'a>;
+
+    fn next(&mut self) -> Option<Row<'a>> {
         let mut record = StringRecord::new();
-        loop {
-            let read = self.reader.read_record(&mut record);
+        // Rows of a text in memory may have any number of cells, so reading does not fail.
+        while self.reader.read_record(&mut record).unwrap_or(false) {
             let end = self.reader.position();
-            let line = usize::try_from(end.line() - 1).unwrap_or(usize::MAX);
-            if !read.map_err(|error| LineFault::on(line)(error.to_string()))? {
-                return Ok(None);
-            }
-            let end = usize::try_from(end.byte()).unwrap_or(usize::MAX);
+            let [line, end] = [end.line() - 1, end.byte()].map(|at| at as usize);
             let read = &self.text[..end.min(self.text.len())];
             let text = read.lines().next_back().unwrap_or_default().trim();
             if !text.is_empty() && !text.starts_with('#') {
-                return Ok(Some(Row {
+                return Some(Row {
                     line,
                     text,
                     by_blanks: self.by_blanks,
                     record,
-                }));
+                });
             }
         }
+        None
     }
+}
 
-    /// Tells which row begins the table, if one does; continues the message about the first row.
-    fn where_they_begin(&mut self, is_of_table: impl Fn(&Row<'_>) -> bool) -> String {
-        while let Ok(Some(row)) = self.next() {
-            if is_of_table(&row) {
-                return format!(
-                    "; numbers begin on line {}: give `skip_rows = {}` if the table does",
-                    row.line,
-                    row.line - 1
-                );
-            }
-        }
-        String::new()
-    }
-
-    /// Refuses names separated by blanks if they are more or fewer than the columns, because one of them contains a blank.
-    fn check_names(&self, header: &Row<'_>, row: &Row<'_>, by_name: bool) -> Result<(), LineFault> {
-        let [names, columns] = [header, row].map(|row| row.cells().count());
-        if by_name && self.by_blanks && names != columns {
-            return Err(header.fault(format!(
-                "there are {names} names between blanks for {columns} columns: choose columns by their numbers"
-            )));
-        }
-        Ok(())
-    }
+/// Names the row below the first one that begins the table, if one does; continues the message about a row that is the first without values.
+fn begin_below(
+    first: &Row<'_>,
+    mut rows: Rows<'_>,
+    before: &Values,
+    is_of_table: impl Fn(&Row<'_>) -> bool,
+) -> String {
+    let is_first = before.values.is_empty();
+    let row = rows.find(|row| is_first && row.line > first.line && is_of_table(row));
+    row.map_or_else(String::new, |row| {
+        let (line, skipped) = (row.line, row.line - 1);
+        format!("; numbers begin on line {line}: give `skip_rows = {skipped}` if the table does")
+    })
 }
 
 impl Row<'_> {
@@ -391,6 +358,22 @@ impl Row<'_> {
         filled.last().map_or(0, |(_, count)| count)
     }
 
+    /// Whether all cells are names.
+    fn has_no_number(&self, decimal: Decimal) -> bool {
+        self.cells().all(|cell| names_column(cell, decimal))
+    }
+
+    /// Refuses names separated by blanks if they are more or fewer than the columns of a row below, because one of them contains a blank.
+    fn check_names(&self, below: Option<&Self>) -> Parsed<()> {
+        let names = self.cells().count();
+        let columns = below.map_or(names, |row| row.cells().count());
+        ensure(!self.by_blanks || names == columns, || {
+            self.fault(format!(
+                "there are {names} names between blanks for {columns} columns: choose columns by their numbers"
+            ))
+        })
+    }
+
     fn fault(&self, message: String) -> LineFault {
         LineFault::on(self.line)(message)
     }
@@ -404,17 +387,16 @@ impl TableColumn {
             Self::Name(name) => name,
         };
         let mut found = (0..names.len()).filter(|index| names[*index] == wanted);
-        match (found.next(), found.next()) {
-            (Some(index), None) => Ok(index),
-            (Some(_), Some(_)) => Err(format!(
-                "there are two columns named `{}`: choose one by its number",
-                excerpt(wanted)
+        let (found, name) = ([found.next(), found.next()], excerpt(wanted));
+        match found {
+            [Some(index), None] => Ok(index),
+            [Some(_), Some(_)] => Err(format!(
+                "there are two columns named `{name}`: choose one by its number"
             )),
-            (None, _) => Err(format!(
-                "there is no column named `{}` in `{}`",
-                excerpt(wanted),
-                excerpt(&names.join(", "))
-            )),
+            [None, _] => {
+                let names = excerpt(&names.join(", "));
+                Err(format!("there is no column named `{name}` in `{names}`"))
+            }
         }
     }
 }

@@ -4,10 +4,9 @@
 //! Whole numbers follow, several to a line. Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are
 //! accelerations in gal, including the offset of the instrument.
 
-use super::samples::{Contents, LineFault, MIN_STEP_S, Values, number};
+use super::samples::{Contents, LineFault, MIN_STEP_S, Parsed, Values, number};
 use super::unit::Unit;
-use crate::argument::{plain, short};
-use crate::scenario::error::excerpt;
+use crate::scenario::prelude::*;
 
 /// Number of lines that may make up the header.
 const MAX_HEADER_LINES: usize = 64;
@@ -18,7 +17,7 @@ const DURATION: &str = "Duration Time(s)";
 const LAST: &str = "Memo.";
 
 /// Reads the samples; the first is at time zero.
-pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
+pub(super) fn parse(text: &str) -> Parsed<Contents> {
     let mut header: Vec<&str> = text.lines().take(MAX_HEADER_LINES).collect();
     let end = header.iter().position(|line| line.starts_with(LAST));
     header.truncate(end.map_or(header.len(), |end| end + 1));
@@ -45,12 +44,12 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
         let duration_s = number(duration).map_err(LineFault::on(line))?;
         let count = values.values.len();
         let lasts_s = count as f64 * step_s;
-        if (lasts_s - duration_s).abs() > 1.0 {
+        ensure((lasts_s - duration_s).abs() <= 1.0, || {
             let [lasts_s, duration_s] = [lasts_s, duration_s].map(plain);
-            return Err(values.fault(format!(
+            values.fault(format!(
                 "the file ends after {count} samples, {lasts_s} s: line {line} announces {duration_s} s ({DURATION})"
-            )));
-        }
+            ))
+        })?;
     }
     let last = values.line;
     let samples = values.evenly(step_s, last, FREQUENCY)?;
@@ -60,13 +59,11 @@ pub(super) fn parse(text: &str) -> Result<Contents, LineFault> {
 fn read_step(frequency: &str) -> Result<f64, String> {
     let frequency_hz = number(frequency.trim_end_matches("Hz").trim_end())?;
     let step_s = 1.0 / frequency_hz;
-    if step_s.is_finite() && step_s >= MIN_STEP_S {
-        return Ok(step_s);
-    }
-    let [given, most] = [plain(frequency_hz), short(1.0 / MIN_STEP_S)];
-    Err(format!(
-        "{FREQUENCY} is {given}; must be above 0 and at most {most}"
-    ))
+    ensure(step_s.is_finite() && step_s >= MIN_STEP_S, || {
+        let [given, most] = [plain(frequency_hz), short(1.0 / MIN_STEP_S)];
+        format!("{FREQUENCY} is {given}; must be above 0 and at most {most}")
+    })?;
+    Ok(step_s)
 }
 
 /// The factor that converts the whole numbers to gal.
@@ -77,13 +74,10 @@ fn read_scale(scale: &str) -> Result<f64, String> {
     // Products with samples of at most 1e12 stay finite.
     let factor = parts.map(factor).transpose()?;
     let factor = factor.filter(|factor| (0.0..=1.0).contains(factor) && *factor > 0.0);
-    let wrong = || {
-        format!(
-            "the {SCALE} is `{}`; must be like 3920(gal)/6182761",
-            excerpt(scale)
-        )
-    };
-    factor.ok_or_else(wrong)
+    factor.ok_or_else(|| {
+        let scale = excerpt(scale);
+        format!("the {SCALE} is `{scale}`; must be like 3920(gal)/6182761")
+    })
 }
 
 #[cfg(test)]

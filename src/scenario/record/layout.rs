@@ -3,13 +3,9 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
-use serde::Serialize;
-use serde_json::{Value, json};
-
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
 use super::unit::{AnyUnit, Recorded, Unit};
-use crate::scenario::rule::{Count, Rule, Switch, one_of, within};
-use crate::scenario::table::Table;
+use crate::scenario::prelude::*;
 
 named! {
     /// Format of a record's file.
@@ -169,6 +165,20 @@ impl Format {
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
         table.optional("format", &one_of(Self::ALL, Self::name))
     }
+
+    /// Reads the format, or finds it from the name of the file; `report` reports a name without one.
+    pub(super) fn read_or_ending(
+        table: &mut Table<'_>,
+        file: &str,
+        report: impl Fn(&mut Table<'_>, &str) -> Reported,
+    ) -> Option<Self> {
+        match Self::read(table) {
+            None if !table.gives("format") => Self::of_ending(file)
+                .map_err(|wrong| report(table, wrong))
+                .ok(),
+            format => format,
+        }
+    }
 }
 
 impl Layout {
@@ -178,7 +188,7 @@ impl Layout {
         let dt_s = table.optional("dt_s", &step_s);
         let time_column = table.optional("time_column", &AnyColumn);
         let acceleration_column = table.optional("acceleration_column", &AnyColumn);
-        let wrapped = table.or("wrapped", &Switch, false);
+        let wrapped = table.or("wrapped", &SWITCH, false);
         let decimals = one_of(Decimal::ALL, Decimal::name);
         let quantities = one_of(Recorded::ALL, Recorded::name);
         let mut layout = Self {
@@ -188,46 +198,33 @@ impl Layout {
             decimal: table.or("decimal", &decimals, Decimal::Point),
             unit: table.optional("unit", &AnyUnit),
             quantity: table.or("quantity", &quantities, Recorded::Acceleration),
-            remove_mean: table.or("remove_mean", &Switch, false),
+            remove_mean: table.or("remove_mean", &SWITCH, false),
             ..Self::new(format.unwrap_or(Format::Csv))
         };
         let (Some(format), quantity) = (format, layout.quantity) else {
             return layout;
         };
-        if format != Format::Csv
-            && let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key))
-        {
-            table.wrong(key, "applies to `format = \"csv\"` only");
+        let is_table = format == Format::Csv;
+        if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key)) {
+            let _ = table.refuse(!is_table, key, "applies to `format = \"csv\"` only");
         }
         if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
             table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
-        if quantity == Recorded::Velocity {
-            if format == Format::Knet {
-                let wrong = "does not apply to a file of K-NET, which holds accelerations";
-                table.wrong("quantity", wrong);
-            }
-            if layout.remove_mean {
-                let wrong =
-                    "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-                table.wrong("remove_mean", wrong);
-            }
-        }
+        let is_velocity = quantity == Recorded::Velocity;
+        let wrong = "does not apply to a file of K-NET, which holds accelerations";
+        let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
+        let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
+        let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
         let header = match format {
-            Format::Asc => Some("does not apply to an ASC file, whose header has UNITS"),
-            Format::Knet => {
-                Some("does not apply to a file of K-NET, whose header has a Scale Factor")
-            }
-            Format::At2 | Format::Csv => None,
+            Format::Asc => "does not apply to an ASC file, whose header has UNITS",
+            _ => "does not apply to a file of K-NET, whose header has a Scale Factor",
         };
-        if let Some(wrong) = header.filter(|_| table.gives("unit")) {
-            table.wrong("unit", wrong);
-        }
-        if format == Format::Csv {
-            if dt_s.is_some() && time_column.is_some() {
-                let wrong = "cannot be combined with `time_column`; give one of them";
-                table.wrong("dt_s", wrong);
-            }
+        let has_header = matches!(format, Format::Asc | Format::Knet) && table.gives("unit");
+        let _ = table.refuse(has_header, "unit", header);
+        if is_table {
+            let wrong = "cannot be combined with `time_column`; give one of them";
+            let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
             if wrapped && layout.acceleration_column.is_some() {
                 let wrong = "cannot be combined with `acceleration_column`; give one of them";
                 table.wrong("wrapped", wrong);

@@ -40,17 +40,13 @@ use std::sync::Arc;
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;
 pub use samples::{Contents, LineFault};
-use serde::Serialize;
 pub use unit::{Recorded, Unit};
 
 use super::assignment::Assignment;
 use super::error::ScenarioErrors;
-use super::relation::Relation;
-use super::rule::{Number, Text, above, one_of, within};
-use super::shown;
+use super::prelude::*;
 use super::source::not_plain;
-use super::table::{self, Reading, Reported, Table};
-use crate::argument::{plain, short};
+use super::table;
 use crate::dynamics::ground::GroundMotion;
 
 /// Largest file.
@@ -122,16 +118,15 @@ impl fmt::Display for Sampling {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // At most six digits, without trailing zeros.
         let rounded = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
-        write!(f, "{} samples ", self.count)?;
-        match self.step_s {
-            Some(step_s) => write!(f, "every {} s", rounded(step_s))?,
-            None => write!(
-                f,
+        let steps = match self.step_s {
+            Some(step_s) => format!("every {} s", rounded(step_s)),
+            None => format!(
                 "at uneven steps, the least of {} s",
                 rounded(self.least_step_s)
-            )?,
-        }
-        write!(f, ", {} s long", rounded(self.duration_s))
+            ),
+        };
+        let duration_s = rounded(self.duration_s);
+        write!(f, "{} samples {steps}, {duration_s} s long", self.count)
     }
 }
 
@@ -161,9 +156,8 @@ impl Record {
         scaling: Scaling,
         gravity_m_s2: f64,
     ) -> Result<GroundMotion, String> {
-        if self.main.peak() == 0.0 {
-            return Err("the record is zero throughout".to_owned());
-        }
+        let nothing = || "the record is zero throughout".to_owned();
+        ensure(self.main.peak() != 0.0, nothing)?;
         let rescaled = Self {
             main: self.main.scaled(scaling),
             ..self.clone()
@@ -180,38 +174,27 @@ impl Record {
 
     /// The ground motion under the given gravity.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
-        let main = self.main.accelerations_m_s2(gravity_m_s2);
-        match (self.component, &self.vertical) {
-            (Component::Vertical, _) => GroundMotion::polylines(&[], &main, self.start_s),
-            (Component::Horizontal, vertical) => {
-                let vertical = vertical
-                    .as_ref()
-                    .map_or_else(Vec::new, |series| series.accelerations_m_s2(gravity_m_s2));
-                GroundMotion::polylines(&main, &vertical, self.start_s)
-            }
+        let [main, vertical] = [Some(&self.main), self.vertical.as_ref()]
+            .map(|series| series.map_or_else(Vec::new, |it| it.accelerations_m_s2(gravity_m_s2)));
+        match self.component {
+            Component::Vertical => GroundMotion::polylines(&[], &main, self.start_s),
+            Component::Horizontal => GroundMotion::polylines(&main, &vertical, self.start_s),
         }
     }
 
-    /// Reads `[ground.record]` and builds its motion; `known` records are not read from their files again.
-    pub(super) fn read(
-        table: &mut Table<'_>,
-        known: &[Series],
-        gravity_m_s2: Option<f64>,
-    ) -> Reading<(Self, GroundMotion)> {
+    /// Reads `[ground.record]` and builds its motion.
+    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let components = one_of(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
-        let main = Series::read(table, known, start_s, gravity_m_s2);
-        let vertical = table.table("vertical", |table| {
-            Series::read(table, known, start_s, gravity_m_s2)
-        });
-        if component == Component::Vertical && table.gives("vertical") {
-            let wrong =
-                "cannot be combined with `component = \"vertical\"`; give one record per direction";
-            return Err(table.wrong("vertical", wrong));
-        }
+        let main = Series::read(table, known, start_s);
+        let vertical = table.table("vertical", |table| Series::read(table, known, start_s));
+        let is_second = component == Component::Vertical && table.gives("vertical");
+        let wrong =
+            "cannot be combined with `component = \"vertical\"`; give one record per direction";
+        table.refuse(is_second, "vertical", wrong)?;
         table.sound()?;
-        let gravity_m_s2 = gravity_m_s2.ok_or(Reported)?;
+        let gravity_m_s2 = known.gravity_m_s2.ok_or(Reported)?;
         let record = Self {
             main: main?,
             component,
@@ -220,14 +203,20 @@ impl Record {
         };
         let motion = record.motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
-            let wrong = free_fall(time_s);
-            return Err(match record.vertical {
-                Some(_) => table.wrong_in(&["vertical"], "file", wrong),
-                None => table.wrong("file", wrong),
-            });
+            let inside: &[_] = record.vertical.as_ref().map_or(&[], |_| &["vertical"]);
+            return Err(table.wrong_in(inside, "file", free_fall(time_s)));
         }
         Ok((record, motion))
     }
+}
+
+/// What is known when records are read.
+#[derive(Clone, Copy)]
+pub(super) struct Known<'a> {
+    /// Records that need not be read from their files again.
+    pub(super) series: &'a [Series],
+    /// Gravity, if `[simulation]` gives a right one.
+    pub(super) gravity_m_s2: Option<f64>,
 }
 
 impl Series {
@@ -235,23 +224,19 @@ impl Series {
     pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
         let path = folder.join(&file);
         let contents = layout.parse(&read_bytes(&path)?);
-        let contents = contents.map_err(|fault| faulty(&path, &fault))?;
-        Ok(Self::new(file, layout, contents))
+        contents
+            .map(|contents| Self::new(file, layout, contents))
+            .map_err(|fault| faulty(&path, &fault))
     }
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
-        let Contents {
-            samples,
-            unit,
-            wrapped,
-        } = contents;
         Self {
             file,
             layout,
             scaling: Scaling::Factor(1.0),
-            unit,
-            wrapped,
-            samples: samples.into(),
+            unit: contents.unit,
+            wrapped: contents.wrapped,
+            samples: contents.samples.into(),
         }
     }
 
@@ -263,22 +248,15 @@ impl Series {
         let name = path.display().to_string();
         let layout = table::read_text(("", Path::new("")), keys, |table| {
             table.rename("the record");
-            let format = match Format::read(table) {
-                Some(format) => Some(format),
-                None if table.gives("format") => None,
-                None => Format::of_ending(&name)
-                    .map_err(|wrong| table.wrong_itself(wrong))
-                    .ok(),
-            };
+            let format =
+                Format::read_or_ending(table, &name, |table, wrong| table.wrong_itself(wrong));
             Ok(Layout::read(table, format))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
         let bytes = read_bytes(path).map_err(|wrong| ScenarioErrors::unreadable(&name, wrong))?;
-        let contents = layout
-            .parse(&bytes)
-            .map_err(|LineFault { line, message }| {
-                ScenarioErrors::unreadable(&format!("{name}:{line}"), message)
-            })?;
+        let contents = layout.parse(&bytes).map_err(|fault| {
+            ScenarioErrors::unreadable(&format!("{name}:{}", fault.line), fault.message)
+        })?;
         Ok(Self::new(name, layout, contents))
     }
 
@@ -332,18 +310,19 @@ impl Series {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
     }
 
+    /// Refuses a record without accelerations.
+    pub(super) fn check_not_zero(&self, gravity_m_s2: f64) -> Result<(), String> {
+        let is_zero = self.peak_g(gravity_m_s2) == 0.0;
+        ensure(!is_zero, || "is zero throughout".to_owned())
+    }
+
     /// Refuses accelerations that are too large for any ground.
     pub(super) fn check_strength(&self, gravity_m_s2: f64) -> Result<(), String> {
         let peak_g = self.peak_g(gravity_m_s2);
-        if peak_g <= MAX_ACCELERATION_G {
-            Ok(())
-        } else {
-            Err(format!(
-                "reaches {} g as scaled; must be at most {} g",
-                plain(peak_g),
-                short(MAX_ACCELERATION_G)
-            ))
-        }
+        ensure(peak_g <= MAX_ACCELERATION_G, || {
+            let (peak, most) = (plain(peak_g), short(MAX_ACCELERATION_G));
+            format!("reaches {peak} g as scaled; must be at most {most} g")
+        })
     }
 
     /// Time of the first sample in s, on the clock of the file.
@@ -400,58 +379,45 @@ impl Series {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
-    fn read(
-        table: &mut Table<'_>,
-        known: &[Self],
-        start_s: f64,
-        gravity_m_s2: Option<f64>,
-    ) -> Reading<Self> {
-        let file = table.required("file", &Text);
-        let format = Format::read(table);
+    fn read(table: &mut Table<'_>, known: Known<'_>, start_s: f64) -> Reading<Self> {
+        let file = table.required("file", &TEXT);
+        let format = Format::read_or_ending(table, &file, |table, wrong| {
+            table
+                .refuse(table.gives("file"), "file", wrong)
+                .err()
+                .unwrap_or(Reported)
+        });
         let scale = table.optional("scale", &SCALE);
         let peak_g = table.optional("peak_g", &PEAK_G);
         let at_most = "give at most one of them";
-        let related = table.relate(&[Relation::AtMostOne(&["scale", "peak_g"], at_most)]);
-        let format = match format {
-            None if table.gives("file") && !table.gives("format") => Format::of_ending(&file)
-                .map_err(|wrong| table.wrong("file", wrong))
-                .ok(),
-            format => format,
-        };
+        let related = table.relate(&[AtMostOne(&["scale", "peak_g"], at_most)]);
         let layout = Layout::read(table, format);
         related.and(table.sound())?;
-        let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
-        let mut known = known.iter();
-        let known = known.find(|known| known.file == file && known.layout == layout);
-        let series = match known {
+        let mut series = known.series.iter();
+        let series = match series.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
             None => Self::of_file(table.folder(), file, layout)
                 .map_err(|wrong| table.wrong_file("file", wrong))?,
         };
+        let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
         let series = series.scaled(scaling);
-        series.check(table, start_s, gravity_m_s2.ok_or(Reported)?)?;
+        series.check(table, start_s, known.gravity_m_s2.ok_or(Reported)?)?;
         Ok(series)
     }
 
     /// Checks that the ground can move as the record says.
     fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> Reading<()> {
-        if let Scaling::PeakG(_) = self.scaling
-            && self.peak() == 0.0
-        {
-            return Err(table.wrong("peak_g", "cannot be reached: the record is zero throughout"));
-        }
-        self.check_strength(gravity_m_s2)
-            .map_err(|wrong| table.wrong("file", wrong))?;
+        let is_zero = matches!(self.scaling, Scaling::PeakG(_)) && self.peak() == 0.0;
+        let wrong = "cannot be reached: the record is zero throughout";
+        table.refuse(is_zero, "peak_g", wrong)?;
+        table.accept("file", self.check_strength(gravity_m_s2))?;
         let first_s = self.first_s();
-        if start_s + first_s < 0.0 {
-            let wrong = format!(
-                "begins at {} s; allowed is a `start_s` of at least {}, so that it does not begin before time zero",
-                short(first_s),
-                short(-first_s)
-            );
-            return Err(table.wrong("file", wrong));
-        }
-        Ok(())
+        let wrong = format!(
+            "begins at {} s; allowed is a `start_s` of at least {}, so that it does not begin before time zero",
+            short(first_s),
+            short(-first_s)
+        );
+        table.refuse(start_s + first_s < 0.0, "file", wrong)
     }
 }
 
@@ -470,13 +436,10 @@ impl Layout {
             Format::Csv => csv::parse(&text, self),
         }?;
         let unit = contents.unit;
-        if unit.quantity() != self.quantity {
-            let other = unit.other_quantity();
-            return Err(LineFault::on(1)(format!(
-                "the unit is {:?}, {other}",
-                unit.name()
-            )));
-        }
+        ensure(unit.quantity() == self.quantity, || {
+            let (unit, other) = (unit.name(), unit.other_quantity());
+            LineFault::on(1)(format!("the unit is {unit:?}, {other}"))
+        })?;
         if self.remove_mean {
             let mean = mean(&contents.samples);
             contents.samples.iter_mut().for_each(|s| s.1 -= mean);
@@ -487,9 +450,7 @@ impl Layout {
 
 /// The text of a file. Headers may be in any encoding that has its digits where ASCII has them.
 fn legible(bytes: &[u8]) -> Result<String, LineFault> {
-    if let Some(wrong) = not_plain(bytes) {
-        return Err(LineFault::on(1)(wrong));
-    }
+    not_plain(bytes).map_or(Ok(()), |wrong| Err(LineFault::on(1)(wrong)))?;
     let text = String::from_utf8_lossy(bytes);
     Ok(text.trim_start_matches('\u{feff}').to_owned())
 }

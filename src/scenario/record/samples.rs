@@ -3,8 +3,10 @@
 use std::fmt;
 
 use super::unit::Unit;
-use crate::argument::{plain, short};
-use crate::scenario::error::excerpt;
+use crate::scenario::prelude::*;
+
+/// What a reader of a file returns.
+pub(super) type Parsed<T> = Result<T, LineFault>;
 
 /// Times in s, and accelerations or velocities.
 pub(super) type Samples = Vec<(f64, f64)>;
@@ -82,11 +84,9 @@ impl Values {
         text: &'t str,
         header_lines: usize,
         words: impl Fn(&'t str) -> W,
-    ) -> Result<Self, LineFault> {
-        let mut values = Self {
-            line: header_lines.max(1),
-            ..Self::default()
-        };
+    ) -> Parsed<Self> {
+        let (values, line) = (Vec::new(), header_lines.max(1));
+        let mut values = Self { values, line };
         for (index, line) in text.lines().enumerate().skip(header_lines) {
             for word in words(line) {
                 let value = number(word).and_then(in_range);
@@ -97,13 +97,14 @@ impl Values {
     }
 
     /// Adds a sample of a line.
-    pub(super) fn push(&mut self, line: usize, value: f64) -> Result<(), LineFault> {
+    pub(super) fn push(&mut self, line: usize, value: f64) -> Parsed<()> {
         self.line = line;
-        if self.values.len() == MAX_SAMPLES {
-            return Err(self.fault(format!(
+        let wrong = || {
+            self.fault(format!(
                 "more than {MAX_SAMPLES} samples, too many for a record"
-            )));
-        }
+            ))
+        };
+        ensure(self.values.len() < MAX_SAMPLES, wrong)?;
         self.values.push(value);
         Ok(())
     }
@@ -114,82 +115,72 @@ impl Values {
     }
 
     /// Refuses a number of samples that is not the one announced by a line of the header.
-    pub(super) fn check_count(
-        &self,
-        (line, count): (usize, f64),
-        key: &str,
-    ) -> Result<(), LineFault> {
+    pub(super) fn check_count(&self, (line, count): (usize, f64), key: &str) -> Parsed<()> {
         let found = self.values.len();
-        if count == found as f64 {
-            return Ok(());
-        }
-        let announced = plain(count);
-        Err(self.fault(format!(
-            "the number of samples is {found}: line {line} announces {announced} ({key})"
-        )))
+        ensure(count == found as f64, || {
+            let announced = plain(count);
+            self.fault(format!(
+                "the number of samples is {found}: line {line} announces {announced} ({key})"
+            ))
+        })
     }
 
     /// Refuses fewer samples than make a record.
-    pub(super) fn check_enough(&self) -> Result<(), LineFault> {
-        match self.values.len() {
-            found @ ..2 => Err(self.fault(format!(
+    pub(super) fn check_enough(&self) -> Parsed<()> {
+        let found = self.values.len();
+        let wrong = || {
+            self.fault(format!(
                 "the number of samples is {found}; must be at least 2"
-            ))),
-            _ => Ok(()),
-        }
+            ))
+        };
+        ensure(found >= 2, wrong)
     }
 
     /// The samples at even steps, the first at time zero, if they make a record; the key on this line sets the step.
-    pub(super) fn evenly(self, step_s: f64, line: usize, key: &str) -> Result<Samples, LineFault> {
+    pub(super) fn evenly(self, step_s: f64, line: usize, key: &str) -> Parsed<Samples> {
         self.check_enough()?;
         // Counts below 2^53 are exact.
-        let time_s = |index: usize| index as f64 * step_s;
-        let last_s = time_s(self.values.len() - 1);
-        if last_s > MAX_TIME_S {
-            return Err(LineFault::on(line)(format!(
-                "{key} and the number of samples make a record of {} s; at most {} s are allowed",
-                plain(last_s),
-                short(MAX_TIME_S)
-            )));
-        }
-        let samples = self.values.into_iter().enumerate();
-        Ok(samples
-            .map(|(index, value)| (time_s(index), value))
-            .collect())
+        let times_s = (0..self.values.len()).map(|index| index as f64 * step_s);
+        let last_s = times_s.clone().next_back().unwrap_or(0.0);
+        ensure(last_s <= MAX_TIME_S, || {
+            let (last, most) = (plain(last_s), short(MAX_TIME_S));
+            LineFault::on(line)(format!(
+                "{key} and the number of samples make a record of {last} s; at most {most} s are allowed"
+            ))
+        })?;
+        Ok(times_s.zip(self.values).collect())
     }
+}
+
+/// The words of a line of a header.
+pub(super) fn header_words(line: &str) -> impl Iterator<Item = &str> {
+    line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c))
 }
 
 /// Refuses a step that is too short.
 pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
-    if step_s >= MIN_STEP_S {
-        return Ok(step_s);
-    }
-    let (step, least) = (plain(step_s), short(MIN_STEP_S));
-    Err(format!("{key} is {step} s; must be at least {least} s"))
+    ensure(step_s >= MIN_STEP_S, || {
+        let (step, least) = (plain(step_s), short(MIN_STEP_S));
+        format!("{key} is {step} s; must be at least {least} s")
+    })?;
+    Ok(step_s)
 }
 
 /// A finite number as programs write it; Fortran's `D` may begin the exponent.
-pub(super) fn number(word: &str) -> Result<f64, String> {
+pub(super) fn number(given: &str) -> Result<f64, String> {
     // The library would also take "inf" and "nan".
     let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
-    let value = if word.len() <= 60 && word.chars().all(numeric) {
-        word.replace(['d', 'D'], "e").parse::<f64>().ok()
-    } else {
-        None
-    };
-    value
-        .filter(|value| value.is_finite())
-        .ok_or_else(|| format!("`{}` is not a finite number", excerpt(word)))
+    let word = Some(given).filter(|word| word.len() <= 60 && word.chars().all(numeric));
+    let value = word.and_then(|word| word.replace(['d', 'D'], "e").parse::<f64>().ok());
+    let value = value.filter(|value| value.is_finite());
+    value.ok_or_else(|| format!("`{}` is not a finite number", excerpt(given)))
 }
 
 /// Refuses a sample that is out of range.
 pub(super) fn in_range(value: f64) -> Result<f64, String> {
-    if value.abs() <= MAX_SAMPLE {
-        return Ok(value);
-    }
-    Err(format!(
-        "`{}` is out of range; samples must be at most {} in magnitude",
-        plain(value),
-        short(MAX_SAMPLE)
-    ))
+    ensure(value.abs() <= MAX_SAMPLE, || {
+        let (value, most) = (plain(value), short(MAX_SAMPLE));
+        format!("`{value}` is out of range; samples must be at most {most} in magnitude")
+    })?;
+    Ok(value)
 }

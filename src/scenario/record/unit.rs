@@ -1,9 +1,6 @@
 //! Units of recorded accelerations and velocities.
 
-use serde_json::{Value, json};
-
-use crate::scenario::error::excerpt;
-use crate::scenario::rule::{OneOf, Rule, one_of};
+use crate::scenario::prelude::*;
 
 named! {
     /// The quantity that the samples of a record measure.
@@ -78,12 +75,8 @@ impl Unit {
 
     /// The unit in one of the spellings that files have: `cm/s^2`, `CM/SEC/SEC`, `gal`.
     pub(super) fn written(text: &str) -> Option<Self> {
-        let plain: String = text
-            .chars()
-            .filter(|c| !c.is_whitespace() && !"^*()[]".contains(*c))
-            .collect();
-        let plain = plain.to_ascii_lowercase().replace("sec", "s");
-        match plain.as_str() {
+        let plain = text.replace(|c: char| c.is_whitespace() || "^*()[]".contains(c), "");
+        match plain.to_ascii_lowercase().replace("sec", "s").as_str() {
             "g" => Some(Self::Gravity),
             "m/s2" | "m/s/s" => Some(Self::MetrePerS2),
             "cm/s2" | "cm/s/s" | "gal" | "gals" => Some(Self::CentimetrePerS2),
@@ -97,7 +90,7 @@ impl Unit {
 /// A unit, by its name or in a spelling that files have.
 pub(super) struct AnyUnit;
 
-const NAMES: OneOf<Unit> = one_of(Unit::ALL, Unit::name);
+const NAMES: Named<Unit> = one_of(Unit::ALL, Unit::name);
 
 impl Rule for AnyUnit {
     type Read = Unit;
@@ -107,10 +100,7 @@ impl Rule for AnyUnit {
     }
 
     fn read(&self, value: &Value) -> Result<Unit, String> {
-        let written = match value {
-            Value::String(text) => Unit::written(text),
-            _ => None,
-        };
+        let written = value.as_str().and_then(Unit::written);
         written.map_or_else(|| NAMES.read(value), Ok)
     }
 

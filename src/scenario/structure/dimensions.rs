@@ -39,12 +39,13 @@ impl Dimension {
             DimensionSide::Below => along_m.x,
             DimensionSide::Left | DimensionSide::Right => along_m.y,
         };
-        let text = format!("{} m", metres(length_m));
-        let words = format!("{name} {text}");
+        let length = format!("{} m", metres(length_m));
+        let words = format!("{name} {length}");
+        let text = if is_named { words.clone() } else { length };
         Self {
             ends_m,
             side,
-            text: if is_named { words.clone() } else { text },
+            text,
             words,
         }
     }
@@ -121,19 +122,20 @@ fn span_and_rise(
         Dimension::new(DimensionSide::Left, [ends[0], crown], "rise", true),
     ];
     if let Some(line) = line {
+        let words = format!(" {}", line.in_words());
         dimensions
             .iter_mut()
-            .for_each(|dimension| dimension.words += &format!(" {}", line.in_words()));
+            .for_each(|dimension| dimension.words += &words);
     }
     dimensions
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
-    let Some([left, right]) = masonry.springings() else {
+    let Some([start, end]) = masonry.springings() else {
         return width_and_height(bounds_m(&masonry.row)).into();
     };
     let line = circular(masonry).and_then(|arch| arch.measured_at);
-    let ends = [left, right].map(|joint| match line {
+    let ends = [start, end].map(|joint| match line {
         Some(MeasuredAt::Intrados) => joint.intrados_m,
         Some(MeasuredAt::Extrados) => joint.extrados_m,
         Some(MeasuredAt::Mean) | None => joint.middle_m(),
@@ -148,26 +150,20 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
         Shape::Blocks(_) => 0.0,
     };
     let mut dimensions = Vec::from(span_and_rise(ends, ends[0].y + rise_m, line));
-    let Piers {
-        left: one,
-        right: other,
-    } = masonry.piers;
-    dimensions.extend(
-        one.map(|pier| of_pier(&pier, left.intrados_m, DimensionSide::Left))
-            .into_iter()
-            .flatten(),
-    );
-    let other = other.filter(|_| one != other);
-    dimensions.extend(
-        other
-            .map(|pier| of_pier(&pier, right.intrados_m, DimensionSide::Right))
-            .into_iter()
-            .flatten(),
-    );
+    let Piers { left: one, right } = masonry.piers;
+    let other = right.filter(|_| one != right);
+    let piers = [
+        (one, start, DimensionSide::Left),
+        (other, end, DimensionSide::Right),
+    ];
+    for (pier, joint, side) in piers {
+        let pier = pier.map(|pier| of_pier(&pier, joint.intrados_m, side));
+        dimensions.extend(pier.into_iter().flatten());
+    }
     let fill = masonry.carried.fill_m.iter();
     let corners = fill.flat_map(|(_, outline)| outline);
     if let Some(level_m) = corners.map(|corner| corner.y).reduce(f64::max) {
-        let from = right.extrados_m;
+        let from = end.extrados_m;
         let ends = [from, Vector2::new(from.x, level_m)];
         dimensions.push(Dimension::new(DimensionSide::Right, ends, "fill", true));
     }

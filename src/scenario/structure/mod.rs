@@ -8,18 +8,14 @@ pub use dimensions::{Dimension, DimensionSide, metres};
 
 use std::f64::consts::FRAC_PI_2;
 
-use serde::Serialize;
 use thiserror::Error;
 
-use super::bounds::{JOINT_DEG, LIKELY_EMBRACE_DEG, MAGNITUDE, VOUSSOIRS};
 use super::hinges::Hinges;
 use super::masonry::{self, Additions};
-use super::relation::Relation::{AtMostOne, OneOf};
-use super::rule::{Count, List, Switch};
+use super::prelude::*;
 use super::span::Circular;
-use super::table::{Reading, Reported, Table};
 use super::tie::{self, TieTable};
-use crate::argument::{plain, rounded_up, short};
+use crate::argument::rounded_up;
 use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
 use crate::dynamics::model::MechanismModel;
 use crate::dynamics::row::error::RowModelError;
@@ -72,14 +68,15 @@ impl Structure {
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_nothing);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
-        let column = table.table("column", |table| {
-            read_column(table, free_hinges).map(Read::Column)
-        });
+        let column = table.table("column", |table| read_column(table, free_hinges));
         let shape = masonry::read_shapes(table).map(Read::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.relate(&[OneOf(&tables, None)])?;
-        let read = arch.or(column).or(shape).ok_or(Reported)?;
+        let read = arch
+            .or(column.map(Read::Column))
+            .or(shape)
+            .ok_or(Reported)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(Reported)?);
         let ties = beside.ties.clone();
         let structure = match read {
@@ -271,42 +268,35 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
     let joints_deg = table.optional("joints_deg", &List(&JOINT_DEG));
     let equal = "`voussoirs` are equal: give one of them";
-    table
-        .relate(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])
-        .and(table.sound())?;
-    let Circular {
-        mean_radius_m,
-        thickness_ratio,
-        embrace_deg,
-        measured_at,
-    } = circular?;
-    let arch = Arch::new(mean_radius_m, thickness_ratio, embrace_deg)
-        .and_then(|arch| arch.with_depth_m(depth_m))
-        .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
-        .and_then(|arch| match voussoirs {
-            Some(voussoirs) => arch.with_voussoirs(voussoirs),
-            None => Ok(arch),
-        })
-        .expect("the ranges of the keys are those of an arch")
-        .with_measured_at(measured_at);
+    table.agrees(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
+    let circular = circular?;
+    let arch = Arch::new(
+        circular.mean_radius_m,
+        circular.thickness_ratio,
+        circular.embrace_deg,
+    )
+    .and_then(|arch| arch.with_depth_m(depth_m))
+    .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
+    .and_then(|arch| match voussoirs {
+        Some(voussoirs) => arch.with_voussoirs(voussoirs),
+        None => Ok(arch),
+    })
+    .expect("the ranges of the keys are those of an arch")
+    .with_measured_at(circular.measured_at);
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
-        let why = if free_hinges {
-            "joints open between blocks"
-        } else {
-            "piers, fill, loads and ties go with blocks"
+        let why = match free_hinges {
+            true => "joints open between blocks",
+            false => "piers, fill, loads and ties go with blocks",
         };
-        return Err(table.wrong_itself(format!(
-            "lacks `voussoirs`: {why}; give the number of voussoirs"
-        )));
+        let wrong = format!("lacks `voussoirs`: {why}; give the number of voussoirs");
+        return Err(table.wrong_itself(wrong));
     }
     if joints_deg.is_some() || !alone {
-        return match CircularArch::new(arch, joints_deg) {
-            Ok(arch) => Ok(Read::Shape(Shape::Circular(arch))),
-            Err(error) => Err(table.wrong(
-                error.argument,
-                format!("does not fit: {:?} must be {}", error.value, error.allowed),
-            )),
-        };
+        let arch = CircularArch::new(arch, joints_deg).map_err(|error| {
+            let wrong = format!("does not fit: {:?} must be {}", error.value, error.allowed);
+            table.wrong(error.argument, wrong)
+        });
+        return Ok(Read::Shape(Shape::Circular(arch?)));
     }
     match arch.incipient() {
         Ok(_) => Ok(Read::Arch(arch)),
@@ -314,7 +304,8 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
             Ok(Read::Arch(arch))
         }
         Err(error) => {
-            let key = if table.gives("thickness_m") {
+            let in_m = table.gives("thickness_m");
+            let key = if in_m {
                 "thickness_m"
             } else {
                 "thickness_ratio"
@@ -327,30 +318,28 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
 /// Explains why limit analysis refuses the arch, and what to change.
 fn why_not(arch: &Arch, error: LimitError) -> String {
     let embrace_deg = arch.embrace_deg;
+    let embrace = plain(embrace_deg);
     match error {
         LimitError::CannotStand => {
             let least = least_thickness_ratio(embrace_deg.to_radians(), arch.sites(), 1e-12)
                 .expect("the ranges of the keys are those of a ring");
+            let least = short(rounded_up(least));
             format!(
-                "makes an arch that cannot carry its own weight at an embrace angle of {} degrees; \
-                 the thickness must be at least {} mean radii",
-                plain(embrace_deg),
-                short(rounded_up(least))
+                "makes an arch that cannot carry its own weight at an embrace angle of {embrace} degrees; \
+                 the thickness must be at least {least} mean radii"
             )
         }
-        LimitError::OtherMechanism { .. } | LimitError::NoPush => format!(
-            "makes an arch too thick for its embrace angle of {} degrees: {error}; give a \
-             thinner arch or a larger angle{}",
-            plain(embrace_deg),
-            if embrace_deg < LIKELY_EMBRACE_DEG {
-                format!(
-                    ": is it in radians, {} degrees?",
-                    plain(embrace_deg.to_degrees())
-                )
-            } else {
-                String::new()
-            }
-        ),
+        LimitError::OtherMechanism { .. } | LimitError::NoPush => {
+            let degrees = plain(embrace_deg.to_degrees());
+            let unit = match embrace_deg < LIKELY_EMBRACE_DEG {
+                true => format!(": is it in radians, {degrees} degrees?"),
+                false => String::new(),
+            };
+            format!(
+                "makes an arch too thick for its embrace angle of {embrace} degrees: {error}; give a \
+                 thinner arch or a larger angle{unit}"
+            )
+        }
     }
 }
 
@@ -371,14 +360,12 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
-    let pedestal = table.or("pedestal", &Switch, false);
+    let pedestal = table.or("pedestal", &SWITCH, false);
     if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);
     }
-    table
-        .relate(&[AtMostOne(&["drums", "drum_heights_m"], "give one of them")])
-        .and(table.sound())?;
+    table.agrees(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
     let column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))

@@ -41,17 +41,12 @@ impl Structure {
             Self::Masonry(masonry) => circular(masonry),
         };
         if let Some(arch) = circular {
-            let springing_m = springing_m(arch);
-            let place = if springing_m > 0.0 {
-                format!(
-                    "{} m below the intrados of the springings",
-                    metres(springing_m)
-                )
-            } else {
-                "level with the springings".to_owned()
+            let below = match springing_m(arch) {
+                0.0 => "level with the springings".to_owned(),
+                below_m => format!("{} m below the intrados of the springings", metres(below_m)),
             };
             return format!(
-                "y = 0 at the centre of the circle, {place}; x = 0 in the middle of the span"
+                "y = 0 at the centre of the circle, {below}; x = 0 in the middle of the span"
             );
         }
         let words = match self {
@@ -132,41 +127,33 @@ fn springing_m(arch: &Arch) -> f64 {
     let radius_m = arch.radius_at_m(MeasuredAt::Intrados);
     let [_, rise_m] = arch.span_and_rise_m(MeasuredAt::Intrados);
     let height_m = radius_m - rise_m;
-    if height_m > 1e-9 * radius_m {
-        height_m
-    } else {
-        0.0
+    match height_m > 1e-9 * radius_m {
+        true => height_m,
+        false => 0.0,
     }
 }
 
 fn place(tie: &Tie, springing_m: Option<f64>) -> String {
-    let [from_m, to_m] = tie.ends.map(|end| end.at_m);
-    let point = |x: f64, y: f64| format!("({}, {})", metres(x + 0.0), metres(y + 0.0));
-    let mut words = format!(
-        "from {} m to {} m",
-        point(from_m.x, from_m.y),
-        point(to_m.x, to_m.y)
-    );
-    if let Some(springing_m) = springing_m {
-        let above = [from_m.y, to_m.y].map(|y| height(y - springing_m));
-        let above = if above[0] == above[1] {
-            above[0].clone()
-        } else {
-            format!("its ends {} and {}", above[0], above[1])
+    let ends_m = tie.ends.map(|end| end.at_m);
+    let [from, to] = ends_m.map(|at| format!("({}, {})", metres(at.x + 0.0), metres(at.y + 0.0)));
+    let above = springing_m.map_or_else(String::new, |springing_m| {
+        let [one, other] = ends_m.map(|at| height(at.y - springing_m));
+        let above = match one == other {
+            true => one,
+            false => format!("its ends {one} and {other}"),
         };
-        words += &format!(", {above} the intrados of the springings");
-    }
-    words
+        format!(", {above} the intrados of the springings")
+    });
+    format!("from {from} m to {to} m{above}")
 }
 
 /// A height beside a level, in words.
 fn height(above_m: f64) -> String {
     // Heights closer than a micrometre are equal.
-    if above_m.abs() < 1e-6 {
-        "level with".to_owned()
-    } else if above_m > 0.0 {
-        format!("{} m above", metres(above_m))
-    } else {
-        format!("{} m below", metres(-above_m))
+    let height = metres(above_m.abs());
+    match above_m {
+        -1e-6..1e-6 => "level with".to_owned(),
+        0.0.. => format!("{height} m above"),
+        _ => format!("{height} m below"),
     }
 }

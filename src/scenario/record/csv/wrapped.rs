@@ -1,8 +1,6 @@
 //! Tables whose rows hold several consecutive samples.
 
-use super::super::layout::{Decimal, Layout};
-use super::super::samples::{LineFault, Samples, Values, in_range};
-use super::{Row, Rows, names_column, nothing};
+use super::*;
 
 /// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
 /// shorter; or the total number of samples is given before the table (`text` includes the skipped lines), in a comment or in
@@ -28,7 +26,7 @@ pub(super) fn is_shown(text: &str, table: &str, layout: &Layout) -> bool {
     let announced: Vec<_> = skipped
         .chain(comments)
         .chain(names.as_deref())
-        .flat_map(|line| line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c)))
+        .flat_map(header_words)
         .filter_map(|word| word.parse::<usize>().ok())
         .collect();
     // A number that equals the number of rows announces rows, not samples.
@@ -37,40 +35,29 @@ pub(super) fn is_shown(text: &str, table: &str, layout: &Layout) -> bool {
 
 /// The first row if it holds names, and the count of numbers in each other row; `None` if a cell is not a number.
 fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)> {
-    let mut rows = Rows::new(table, decimal);
-    let mut names = None;
-    let mut lengths = Vec::new();
-    while let Some(row) = rows.next().ok()? {
-        if lengths.is_empty() && names.is_none() && has_no_number(&row, decimal) {
-            names = Some(row.text.to_owned());
-        } else if is_of_numbers(&row, decimal) {
-            lengths.push(row.count());
-        } else {
-            return None;
-        }
-    }
-    Some((names, lengths))
+    let mut rows = Rows::new(table, decimal).peekable();
+    let names = rows.next_if(|row| row.has_no_number(decimal));
+    let lengths = rows.map(|row| is_of_numbers(&row, decimal).then(|| row.count()));
+    Some((
+        names.map(|row| row.text.to_owned()),
+        lengths.collect::<Option<_>>()?,
+    ))
 }
 
 /// Reads the samples of all rows. A first row without any number holds the names.
-pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Result<Samples, LineFault> {
-    let mut rows = Rows::new(table, decimal);
+pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Parsed<Samples> {
     let mut values = Values::default();
-    let mut is_first = true;
-    while let Some(row) = rows.next()? {
-        values.line = row.line;
-        if std::mem::take(&mut is_first) && has_no_number(&row, decimal) {
+    for row in Rows::new(table, decimal) {
+        let is_first = std::mem::replace(&mut values.line, row.line) == 0;
+        if is_first && row.has_no_number(decimal) {
             continue;
         }
         for cell in row.cells().take(row.count()) {
             let value = decimal.number(cell).and_then(in_range);
-            let value = value.map_err(|message| {
-                let hint = if values.values.is_empty() {
-                    rows.where_they_begin(|row| is_of_numbers(row, decimal))
-                } else {
-                    String::new()
-                };
-                row.fault(message + &hint)
+            let value = value.map_err(|wrong| {
+                let is_of_table = |row: &Row<'_>| is_of_numbers(row, decimal);
+                let hint = begin_below(&row, Rows::new(table, decimal), &values, is_of_table);
+                row.fault(wrong + &hint)
             })?;
             values.push(row.line, value)?;
         }
@@ -87,10 +74,6 @@ pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Result<Sample
 fn is_of_numbers(row: &Row<'_>, decimal: Decimal) -> bool {
     let mut cells = row.cells().take(row.count());
     cells.all(|cell| decimal.number(cell).is_ok())
-}
-
-fn has_no_number(row: &Row<'_>, decimal: Decimal) -> bool {
-    row.cells().all(|cell| names_column(cell, decimal))
 }
 
 #[cfg(test)]
