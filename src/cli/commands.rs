@@ -45,9 +45,9 @@ pub fn limit(
             plot,
             &pictures::limit(
                 figure.get()?,
-                model.chain_from(first),
+                &model,
                 first,
-                Some(&Scene::new(scenario.structure())),
+                &Scene::new(scenario.structure()),
             ),
         )?;
     }

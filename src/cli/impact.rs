@@ -90,7 +90,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(plot) = &arguments.plot {
         chosen()?;
         let scene = Scene::new(scenario.structure());
-        let picture = pictures::impact(arguments.figure.get()?, &impact, Some(&scene));
+        let picture = pictures::impact(arguments.figure.get()?, &impact, &scene);
         let picture = picture.ok_or_else(|| {
             Failure::Input(format!(
                 "--plot: impact {} stops the arch; there is no mechanism after it to draw",

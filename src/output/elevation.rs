@@ -99,7 +99,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         }
         view.draw_blocks(drawing, |_, _| ("block".to_owned(), STONE));
         view.draw_ties(drawing);
-        view.draw_loads(drawing, Some(part.top));
+        view.draw_loads(drawing, Some(part.top), true);
         view.draw_hinges(drawing);
         joint_numbers(drawing, &view.place, scene);
     });
@@ -139,10 +139,10 @@ impl View<'_> {
         }
     }
 
-    /// Draws fill and loads.
-    pub(crate) fn draw_carried(&self, drawing: &mut Drawing) {
+    /// Draws fill and loads, with or without the masses of these in words.
+    pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_masses: bool) {
         self.draw_fill(drawing);
-        self.draw_loads(drawing, None);
+        self.draw_loads(drawing, None, has_masses);
     }
 
     fn draw_fill(&self, drawing: &mut Drawing) {
@@ -175,17 +175,15 @@ impl View<'_> {
         }
     }
 
-    /// Draws arrows for loads, with their masses if there is room for text above this height.
-    fn draw_loads(&self, drawing: &mut Drawing, text_above: Option<f64>) {
+    /// Draws arrows for loads, from a common height if it is given, with their masses where there is room.
+    fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_masses: bool) {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.loads(self.hinges);
         loads.sort_by(|a, b| a.1.at_m.x.total_cmp(&b.1.at_m.x));
         for (mark, load) in loads {
             let foot = self.px(&mark);
-            let tail = match text_above {
-                Some(top) => Vector2::new(foot.x, top - 8.0),
-                None => foot - Vector2::new(0.0, 20.0),
-            };
+            let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
+            let tail = Vector2::new(foot.x, tail);
             draw_arrow(drawing, tail, foot);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
@@ -194,8 +192,8 @@ impl View<'_> {
                 };
                 drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
             }
-            if text_above.is_some() {
-                let text = Text::from(mass_in_words(load.mass_kg));
+            if has_masses {
+                let text = Text::from(format!("{} kg", metres(load.mass_kg)));
                 let half = 0.5 * text.px();
                 // Beside the last one if there is room; the words below have it anyway.
                 if foot.x - half > farthest {
@@ -223,18 +221,6 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scen
     for (dimension, level) in scene.dimensions.iter().zip(levels) {
         draw_dimension(drawing, place, scene.frame_m(), dimension, level);
     }
-}
-
-/// The arrow of a load that stands there, with its mass.
-pub(crate) fn draw_load(drawing: &mut Drawing, foot: Vector2<f64>, mass_kg: f64) {
-    let tail = foot - Vector2::new(0.0, 20.0);
-    draw_arrow(drawing, tail, foot);
-    let at = tail - Vector2::new(0.0, 4.0);
-    drawing.label(at, Anchor::Middle, 0.0, mass_in_words(mass_kg));
-}
-
-fn mass_in_words(mass_kg: f64) -> String {
-    format!("{} kg", metres(mass_kg))
 }
 
 fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {

@@ -200,16 +200,8 @@ impl Scene {
     /// The ends of the ties when these hinges are open.
     #[must_use]
     pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
-        let linked = self.linked;
-        let body = |block| {
-            if linked {
-                linked_body(hinges, block)
-            } else {
-                Some(block)
-            }
-        };
         let end = |anchor: Anchor| Mark {
-            body: anchor.block.and_then(body),
+            body: anchor.block.and_then(|block| self.body_of(block, hinges)),
             at_m: anchor.at_m,
         };
         self.ties.iter().map(|tie| tie.ends.map(end)).collect()
@@ -242,39 +234,26 @@ impl Scene {
     #[must_use]
     pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
         let ends = self.ties.iter().flat_map(|tie| &tie.ends);
-        ends.fold(self.blocks_m(), |[low, high], end| {
-            [low.inf(&end.at_m), high.sup(&end.at_m)]
-        })
+        widened(self.blocks_m(), ends.map(|end| end.at_m))
     }
 
     /// Lower left and upper right corner of the undeformed blocks alone, in metres.
     #[must_use]
     pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
-        let pieces = self.pieces(&[]);
-        let corners = pieces.iter().flat_map(|piece| &piece.outline_m);
-        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
-        corners.fold(empty, |[low, high], corner| {
-            [low.inf(corner), high.sup(corner)]
-        })
+        let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
+        let pieces = self.pieces(&[]).into_iter();
+        widened(empty, pieces.flat_map(|piece| piece.outline_m))
     }
 
     /// Lower left and upper right corner with fill and loads, as built and at rest, in metres.
     #[must_use]
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
-        let corners = self.fill_m.iter().flat_map(|(_, outline)| outline);
-        let corners = corners.chain(self.loads.iter().map(|load| &load.at_m));
-        let there = match &self.stands.0[..] {
-            [] => Vec::new(),
-            poses => [self.pieces(&[]), self.fill(&[])]
-                .iter()
-                .flatten()
-                .flat_map(|piece| piece.moved(poses, 1.0))
-                .collect(),
-        };
-        let all = corners.copied().chain(there);
-        all.fold(self.bounds_m(), |[low, high], corner| {
-            [low.inf(&corner), high.sup(&corner)]
-        })
+        let (fill, loads) = (self.fill(&[]), self.loads.iter());
+        let built = fill.iter().flat_map(|piece| piece.outline_m.clone());
+        let built = built.chain(loads.map(|load| load.at_m));
+        let all = self.pieces(&[]).into_iter().chain(fill.clone());
+        let there = all.flat_map(|piece| piece.moved(&self.stands.0, 1.0));
+        widened(self.bounds_m(), built.chain(there))
     }
 
     /// The fill in pieces when these hinges are open.
@@ -382,48 +361,46 @@ impl Scene {
     /// The positions of the open hinges, as points of the body to the right of each, or above it.
     #[must_use]
     pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
-        let hinges = hinges.iter().enumerate();
-        let marks = hinges.filter_map(|(index, open)| match (open.hinge, &self.outline) {
-            (
-                Hinge::Section { angle_rad, edge },
-                Outline::Ring {
-                    ring,
-                    mean_radius_m,
-                    ..
-                },
-            ) => Some(Mark {
-                // The last hinge lies on the part that stands still.
-                body: (index < LINKS).then_some(index),
-                at_m: ring.point(angle_rad, edge) * *mean_radius_m,
-            }),
-            (Hinge::Toe(side), Outline::Block { outline_m }) => Some(Mark {
-                body: Some(0),
-                at_m: match side {
-                    Sway::Left => outline_m[0],
-                    Sway::Right => outline_m[outline_m.len() - 1],
-                },
-            }),
-            (
-                Hinge::Joint {
-                    joint,
-                    edge: Some(edge),
-                },
-                Outline::Row { .. },
-            ) => self.corners(joint).map(|[intrados, extrados]| {
-                let mark = match edge {
-                    Edge::Intrados => intrados,
-                    Edge::Extrados => extrados,
-                };
-                if self.linked {
-                    Mark {
-                        body: (index < LINKS).then_some(index),
-                        ..mark
-                    }
-                } else {
-                    mark
-                }
-            }),
-            _ => None,
+        let last = hinges.len().saturating_sub(1);
+        let marks = hinges.iter().enumerate();
+        let marks = marks.filter_map(|(index, open)| {
+            // The last hinge lies on the part that stands still.
+            let link_after = (index < last).then_some(index);
+            match (open.hinge, &self.outline) {
+                (
+                    Hinge::Section { angle_rad, edge },
+                    Outline::Ring {
+                        ring,
+                        mean_radius_m,
+                        ..
+                    },
+                ) => Some(Mark {
+                    body: link_after,
+                    at_m: ring.point(angle_rad, edge) * *mean_radius_m,
+                }),
+                (Hinge::Toe(side), Outline::Block { outline_m }) => Some(Mark {
+                    body: Some(0),
+                    at_m: match side {
+                        Sway::Left => outline_m[0],
+                        Sway::Right => outline_m[outline_m.len() - 1],
+                    },
+                }),
+                (
+                    Hinge::Joint {
+                        joint,
+                        edge: Some(edge),
+                    },
+                    Outline::Row { .. },
+                ) => self.corners(joint).map(|[intrados, extrados]| {
+                    let mark = match edge {
+                        Edge::Intrados => intrados,
+                        Edge::Extrados => extrados,
+                    };
+                    let body = if self.linked { link_after } else { mark.body };
+                    Mark { body, ..mark }
+                }),
+                _ => None,
+            }
         });
         marks.collect()
     }
@@ -549,11 +526,19 @@ fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
         .iter()
         .filter(|open| matches!(open.hinge, Hinge::Joint { joint, .. } if joint <= block));
     let link = before.count().checked_sub(1)?;
-    (link < LINKS).then_some(link)
+    (link + 1 < hinges.len()).then_some(link)
 }
 
-/// Number of moving bodies of a four-link mechanism.
-const LINKS: usize = 3;
+/// The lower left and the upper right corner of a box that is widened to these points.
+pub(crate) fn widened(
+    corners: [Vector2<f64>; 2],
+    points: impl IntoIterator<Item = Vector2<f64>>,
+) -> [Vector2<f64>; 2] {
+    let points = points.into_iter();
+    points.fold(corners, |[low, high], point| {
+        [low.inf(&point), high.sup(&point)]
+    })
+}
 
 /// Sections closer together than this count as one.
 const SAME_SECTION_RAD: f64 = 1e-9;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::program::{done, printed, refused, scenarios};
-use crate::common::results::{Table, named, number, points, strokes, texts};
+use crate::common::results::{Table, named, number, points, texts};
 use crate::common::{ON_A_PIER, UNEVEN_ARCH};
 use archrock::mechanics::four_link::chain::Chain;
 use archrock::mechanics::geometry::profile::Profile;
@@ -24,12 +24,14 @@ use roxmltree::{Document, Node};
 /// Coordinates are written to thousandths of a pixel, paths of curves to hundredths.
 const PIXEL: f64 = 0.02;
 
-fn four_links(arch: Arch) -> FourLinks {
-    FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap()
+/// An arch with the parts of it that are drawn.
+fn drawn(arch: Arch) -> (FourLinks, Scene) {
+    let model = FourLinks::of_arch(&arch, ImpactModel::MaxRestitution).unwrap();
+    (model, Scene::new(&Structure::Arch(arch)))
 }
 
-fn arch(thickness_ratio: f64, embrace_deg: f64) -> FourLinks {
-    four_links(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
+fn arch(thickness_ratio: f64, embrace_deg: f64) -> (FourLinks, Scene) {
+    drawn(Arch::new(5.0, thickness_ratio, embrace_deg).unwrap())
 }
 
 /// The impact that leads to a link of the chain after a first sway to the right.
@@ -104,9 +106,9 @@ fn eccentricities(curve: &[Vector2<f64>], sheet: &Sheet, ring: &dyn Profile) -> 
 #[test]
 fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
-        let arch = arch(thickness_ratio, embrace_deg);
+        let (arch, scene) = arch(thickness_ratio, embrace_deg);
         let chain = arch.chain();
-        let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+        let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
         let document = Document::parse(&picture).unwrap();
         let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
@@ -132,49 +134,36 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
 #[test]
 fn joints_are_drawn_where_there_are_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
-    let arch = four_links(arch.with_voussoirs(7).unwrap());
+    let (arch, scene) = drawn(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
-    for picture in [
-        pictures::limit(Figure::SCREEN, chain, Sway::Right, None),
-        pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap(),
-    ] {
-        let document = Document::parse(&picture).unwrap();
-        assert_eq!(named(&document, "joint").len(), 8);
-    }
-    // The hinges are at joints.
-    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+    let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
     let document = Document::parse(&picture).unwrap();
+    let count = |document: &Document<'_>, names: &[&str]| {
+        let nodes = names.iter().map(|name| named(document, name).len());
+        nodes.sum::<usize>()
+    };
+    assert_eq!(count(&document, &["block"]), 7);
+    assert_eq!(count(&document, &["still", "left", "middle", "right"]), 7);
+    // The hinges are at joints.
     check_hinges(&document, chain, 0, Sway::Right);
-}
-
-/// The corners of a displaced body are where its circular arcs begin and end: read from its path.
-fn corners(node: &Node<'_, '_>) -> Vec<Vector2<f64>> {
-    let path = node.attribute("d").unwrap().replace(['M', 'L', 'Z'], " ");
-    path.split('A')
-        .flat_map(|piece| {
-            let numbers: Vec<f64> = piece
-                .split_whitespace()
-                .map(|text| text.parse().unwrap())
-                .collect();
-            // An arc's radii and flags come before its end.
-            let skip = numbers.len() % 2 + if numbers.len() > 4 { 4 } else { 0 };
-            numbers[skip.min(numbers.len())..]
-                .chunks_exact(2)
-                .map(|pair| Vector2::new(pair[0], pair[1]))
-                .collect::<Vec<_>>()
-        })
-        .collect()
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
+    let document = Document::parse(&picture).unwrap();
+    let bodies = (1..9).map(|body| named(&document, &format!("body {body}")).len());
+    // Those of the two mechanisms stand still beside the bodies.
+    let moving = count(&document, &["left", "middle", "right"]);
+    let still = count(&document, &["still"]) - (14 - moving);
+    assert_eq!(bodies.sum::<usize>() + still, 7);
 }
 
 #[test]
 fn limit_shows_rigid_bodies_joined_at_hinges() {
-    let arch = arch(0.15, 180.0);
+    let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::limit(Figure::SCREEN, chain, Sway::Right, None);
+    let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
     let document = Document::parse(&picture).unwrap();
-    let hinges: Vec<_> = named(&document, "moved hinge").iter().map(center).collect();
+    let hinges: Vec<_> = named(&document, "hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
-    let body = |name: &str| corners(&named(&document, name)[0]);
+    let body = |name: &str| points(&named(&document, name)[0]);
     // B is a corner of the left and the middle bodies, C of the middle and the right ones.
     for (hinge, bodies) in [
         (hinges[0], ["still", "left"]),
@@ -203,10 +192,9 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 /// The mechanism after the second impact sways right again, so nothing is mirrored.
 #[test]
 fn the_second_impact_has_a_picture_of_its_own() {
-    let arch = arch(0.15, 180.0);
+    let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let scene = Scene::new(&Structure::Arch(Arch::new(5.0, 0.15, 180.0).unwrap()));
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), Some(&scene)).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), &scene).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];
@@ -217,13 +205,13 @@ fn the_second_impact_has_a_picture_of_its_own() {
     // Bodies are counted from the left, as at the first impact.
     let left = |name: &str| {
         let bodies = named(&document, name);
-        corners(&bodies[0])
+        points(&bodies[0])
             .iter()
             .map(|corner| corner.x)
             .fold(f64::INFINITY, f64::min)
     };
     assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
-    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0), None).is_none());
+    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0), &scene).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
@@ -242,9 +230,9 @@ fn the_second_impact_has_a_picture_of_its_own() {
 /// seventh body is empty.
 #[test]
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
-    let arch = arch(0.15, 180.0);
+    let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), None).unwrap();
+    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(
@@ -264,14 +252,22 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
                     .map(|edge| chain.profile(0).point(angle.to_radians(), edge))
             })
             .collect();
-        let shown = corners(&bodies[0]);
-        assert_eq!(shown.len(), 4);
-        for corner in shown {
-            let nearest = expected
+        let shown = points(&bodies[0]);
+        for point in expected {
+            let nearest = shown
                 .iter()
-                .map(|point| (sheet.back(corner) - point).norm() * sheet.scale)
+                .map(|corner| (sheet.back(*corner) - point).norm() * sheet.scale)
                 .fold(f64::INFINITY, f64::min);
             assert!(nearest < PIXEL, "{nearest}");
+        }
+        // Nothing of it lies beyond its sections.
+        for corner in shown.iter().map(|corner| sheet.back(*corner)) {
+            let angle = corner.x.atan2(corner.y).to_degrees() + 90.0;
+            let slack = PIXEL / sheet.scale * 57.3;
+            assert!(
+                pair[0] - slack < angle && angle < pair[1] + slack,
+                "{angle}"
+            );
         }
     }
     assert!(named(&document, "body 7").is_empty());
@@ -321,10 +317,11 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         let mut sheets = Vec::new();
         for document in [&limit, &impact] {
             // The structure at rest is similar to its blocks, wherever it is drawn whole.
-            let whole = named(document, "ring");
+            let whole = ["block", "built"].into_iter();
+            let whole: Vec<_> = whole.flat_map(|name| named(document, name)).collect();
             assert!(!whole.is_empty());
-            for node in &whole {
-                let drawn = strokes(node);
+            for nodes in whole.chunks(outlines_m.len()) {
+                let drawn: Vec<_> = nodes.iter().map(points).collect();
                 assert_eq!(drawn.len(), outlines_m.len());
                 let sheet = Sheet::new([corner(&drawn, 0), corner(&drawn, last)], exact);
                 for (drawn, outline_m) in drawn.iter().zip(outlines_m) {
@@ -341,11 +338,10 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         assert_eq!(mechanism.len(), 4);
         let mut line = points(&named(&limit, "thrust line")[0]);
         assert_eq!(line.len(), outlines_m.len() + 1);
-        let mut moved: Vec<_> = named(&limit, "moved hinge").iter().map(center).collect();
+        let moved: Vec<_> = named(&limit, "hinge").iter().map(center).collect();
         if side == "left" {
             // Drawn in the frame of the sway, hence reversed.
             line.reverse();
-            moved.reverse();
         }
         for (letter, opening) in ["A", "B", "C", "D"].into_iter().zip(mechanism) {
             let shown = center(&named(&limit, &format!("hinge {letter}"))[0]);
@@ -357,9 +353,9 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         }
         // Rigid bodies share their hinges: left and middle the second, middle and right the third.
         for (name, hinges) in [("left", [0, 1]), ("middle", [1, 2]), ("right", [2, 3])] {
-            let body = strokes(&named(&limit, name)[0]);
+            let body = named(&limit, name);
             for hinge in hinges {
-                let corners = body.iter().flatten();
+                let corners = body.iter().flat_map(points);
                 let distances = corners.map(|corner| (corner - moved[hinge]).norm());
                 assert!(
                     distances.fold(f64::INFINITY, f64::min) < PIXEL,
@@ -369,8 +365,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         }
         let drawn: usize = ["still", "left", "middle", "right"]
             .iter()
-            .flat_map(|name| named(&limit, name))
-            .map(|node| strokes(&node).len())
+            .map(|name| named(&limit, name).len())
             .sum();
         assert_eq!(drawn, outlines_m.len());
         // It sways to that side: the hinge between the left and middle bodies moves there.

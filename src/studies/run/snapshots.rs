@@ -196,7 +196,7 @@ impl Snapshots {
                 drawing.curve("support", ends, Stroke::new(color::BLACK, 2.0, ""));
             }
         }
-        view.draw_carried(drawing);
+        view.draw_carried(drawing, false);
         view.draw_blocks(drawing, |_, body| match body {
             None => ("still".to_owned(), "#e4e4e4"),
             Some(body) if sample.poses.len() == BODIES.len() => {

@@ -138,7 +138,7 @@ impl<'a> Cell<'a> {
             hinges: &[],
             exaggeration: 1.0,
         };
-        view.draw_carried(drawing);
+        view.draw_carried(drawing, false);
         view.draw_built(drawing, "");
         view.draw_blocks(drawing, |block, _| (format!("block {}", block + 1), STONE));
         view.draw_ties(drawing);

@@ -67,7 +67,7 @@ fn draw_mechanism(
         hinges: &[],
         exaggeration: 1.0,
     };
-    view.draw_carried(drawing);
+    view.draw_carried(drawing, false);
     let thin = Stroke::new("#777777", 0.6, "");
     for piece in pieces(structure, mechanism) {
         let (name, fill) = match piece.body {
