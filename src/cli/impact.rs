@@ -1,6 +1,5 @@
 //! The command `impact`.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -159,9 +158,6 @@ fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
     };
     let mut folder = Folder::open(parent, &[name])
         .map_err(|error| Failure::Input(format!("{error}; choose another file with --line")))?;
-    folder
-        .file(name)
-        .write_all(&table)
-        .map_err(|error| Failure::Work(format!("cannot write {name}: {error}")))?;
+    folder.write(name, &table)?;
     Ok(folder.complete()?)
 }

@@ -261,8 +261,7 @@ impl Job {
             let _ = write!(results.words, "  {}{}", own.verdict, own.words);
         }
         if let Some(mut folder) = folder {
-            let written = folder.file(OVERLAY).write_all(overlay(&own).as_bytes());
-            written.map_err(|error| Failure::Work(format!("cannot write the picture: {error}")))?;
+            folder.write(OVERLAY, overlay(&own))?;
             let path = folder.path().join(OVERLAY);
             folder.complete()?;
             let all = if runs.len() > 2 { "all" } else { "both" };

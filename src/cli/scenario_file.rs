@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use archrock::output::print::PictureFormat;
@@ -381,8 +381,7 @@ impl Destination {
         };
         let mut folder = folder.map_err(elsewhere)?;
         if let Some(origin) = &self.origin {
-            writeln!(folder.file(ORIGIN), "{origin}")
-                .map_err(|error| Failure::Work(format!("cannot write {ORIGIN}: {error}")))?;
+            folder.write(ORIGIN, format!("{origin}\n"))?;
         }
         Ok(folder.with_pictures(self.pictures))
     }

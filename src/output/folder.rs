@@ -240,13 +240,18 @@ impl Folder {
         &self.path
     }
 
-    /// The file of that name, to write to.
+    /// Writes to the file of that name.
+    ///
+    /// # Errors
+    /// When the system refuses.
     ///
     /// # Panics
     /// When the folder was not opened with this name.
-    pub fn file(&mut self, name: &str) -> &mut impl Write {
+    pub fn write(&mut self, name: &str, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
         let found = self.files.iter_mut().find(|(known, _)| known == name);
-        &mut found.expect("the names are those given to `open`").1
+        let file = &mut found.expect("the names are those given to `open`").1;
+        let written = file.write_all(contents.as_ref());
+        written.map_err(self.cannot_write(name))
     }
 
     /// All files with their names, to be written in turn.
@@ -406,7 +411,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a/b");
         let mut folder = Folder::open(&path, &["x.csv", "seal.json"]).unwrap();
-        folder.file("x.csv").write_all(b"half").unwrap();
+        folder.write("x.csv", b"half").unwrap();
         drop(folder);
         assert!(names(root.path()).is_empty());
     }
@@ -419,7 +424,7 @@ mod tests {
             folder.forget("old.csv");
             fs::write(root.path().join("old.csv"), "old").unwrap();
             fs::write(root.path().join("mine.txt"), "keep").unwrap();
-            folder.file("x.csv").write_all(content.as_bytes()).unwrap();
+            folder.write("x.csv", content.as_bytes()).unwrap();
             folder.complete().unwrap();
             assert_eq!(
                 fs::read_to_string(root.path().join("x.csv")).unwrap(),
@@ -449,7 +454,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let all = ["x.csv", "seal.json"];
         let mut working = Folder::open(root.path(), &all).unwrap();
-        working.file("x.csv").write_all(b"slow").unwrap();
+        working.write("x.csv", b"slow").unwrap();
         let before = names(root.path());
         for files in [&all[..], &all[..1]] {
             let error = Folder::open(root.path(), files).unwrap_err();

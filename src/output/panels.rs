@@ -34,7 +34,7 @@ const INCIPIENT: Stroke = Stroke::new(color::PURPLE, 1.3, "6 4");
 const OVERTURNING: Stroke = Stroke::new(color::VERMILION, 1.8, "8 3 2 3");
 
 /// The states of the structure over time, for shading.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct States {
     pub(crate) start: State,
     pub(crate) changes: Vec<(f64, State)>,

@@ -134,20 +134,20 @@ pub(crate) struct TableWriter<'a, R, W: Write> {
     csv: csv::Writer<W>,
     columns: Vec<Column<'a, R>>,
     rows: usize,
-    what: &'static str,
+    what: String,
 }
 
 impl<'a, R, W: Write> TableWriter<'a, R, W> {
     /// Begins with the header; `what` is the error message if writing fails.
     pub(crate) fn new(
         writer: W,
-        what: &'static str,
+        what: impl Into<String>,
         columns: Vec<Column<'a, R>>,
     ) -> Result<Self, OutputError> {
-        let mut csv = csv::Writer::from_writer(writer);
+        let (what, mut csv) = (what.into(), csv::Writer::from_writer(writer));
         let names = columns.iter().flat_map(|column| &column.names);
         csv.write_record(names.map(|name| &**name))
-            .map_err(OutputError::csv(what))?;
+            .map_err(OutputError::csv(&*what))?;
         Ok(Self {
             csv,
             columns,
@@ -178,7 +178,7 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
             at += width;
         }
         let written = self.csv.serialize(cells);
-        written.map_err(OutputError::csv(self.what))
+        written.map_err(OutputError::csv(&*self.what))
     }
 
     /// Ends the table and returns the number of its rows.

@@ -1,7 +1,6 @@
 //! The results of a study from all its rows: files and words, identical for the program, for merged parts and for Python.
 
 use std::fmt;
-use std::io::Write as _;
 
 use serde::Serialize;
 use serde_json::Value;
@@ -114,11 +113,7 @@ impl Results {
     /// When the system reports an error.
     pub fn write(&self, mut folder: Folder) -> Result<(), OutputError> {
         for (name, contents) in &self.files {
-            let what = format!("cannot write {name}");
-            folder
-                .file(name)
-                .write_all(contents)
-                .map_err(OutputError::io(what))?;
+            folder.write(name, contents)?;
         }
         folder.complete()
     }

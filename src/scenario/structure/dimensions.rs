@@ -20,15 +20,16 @@ pub struct Dimension {
     pub words: String,
 }
 
-/// Side of the structure on which a dimension is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DimensionSide {
-    /// Below, for a width.
-    Below,
-    /// A height.
-    Left,
-    /// A height.
-    Right,
+named! {
+    /// Side of the structure on which a dimension is drawn.
+    pub enum DimensionSide {
+        /// Below, for a width.
+        Below = "below",
+        /// A height.
+        Left = "left",
+        /// A height.
+        Right = "right",
+    }
 }
 
 impl Dimension {

@@ -4,11 +4,11 @@ mod caveats;
 mod comparison;
 mod feet;
 mod film;
+mod open_joints;
 pub mod overlay;
 mod picture;
 mod points;
 pub mod report;
-mod row_picture;
 mod scales;
 mod snapshots;
 mod summary;
@@ -17,7 +17,7 @@ mod words;
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -28,11 +28,10 @@ use thiserror::Error;
 pub use self::caveats::warnings;
 pub use self::comparison::compared;
 use self::overlay::Curves;
-use self::picture::{Picture, Timeline};
+use self::picture::Timeline;
 pub use self::points::MOST_POINTS;
 use self::points::Points;
 use self::report::Report;
-use self::row_picture::RowTimeline;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::summary;
@@ -311,15 +310,10 @@ impl RunResults<'_> {
         let Some(mut folder) = self.folder.take() else {
             return Ok(());
         };
-        let text = &mut self.words;
-        self.collected.write(
-            self.run,
-            &mut folder,
-            &self.history,
-            [samples, &self.verdict],
-            text,
-        )?;
-        write(&mut folder, SUMMARY, "the summary", &pretty(&self.summary))?;
+        let (text, opening) = (&mut self.words, [samples, &self.verdict]);
+        let collected = &self.collected;
+        collected.write(self.run, &mut folder, &self.history, opening, text)?;
+        folder.write(SUMMARY, &pretty(&self.summary))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         let files = self.run.files().into_iter().map(|name| match name {
@@ -362,11 +356,6 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     }
 }
 
-fn write(folder: &mut Folder, name: &str, what: &str, text: &str) -> Result<(), OutputError> {
-    let written = folder.file(name).write_all(text.as_bytes());
-    written.map_err(OutputError::io(format!("cannot write {what}")))
-}
-
 /// The folder of a film, in that of the results.
 pub const FILM: &str = "film";
 
@@ -399,10 +388,10 @@ fn write_film(folder: &mut Folder, stills: &[String]) -> Result<(), OutputError>
 
 /// Data of a history for its words and pictures.
 struct Collected {
-    picture: Box<dyn Picture>,
+    picture: Timeline,
     report: Option<Report>,
-    snapshots: Option<Snapshots>,
-    film: Option<Snapshots>,
+    /// Those of a film first: their number is printed first.
+    snapshots: Vec<Snapshots>,
     notable: Notable,
     points: Points,
     curves: Curves,
@@ -412,20 +401,16 @@ impl Collected {
     /// The page and the snapshots are collected only if there is a folder.
     fn new(run: &Run<'_>, has_folder: bool) -> Self {
         let (model, options) = (&*run.model, &run.options);
-        let snapshots = has_folder && !options.snapshots_s.is_empty();
-        let scene = || scene(run.scenario, model);
+        let snapshots = || Snapshots::new(scene(run.scenario, model), options.exaggeration);
+        let film = options.film_a_second;
+        let film = film.map(|a_second| snapshots().every(1.0 / a_second));
+        let times_s = Some(&options.snapshots_s).filter(|times_s| !times_s.is_empty());
+        let chosen = times_s.map(|times_s| snapshots().at(times_s));
+        let snapshots = film.into_iter().chain(chosen).filter(|_| has_folder);
         Self {
-            picture: match model.row() {
-                Some(row) => Box::new(RowTimeline::new(row)),
-                None => Box::new(Timeline::new(&model.bodies())),
-            },
+            picture: Timeline::new(model),
             report: (has_folder && options.report).then(|| Report::new(run.scenario, model)),
-            snapshots: snapshots
-                .then(|| Snapshots::new(scene(), &options.snapshots_s, options.exaggeration)),
-            film: options
-                .film_a_second
-                .filter(|_| has_folder)
-                .map(|a_second| Snapshots::film(scene(), a_second, options.exaggeration)),
+            snapshots: snapshots.collect(),
             notable: Notable::default(),
             points: run.points.clone(),
             curves: Curves::default(),
@@ -437,23 +422,11 @@ impl Collected {
         if let Some(report) = &mut self.report {
             report.push(sample);
         }
-        if let Some(snapshots) = &mut self.snapshots {
+        for snapshots in &mut self.snapshots {
             snapshots.push(sample);
-        }
-        if let Some(film) = &mut self.film {
-            film.push(sample);
         }
         self.points.push(sample);
         self.curves.push(sample);
-    }
-
-    fn fall(&mut self, sample: &Sample) {
-        if let Some(report) = &mut self.report {
-            report.push_fall(sample);
-        }
-        if let Some(film) = &mut self.film {
-            film.push(sample);
-        }
     }
 
     fn event(&mut self, event: &Event) {
@@ -474,35 +447,21 @@ impl Collected {
         let title = scenario.title().unwrap_or("Rocking history");
         let subject = run.subject(title);
         let picture = self.picture.draw(figure, &subject, history, &self.points);
-        write(folder, PICTURE, "the picture", &picture)?;
+        folder.write(PICTURE, &picture)?;
         if let Some(report) = &self.report {
             let page = report.page(scenario, history, Some(&self.points), opening, words);
-            write(folder, REPORT, "the report", &page)?;
+            folder.write(REPORT, &page)?;
         }
-        if let Some(film) = &self.film {
-            let path = folder.path().join(FILM);
-            let stills = film.stills(figure, title);
-            write_film(folder, &stills)?;
-            let _ = writeln!(
-                words,
-                "  {} pictures of a film in {}",
-                stills.len(),
-                path.display()
-            );
-        }
-        if let Some(snapshots) = &self.snapshots {
-            let picture = snapshots.draw(figure, title);
-            write(folder, SNAPSHOTS, "the snapshots", &picture)?;
-            let places = [("before the start", "first"), ("after the end", "last")];
-            for ((place, which), times_s) in places.into_iter().zip(snapshots.outside_s()) {
-                let times_s: Vec<_> = times_s.iter().map(f64::to_string).collect();
-                if !times_s.is_empty() {
-                    let _ = writeln!(
-                        words,
-                        "  snapshots at {} s are {place}: they show its {which} instant",
-                        times_s.join(", ")
-                    );
-                }
+        for snapshots in &self.snapshots {
+            if snapshots.is_film() {
+                let stills = snapshots.stills(figure, title);
+                write_film(folder, &stills)?;
+                let (count, path) = (stills.len(), folder.path().join(FILM));
+                let path = path.display();
+                let _ = writeln!(words, "  {count} pictures of a film in {path}");
+            } else {
+                folder.write(SNAPSHOTS, &snapshots.draw(figure, title))?;
+                *words += &snapshots.outside();
             }
         }
         Ok(())
@@ -516,8 +475,8 @@ type Running<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
 #[derive(Default)]
 struct Tables<'f> {
     samples: Vec<Running<'f, Sample>>,
-    events: Vec<Running<'f, Event>>,
-    impacts: Vec<Running<'f, Event>>,
+    /// Each with whether it has rows for impacts alone.
+    events: Vec<(bool, Running<'f, Event>)>,
 }
 
 impl<'f> Tables<'f> {
@@ -533,27 +492,24 @@ impl<'f> Tables<'f> {
         let streamed = rotations.map(|file| (ROTATIONS, file));
         let mut tables = Self::default();
         for (name, file) in streamed.into_iter().chain(files) {
-            let (what, columns) = match name {
+            let what = format!("cannot write the {}", name.trim_end_matches(".csv"));
+            let columns = match name {
                 ROTATIONS => {
                     let ground = run.scenario.ground_motion();
                     let mut columns = tables::rotations(model, ground, run.scales);
                     columns.extend(run.points.columns());
-                    ("cannot write the rotations", columns)
+                    columns
                 }
-                POSES => ("cannot write the poses", tables::poses(&model.bodies())),
-                JOINTS => ("cannot write the joints", tables::joints(model)),
-                EVENTS => {
-                    let (what, columns) = ("cannot write the events", tables::events(model));
-                    tables.events.push(TableWriter::new(file, what, columns)?);
-                    continue;
-                }
-                IMPACTS => {
+                POSES => tables::poses(&model.bodies()),
+                JOINTS => tables::joints(model),
+                EVENTS | IMPACTS => {
                     let columns = match model.as_mechanisms() {
+                        _ if name == EVENTS => tables::events(model),
                         Some(model) => tables::impacts(model),
                         None => tables::landings(model),
                     };
-                    let what = "cannot write the impacts";
-                    tables.impacts.push(TableWriter::new(file, what, columns)?);
+                    let table = TableWriter::new(file, what, columns)?;
+                    tables.events.push((name == IMPACTS, table));
                     continue;
                 }
                 _ => continue,
@@ -569,15 +525,14 @@ impl<'f> Tables<'f> {
     }
 
     fn event(&mut self, event: &Event) -> Result<(), OutputError> {
-        let impacts = self.impacts.iter_mut();
-        let impacts = impacts.filter(|_| event.impact.is_some());
-        let mut tables = self.events.iter_mut().chain(impacts);
-        tables.try_for_each(|table| table.write(event))
+        let tables = self.events.iter_mut();
+        let mut tables = tables.filter(|(of_impacts, _)| !of_impacts || event.impact.is_some());
+        tables.try_for_each(|(_, table)| table.write(event))
     }
 
     /// Completes the tables and returns the number of samples.
     fn finish(self) -> Result<usize, OutputError> {
-        for table in self.events.into_iter().chain(self.impacts) {
+        for (_, table) in self.events {
             table.finish()?;
         }
         let mut samples = self.samples.into_iter();
@@ -594,50 +549,40 @@ struct Recording<'r, 'f> {
     written: Result<(), OutputError>,
 }
 
-impl Recording<'_, '_> {
-    fn proceed(&mut self, written: Result<(), OutputError>) -> ControlFlow<()> {
-        self.written = written;
-        match self.written {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        }
-    }
-}
-
 impl Recorder for Recording<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         (self.watch)(Stage::Reached(sample.time_s));
         self.collected.sample(sample);
-        let written = self.tables.sample(sample);
-        self.proceed(written)
+        self.written = self.tables.sample(sample);
+        flow(&self.written)
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         self.collected.event(event);
         // If a failed table ended the history, that end is not an event.
-        if self.written.is_err() {
-            return ControlFlow::Break(());
+        if self.written.is_ok() {
+            self.written = self.tables.event(event);
         }
-        let written = self.tables.event(event);
-        self.proceed(written)
+        flow(&self.written)
     }
 
     fn wants_thrust_line(&self) -> bool {
-        let Collected {
-            report,
-            snapshots,
-            film,
-            ..
-        } = &self.collected;
-        report.is_some() || snapshots.is_some() || film.is_some()
+        self.collected.report.is_some() || !self.collected.snapshots.is_empty()
     }
 
     fn wants_fall(&self) -> bool {
-        self.collected.report.is_some() || self.collected.film.is_some()
+        let mut snapshots = self.collected.snapshots.iter();
+        self.collected.report.is_some() || snapshots.any(Snapshots::is_film)
     }
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self.collected.fall(sample);
+        if let Some(report) = &mut self.collected.report {
+            report.push_fall(sample);
+        }
+        let snapshots = self.collected.snapshots.iter_mut();
+        for film in snapshots.filter(|snapshots| snapshots.is_film()) {
+            film.push(sample);
+        }
         ControlFlow::Continue(())
     }
 
@@ -645,5 +590,13 @@ impl Recorder for Recording<'_, '_> {
         if let Some(report) = &mut self.collected.report {
             report.end_fall(end);
         }
+    }
+}
+
+/// Breaks off after a failure.
+const fn flow(written: &Result<(), OutputError>) -> ControlFlow<()> {
+    match written {
+        Ok(()) => ControlFlow::Continue(()),
+        Err(_) => ControlFlow::Break(()),
     }
 }

@@ -1,33 +1,18 @@
 //! `history.svg`: a history at a glance, over a shared time axis.
 
+use super::open_joints::OpenJoints;
 use super::points::Points;
-use crate::dynamics::history::{Event, Outcome, Sample, State, Summary};
+use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary};
+use crate::dynamics::model::Model;
 use crate::mechanics::sway::Sway;
 use crate::output::Figure;
+use crate::output::axes::Scale;
 use crate::output::chart::{Mark, Shape};
-use crate::output::envelope::Envelope;
+use crate::output::envelope::{COLUMNS, Envelope};
 use crate::output::figure::Panel;
 use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, overturns};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
-
-/// Collects samples and events of a history, and draws them.
-pub(super) trait Picture {
-    /// Takes a sample. Samples come in the order of time.
-    fn sample(&mut self, sample: &Sample);
-
-    /// Takes an event. Events come in the order of time.
-    fn event(&mut self, _event: &Event) {}
-
-    /// Draws the picture, with the summary of the history.
-    fn draw(
-        &self,
-        figure: Figure,
-        subject: &Subject<'_>,
-        summary: &Summary,
-        points: &Points,
-    ) -> String;
-}
 
 /// The excess of the thrust line is cut off at this value, in thicknesses: a falling structure has
 /// values that would hide all others.
@@ -46,12 +31,17 @@ struct FarCycle {
 }
 
 /// The limit is drawn if a motion reaches this fraction of the unstable rotation or of the barrier.
-pub(super) const FAR: f64 = 0.25;
+const FAR: f64 = 0.25;
 
 /// The stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
+
+/// Number of columns for all curves of rotations together, so that long rows do not make huge files.
+const COLUMNS_OF_ALL: usize = 16_000;
+/// Least number of columns for one of them.
+const LEAST_COLUMNS: usize = 200;
 
 /// Collects the samples of a history, thinned, and draws them.
 #[derive(Clone, Debug)]
@@ -59,35 +49,95 @@ pub(super) struct Timeline {
     bodies: Vec<String>,
     rotations_rad: Vec<Envelope>,
     excess_ratio: Envelope,
-    energy_ratio: Envelope,
+    energy: Envelope,
+    /// Whether energies are relative to a barrier; otherwise they are in J.
+    in_barriers: bool,
+    /// Displacement of the right foot relative to the left one, to the right and upwards, in millimetres.
+    feet_mm: [Envelope; 2],
+    slips_mm: Vec<Envelope>,
+    /// The joints of a row of blocks.
+    joints: Option<OpenJoints>,
     /// The last phase, and when it began.
     phase: usize,
     phase_from_s: f64,
     /// Half cycles that went far.
     far: Vec<FarCycle>,
-    /// The states of the structure over time.
+    /// The states of mechanisms over time, and their impacts.
     states: States,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
 
+/// Empty envelopes for a number of curves.
+fn envelopes(count: usize) -> Vec<Envelope> {
+    let columns = (COLUMNS_OF_ALL / count.max(1)).clamp(LEAST_COLUMNS, COLUMNS);
+    vec![Envelope::of_columns(columns); count]
+}
+
+/// Adds a value to each envelope.
+fn push(envelopes: &mut [Envelope], time_s: f64, values: impl IntoIterator<Item = f64>) {
+    for (envelope, value) in envelopes.iter_mut().zip(values) {
+        envelope.push(time_s, value);
+    }
+}
+
 impl Timeline {
-    /// An empty timeline for bodies of these names.
-    pub(super) fn new(bodies: &[String]) -> Self {
+    /// An empty timeline for a model of motion.
+    pub(super) fn new(model: &dyn Model) -> Self {
+        let bodies = model.bodies();
         Self {
-            bodies: bodies.to_vec(),
-            rotations_rad: vec![Envelope::default(); bodies.len()],
+            rotations_rad: envelopes(bodies.len()),
+            bodies,
             excess_ratio: Envelope::default(),
-            energy_ratio: Envelope::default(),
+            energy: Envelope::default(),
+            in_barriers: false,
+            feet_mm: Default::default(),
+            slips_mm: envelopes(model.shape().slipping),
+            joints: model.row().map(OpenJoints::new),
             phase: 0,
             phase_from_s: 0.0,
             far: Vec::new(),
-            states: States {
-                start: State::Rest,
-                changes: Vec::new(),
-            },
+            states: States::default(),
             impacts_s: Vec::new(),
             end_s: 0.0,
+        }
+    }
+
+    /// Takes a sample. Samples come in the order of time.
+    pub(super) fn sample(&mut self, sample: &Sample) {
+        let time_s = sample.time_s;
+        if sample.phase == 0 {
+            self.states.start = sample.state;
+        }
+        self.end_s = time_s;
+        let in_mm = |metres: &f64| 1e3 * metres;
+        let rotations_rad = sample.rotations_rad.iter().copied();
+        push(&mut self.rotations_rad, time_s, rotations_rad);
+        push(
+            &mut self.slips_mm,
+            time_s,
+            sample.offsets_m.iter().map(in_mm),
+        );
+        let apart_mm = sample.feet_apart_m.iter().map(in_mm);
+        push(&mut self.feet_mm, time_s, apart_mm);
+        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
+        self.excess_ratio.push(time_s, excess_ratio);
+        self.in_barriers = sample.energy_ratio.is_some();
+        let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
+        self.energy.push(time_s, energy);
+        self.note_if_far(sample);
+        if let Some(joints) = &mut self.joints {
+            joints.push(sample);
+        }
+    }
+
+    /// Takes an event. Events come in the order of time.
+    pub(super) fn event(&mut self, event: &Event) {
+        // A row has thousands; its summary has its half cycles.
+        if self.joints.is_none() {
+            self.states.changes.push((event.time_s, event.state));
+            let time_s = event.impact.as_ref().map(|_| event.time_s);
+            self.impacts_s.extend(time_s);
         }
     }
 
@@ -118,34 +168,9 @@ impl Timeline {
             None => {}
         }
     }
-}
 
-impl Picture for Timeline {
-    fn sample(&mut self, sample: &Sample) {
-        let time_s = sample.time_s;
-        if sample.phase == 0 {
-            self.states.start = sample.state;
-        }
-        self.end_s = time_s;
-        let envelopes = self.rotations_rad.iter_mut();
-        for (envelope, rotation) in envelopes.zip(&sample.rotations_rad) {
-            envelope.push(time_s, *rotation);
-        }
-        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
-        self.excess_ratio.push(time_s, excess_ratio);
-        self.note_if_far(sample);
-        self.energy_ratio
-            .push(time_s, sample.energy_ratio.unwrap_or(0.0));
-    }
-
-    fn event(&mut self, event: &Event) {
-        self.states.changes.push((event.time_s, event.state));
-        if event.impact.is_some() {
-            self.impacts_s.push(event.time_s);
-        }
-    }
-
-    fn draw(
+    /// Draws the picture, with the summary of the history.
+    pub(super) fn draw(
         &self,
         figure: Figure,
         subject: &Subject<'_>,
@@ -154,35 +179,85 @@ impl Picture for Timeline {
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
         let mut panels = Panels::new(figure, subject.title, span_s);
-        let states = Some(&self.states);
+        let states = match summary.row() {
+            Some(row) => &states(summary, &row.half_cycles),
+            None => &self.states,
+        };
+        let states = Some(states);
         let shows = |panel| figure.shows(panel, points.any());
+        let [ground_px, rotation_px, energy_px] = match self.joints {
+            Some(_) => [110.0, 240.0, 120.0],
+            None => [130.0, 260.0, 125.0],
+        };
         if shows(Panel::Ground) {
-            panels.ground(130.0, subject, states);
+            panels.ground(ground_px, subject, states);
+            self.add_feet(&mut panels, states);
         }
         if shows(Panel::Rotation) {
-            self.add_rotations(&mut panels, summary.overturned_s());
+            let (mut marks, y) = match self.joints {
+                Some(_) => self.rotations_of_row(&mut panels, summary.largest_body()),
+                None => self.rotations(&mut panels),
+            };
+            let overturned_s = summary.overturned_s();
+            marks.extend(overturned_s.map(|time_s| overturning(time_s, y)));
+            panels.panel("Rotation (rad)", rotation_px, y, states, marks);
+        }
+        if shows(Panel::Joints)
+            && let Some(joints) = &self.joints
+        {
+            joints.add_to(&mut panels, figure, self.end_s);
+        }
+        if shows(Panel::Slip) {
+            let slips = self.slips_mm.iter().enumerate();
+            let slips = slips
+                .map(|(joint, slip)| Mark::curve(format!("slip {joint}"), BLOCK, slip.points()));
+            let slips = slips.filter(|slip| !slip.is_flat()).collect();
+            panels.curves("Slip (mm)", 120.0, slips, states);
         }
         if shows(Panel::Points) {
             points.draw(&mut panels, states);
         }
-        let energy = &self.energy_ratio;
-        let excess = &self.excess_ratio;
-        for (panel, label, name, envelope) in [
-            (Panel::Energy, "Total energy / barrier", "energy", energy),
-            (Panel::Thrust, "Thrust line outside / t", "excess", excess),
-        ] {
-            if shows(panel) {
-                let curve = Mark::curve(name, MAIN, envelope.points());
-                panels.curves(label, 125.0, vec![curve], states);
+        let energy = Mark::curve("energy", MAIN, self.energy.points());
+        if shows(Panel::Energy) && !energy.is_flat() {
+            let label = match self.in_barriers {
+                true => "Total energy / barrier",
+                false => "Energy (J)",
+            };
+            let mut curves = vec![energy];
+            // A barrier far above the curve would flatten it.
+            let over_barrier = summary.peak_potential_over_barrier();
+            if over_barrier.is_some_and(|peak| peak >= FAR) {
+                let ends = span_s.map(|time_s| (time_s, 1.0));
+                curves.push(Mark::curve("barrier", BARRIER, ends));
+                let words = "gravity alone overturns the first mechanism";
+                panels.keys.push(Key::line(words, BARRIER));
             }
+            panels.curves(label, energy_px, curves, states);
+        }
+        if shows(Panel::Thrust) && self.joints.is_none() {
+            let excess = Mark::curve("excess", MAIN, self.excess_ratio.points());
+            panels.curves("Thrust line outside / t", energy_px, vec![excess], states);
+        }
+        if shows(Panel::Rotation) && summary.overturned_s().is_some() {
+            panels.keys.push(overturns());
         }
         panels.finish(summary.outcome != Outcome::NeverMoved)
     }
-}
 
-impl Timeline {
-    /// Adds the panel of the rotations, with impacts, unstable equilibria and the instant of overturning.
-    fn add_rotations(&self, panels: &mut Panels, overturned_s: Option<f64>) {
+    /// Adds the panel of the right foot, if it moves.
+    fn add_feet(&self, panels: &mut Panels, states: Option<&States>) {
+        let names = ["right foot to the right", "right foot upwards"];
+        let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
+        let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
+        let feet: Vec<Mark> = feet.filter(|foot| !foot.is_flat()).collect();
+        if feet.len() > 1 {
+            panels.keys.extend(feet.iter().map(Mark::key));
+        }
+        panels.curves("Right foot (mm)", 110.0, feet, states);
+    }
+
+    /// The rotations of a mechanism with its impacts and unstable equilibria, and their scale.
+    fn rotations(&self, panels: &mut Panels) -> (Vec<Mark>, Scale) {
         let mut marks = Vec::new();
         let bodies = self.bodies.iter().zip(&self.rotations_rad);
         for ((body, envelope), stroke) in bodies.zip(CURVES) {
@@ -197,11 +272,8 @@ impl Timeline {
             Mark::curve("unstable", unstable(cycle.body), ends)
         }));
         let y = around(&marks, [], 6);
-        marks.push(Mark::new(
-            "impact",
-            IMPACT,
-            Shape::Ticks(self.impacts_s.clone()),
-        ));
+        let ticks = Shape::Ticks(self.impacts_s.clone());
+        marks.push(Mark::new("impact", IMPACT, ticks));
         if !self.impacts_s.is_empty() {
             panels.keys.push(Key::new("impacts", Sign::Tick(IMPACT)));
         }
@@ -212,12 +284,46 @@ impl Timeline {
             };
             panels.keys.push(Key::line(words, unstable(cycle.body)));
         }
-        if let Some(time_s) = overturned_s {
-            marks.push(overturning(time_s, y));
-            panels.keys.push(overturns());
+        (marks, y)
+    }
+
+    /// The rotations of blocks and their scale. The block that rotates most is drawn on top of the others.
+    fn rotations_of_row(&self, panels: &mut Panels, largest: usize) -> (Vec<Mark>, Scale) {
+        let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
+        let strokes = others.map(|block| (block, BLOCK));
+        let curves = strokes.chain([(largest, LARGEST)]).map(|(block, stroke)| {
+            let points = self.rotations_rad[block].points();
+            Mark::curve((block + 1).to_string(), stroke, points)
+        });
+        let marks: Vec<Mark> = curves.collect();
+        if marks.len() > 1 {
+            let name = format!("block {}, which turns most", largest + 1);
+            let keys = [Key::line(name, LARGEST), Key::line("others", BLOCK)];
+            panels.keys.extend(keys);
         }
-        panels.panel("Rotation (rad)", 260.0, y, Some(&self.states), marks);
+        let y = around(&marks, [], 6);
+        (marks, y)
+    }
+}
+
+/// The states of a row: its half cycles, and the end.
+fn states(summary: &Summary, half_cycles: &[HalfCycle]) -> States {
+    let end = match summary.outcome {
+        Outcome::Rest => Some(State::Rest),
+        Outcome::Overturned(sway) => Some(State::Overturned(sway)),
+        _ => None,
+    };
+    let cycles = half_cycles.iter();
+    let changes = cycles.map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)));
+    let end = end.map(|state| (summary.outcome_time_s, state));
+    States {
+        start: State::Rest,
+        changes: changes.chain(end).collect(),
     }
 }
 
 const IMPACT: Stroke = Stroke::new(color::VERMILION, 1.0, "");
+const UPWARDS: Stroke = Stroke::new(color::GREEN, 1.6, "7 3");
+const BARRIER: Stroke = Stroke::new(color::VERMILION, 1.0, "1 3");
+const LARGEST: Stroke = Stroke::new(color::BLUE, 1.8, "");
+const BLOCK: Stroke = Stroke::new(color::BLACK, 0.5, "");

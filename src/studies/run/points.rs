@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
+use super::report::packed::curve;
 use super::summary::PointPeaks;
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::chart::Mark;
@@ -142,11 +143,9 @@ impl Points {
             .map(|((name, stroke), along)| Mark::curve(name, stroke, along.millimetres.points()))
             .collect();
         if !curves.iter().all(Mark::is_flat) {
-            let keys = curves.iter();
-            let keys = keys.map(Mark::key);
-            panels.keys.extend(keys);
-            panels.curves("Displacement (mm)", 150.0, curves, states);
+            panels.keys.extend(curves.iter().map(Mark::key));
         }
+        panels.curves("Displacement (mm)", 150.0, curves, states);
     }
 
     /// Names of their curves, for the displacements to the right and upwards.
@@ -167,20 +166,13 @@ impl Points {
     }
 
     /// Their positions and named curves in millimetres, for the page.
-    pub(super) fn on_page(&self, curve: impl Fn(&[(f64, f64)]) -> String) -> Value {
+    pub(super) fn on_page(&self) -> Value {
         let point = |(watched, names): (&Watched, [String; 2])| {
-            let curves = watched
-                .displacements
-                .iter()
-                .zip(names)
-                .map(|(along, name)| {
-                    let points: Vec<_> = along.millimetres.points().collect();
-                    json!({ "name": name, "curve": curve(&points) })
-                });
-            json!({
-                "at_m": [watched.point.at_m.x, watched.point.at_m.y],
-                "curves": curves.collect::<Vec<_>>(),
-            })
+            let curves = watched.displacements.iter().zip(names);
+            let curves = curves.map(
+                |(along, name)| json!({ "name": name, "curve": curve(along.millimetres.points()) }),
+            );
+            json!({ "at_m": watched.point.at_m, "curves": curves.collect::<Vec<_>>() })
         };
         self.watched.iter().zip(self.names()).map(point).collect()
     }

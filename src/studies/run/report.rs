@@ -4,7 +4,7 @@
 //! displacements and thrust as 16-bit multiples of a unit, states and joints in 8 bits.
 //! Everything drawn is thinned, so that the page stays below half a megabyte for rows of a few dozen blocks.
 
-mod packed;
+pub(super) mod packed;
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -30,7 +30,7 @@ use crate::output::ground::curve_g;
 use crate::output::page::{escaped, filled, script_safe};
 use crate::output::scene::{FARTHEST, Mark, Piece, Scene};
 use crate::scenario::Scenario;
-use crate::scenario::{DimensionSide, metres};
+use crate::scenario::metres;
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
@@ -189,29 +189,21 @@ impl Report {
             list(faces.map(flat))
         });
         let dimensions = self.scene.dimensions.iter().map(|dimension| {
-            let side = match dimension.side {
-                DimensionSide::Below => "below",
-                DimensionSide::Left => "left",
-                DimensionSide::Right => "right",
-            };
-            json!({ "ends_m": flat(dimension.ends_m), "side": side, "text": dimension.text })
+            json!({ "ends_m": flat(dimension.ends_m), "side": dimension.side, "text": dimension.text })
         });
         let opens_s = strongest_s(&frames[..fall_from], history);
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
-        let energy_label = match (self.in_barriers, history.row()) {
-            (false, _) => "Energy (J)",
-            (true, None) => {
-                "Kinetic and potential energy over the barrier of the mechanism that moves"
-            }
-            (true, Some(_)) => {
-                "Kinetic and potential energy over the barrier of the first mechanism"
-            }
+        let mechanism = match history.row() {
+            None => "the mechanism that moves",
+            Some(_) => "the first mechanism",
         };
-        let excess = self
-            .leaves
-            .then(|| curve(&self.excess_ratio.points().collect::<Vec<_>>()));
+        let energy_label = match self.in_barriers {
+            true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
+            false => "Energy (J)".to_owned(),
+        };
+        let excess = self.leaves.then(|| curve(self.excess_ratio.points()));
         let end_s = frames[..fall_from]
             .last()
             .map_or(ground.start_s(), |frame| frame.time_s);
@@ -233,11 +225,11 @@ impl Report {
             "across": list(across),
             "layouts": list(hinges.iter().map(|open| self.layout(open, points, unit_m))),
             "frames": self.frames(ground, frames, layout_of, joints.len()),
-            "points": points.map(|points| points.on_page(curve)),
+            "points": points.map(Points::on_page),
             "energy_label": energy_label,
             "curves": {
-                "ground_g": curve(&curve_g(ground, self.gravity_m_s2, end_s)),
-                "energy": curve(&self.energy.points().collect::<Vec<_>>()),
+                "ground_g": curve(curve_g(ground, self.gravity_m_s2, end_s)),
+                "energy": curve(self.energy.points()),
                 "excess": excess,
             },
         })
@@ -273,14 +265,14 @@ impl Report {
         })
     }
 
-    /// The data that change from frame to frame.
+    /// The data that change from frame to frame: in base 64, as multiples of a unit if there is one.
     fn frames(
         &self,
         ground: &GroundMotion,
         frames: &[&Sample],
         layouts: Vec<u16>,
         joints: usize,
-    ) -> Frames {
+    ) -> Value {
         let times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
         let poses = || frames.iter().flat_map(|frame| &frame.poses);
         let shifts = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
@@ -324,44 +316,24 @@ impl Report {
             State::Rocking(Sway::Left) => 2,
             State::Overturned(_) => 3,
         });
-        Frames {
-            times_s: encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
-            rotations,
-            rotation_unit_rad,
-            shifts,
-            shift_unit_m,
-            layouts: encoded(layouts.into_iter().map(u16::to_le_bytes)),
-            ground_m: floats(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
-            ground_g: floats(ground_g),
-            right_foot_m: ground.right_foot().map(|_| floats(apart_m)),
-            thrust_unit: has_thrust.then_some(thrust_unit),
-            thrust: encoded(thrust.map(i16::to_le_bytes)),
-            largest_stress_pa: (largest_pa > 0.0).then_some(largest_pa),
-            pressed: encoded(pressed.map(u8::to_le_bytes)),
-            joints: encoded(codes.map(u8::to_le_bytes)),
-            states: encoded(states.map(u8::to_le_bytes)),
-        }
+        json!({
+            "times_s": encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
+            "rotations": rotations,
+            "rotation_unit_rad": rotation_unit_rad,
+            "shifts": shifts,
+            "shift_unit_m": shift_unit_m,
+            "layouts": encoded(layouts.into_iter().map(u16::to_le_bytes)),
+            "ground_m": floats(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
+            "ground_g": floats(ground_g),
+            "right_foot_m": ground.right_foot().map(|_| floats(apart_m)),
+            "thrust_unit": has_thrust.then_some(thrust_unit),
+            "thrust": encoded(thrust.map(i16::to_le_bytes)),
+            "largest_stress_pa": (largest_pa > 0.0).then_some(largest_pa),
+            "pressed": encoded(pressed.map(u8::to_le_bytes)),
+            "joints": encoded(codes.map(u8::to_le_bytes)),
+            "states": encoded(states.map(u8::to_le_bytes)),
+        })
     }
-}
-
-/// Numbers of a page that change from frame to frame: in base 64, as multiples of a unit if there is one.
-#[derive(Serialize)]
-struct Frames {
-    times_s: String,
-    rotations: String,
-    rotation_unit_rad: f64,
-    shifts: String,
-    shift_unit_m: f64,
-    layouts: String,
-    ground_m: String,
-    ground_g: String,
-    right_foot_m: Option<String>,
-    thrust_unit: Option<f64>,
-    thrust: String,
-    largest_stress_pa: Option<f64>,
-    pressed: String,
-    joints: String,
-    states: String,
 }
 
 fn list(items: impl Iterator<Item = impl Serialize>) -> Value {

@@ -32,65 +32,76 @@ const COLUMNS: usize = 3;
 const LEAST_PX: f64 = 180.0;
 
 impl Snapshots {
-    /// Snapshots of a structure at these times in seconds, with displacements multiplied by `exaggeration`.
-    pub(super) fn new(scene: Scene, times_s: &[f64], exaggeration: f64) -> Self {
+    /// Snapshots of a structure, with displacements multiplied by `exaggeration`.
+    pub(super) const fn new(scene: Scene, exaggeration: f64) -> Self {
         Self {
             scene,
             exaggeration,
-            taken: times_s.iter().map(|time_s| (*time_s, None)).collect(),
+            taken: Vec::new(),
             film: None,
             span_s: [f64::INFINITY, f64::NEG_INFINITY],
         }
     }
 
-    /// Pictures of a film, `a_second` of them for each second.
-    pub(super) fn film(scene: Scene, a_second: f64, exaggeration: f64) -> Self {
-        Self {
-            film: Some((1.0 / a_second, f64::NEG_INFINITY)),
-            ..Self::new(scene, &[], exaggeration)
-        }
+    /// Those at these times, in seconds.
+    pub(super) fn at(mut self, times_s: &[f64]) -> Self {
+        self.taken = times_s.iter().map(|time_s| (*time_s, None)).collect();
+        self
+    }
+
+    /// Pictures of a film, one at each of these intervals, in seconds.
+    pub(super) const fn every(mut self, interval_s: f64) -> Self {
+        self.film = Some((interval_s, f64::NEG_INFINITY));
+        self
+    }
+
+    pub(super) const fn is_film(&self) -> bool {
+        self.film.is_some()
     }
 
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
-        let [start_s, _] = self.span_s;
-        self.span_s = [start_s.min(sample.time_s), sample.time_s];
-        if let Some((_, next_s)) = &mut self.film
-            && *next_s == f64::NEG_INFINITY
-        {
-            *next_s = sample.time_s;
-        }
-        if let Some((every_s, next_s)) = &mut self.film
-            && sample.time_s >= *next_s - 1e-9
-            && self.taken.len() < MOST_STILLS
-        {
-            *next_s += *every_s;
-            self.taken.push((sample.time_s, Some(sample.clone())));
+        let time_s = sample.time_s;
+        self.span_s = [self.span_s[0].min(time_s), time_s];
+        if let Some((every_s, next_s)) = &mut self.film {
+            if time_s >= *next_s - 1e-9 && self.taken.len() < MOST_STILLS {
+                let due_s = if next_s.is_finite() { *next_s } else { time_s };
+                *next_s = due_s + *every_s;
+                self.taken.push((time_s, Some(sample.clone())));
+            }
             return;
         }
-        if self.film.is_some() {
-            return;
-        }
-        for (time_s, nearest) in &mut self.taken {
-            let miss_s = |sample: &Sample| (sample.time_s - *time_s).abs();
-            if nearest
-                .as_ref()
-                .is_none_or(|nearest| miss_s(sample) < miss_s(nearest))
-            {
+        for (wanted_s, nearest) in &mut self.taken {
+            let miss_s = |sample: &Sample| (sample.time_s - *wanted_s).abs();
+            let is_nearer = |nearest: &Sample| miss_s(sample) < miss_s(nearest);
+            if nearest.as_ref().is_none_or(is_nearer) {
                 *nearest = Some(sample.clone());
             }
         }
     }
 
-    /// Requested times in seconds before the start of the history, whose pictures show its first instant, and after its end, whose
+    /// Lines about requested times before the start of the history, whose pictures show its first instant, and after its end, whose
     /// pictures show its last instant.
-    pub(super) fn outside_s(&self) -> [Vec<f64>; 2] {
+    pub(super) fn outside(&self) -> String {
         let [start_s, end_s] = self.span_s;
-        let times = || self.taken.iter().map(|(time_s, _)| *time_s);
-        [
-            times().filter(|time_s| *time_s < start_s).collect(),
-            times().filter(|time_s| *time_s > end_s).collect(),
-        ]
+        let line = |is_outside: &dyn Fn(f64) -> bool, place: &str| {
+            let times_s = self.taken.iter().map(|(time_s, _)| *time_s);
+            let times_s = times_s.filter(|time_s| is_outside(*time_s));
+            let times_s: Vec<_> = times_s.map(|time_s| time_s.to_string()).collect();
+            match times_s.join(", ") {
+                none if none.is_empty() => none,
+                times_s => format!("  snapshots at {times_s} s are {place} instant\n"),
+            }
+        };
+        let before = line(
+            &|time_s| time_s < start_s,
+            "before the start: they show its first",
+        );
+        before
+            + &line(
+                &|time_s| time_s > end_s,
+                "after the end: they show its last",
+            )
     }
 
     /// The largest joint stress in any of the pictures, in Pa.

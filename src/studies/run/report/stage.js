@@ -99,16 +99,11 @@ find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);
 
 function draw() {
   const ratio = window.devicePixelRatio || 1;
-  const wide = stage.clientWidth || 800;
-  const tall = stage.clientHeight || 400;
-  if (stage.width !== Math.round(wide * ratio) || stage.height !== Math.round(tall * ratio)) {
-    stage.width = Math.round(wide * ratio);
-    stage.height = Math.round(tall * ratio);
-  }
+  const [wide, tall] = [stage.clientWidth || 800, stage.clientHeight || 400];
+  const inDots = [wide, tall].map((length) => Math.round(length * ratio));
+  if (stage.width !== inDots[0] || stage.height !== inDots[1]) [stage.width, stage.height] = inDots;
   const pen = stage.getContext("2d");
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  const ink = css("--ink");
-  const soft = css("--soft");
   pen.fillStyle = css("--paper");
   pen.fillRect(0, 0, wide, tall);
   const sizes = find("sizes").checked && data.dimensions.length > 0;
@@ -126,28 +121,20 @@ function draw() {
     origin[0] + scale * (x + ground[0] - camera[0]),
     origin[1] - scale * (y + ground[1] - camera[1]),
   ];
-  const path = (points, close) => {
-    pen.beginPath();
-    points.forEach((point, i) => (i ? pen.lineTo(...onScreen(point)) : pen.moveTo(...onScreen(point))));
-    if (close) pen.closePath();
-  };
-  pen.lineWidth = 1;
   pen.font = "12px system-ui, sans-serif";
   pen.lineJoin = "round";
+  const trace = tracer(pen);
+  const lineOf = (look, ...lines) => trace(look, ...lines.map((line) => line.map(onScreen)));
 
   // The rule, fixed in space.
   const step = roundStep(60 / scale);
   const left = camera[0] + (0 - origin[0]) / scale;
   const right = camera[0] + (wide - origin[0]) / scale;
-  pen.fillStyle = soft;
+  pen.fillStyle = css("--soft");
   pen.textAlign = "center";
   for (let mark = Math.ceil(left / step); mark * step <= right; mark += 1) {
     const x = origin[0] + scale * (mark * step - camera[0]);
-    pen.strokeStyle = css("--line");
-    pen.beginPath();
-    pen.moveTo(x, 0);
-    pen.lineTo(x, tall - 22);
-    pen.stroke();
+    trace({ stroke: "--line" }, [[x, 0], [x, tall - 22]]);
     pen.fillText(`${Number((mark * step).toPrecision(6))} m`, x, tall - 8);
   }
 
@@ -155,235 +142,171 @@ function draw() {
   const floor = onScreen([0, low[1]])[1];
   pen.fillStyle = css("--earth");
   pen.fillRect(0, floor, wide, 14);
-  pen.strokeStyle = ink;
-  pen.beginPath();
-  pen.moveTo(0, floor);
-  pen.lineTo(wide, floor);
   const hatch = 16;
   const phase = (((scale * (ground[0] - camera[0])) % hatch) + hatch) % hatch;
-  for (let x = phase - hatch; x < wide + hatch; x += hatch) {
-    pen.moveTo(x, floor + 14);
-    pen.lineTo(x + 8, floor);
-  }
-  pen.stroke();
+  const hatches = [[[0, floor], [wide, floor]]];
+  for (let x = phase - hatch; x < wide + hatch; x += hatch) hatches.push([[x, floor + 14], [x + 8, floor]]);
+  trace({ stroke: "--ink" }, ...hatches);
   if (sizes) drawSizes(pen, onScreen, floor);
-  pen.strokeStyle = ink;
   const foot = [0, 1].map((axis) => (rightFootM ? exaggeration * blend(rightFootM, 2, axis, at) : 0));
   const [built, movedTo] = data.supports;
   const faces = built.map((face, i) => face.map((x, k) => x + (movedTo[i][k] - x) * exaggeration));
   faces.forEach(([ax, ay, bx, by], right) => {
-    pen.lineWidth = 4;
     const [x, y] = foot.map((gone) => right * gone);
-    path([[x + ax - 0.3 * (bx - ax), y + ay - 0.3 * (by - ay)], [x + bx + 0.3 * (bx - ax), y + by + 0.3 * (by - ay)]]);
-    pen.stroke();
+    const end = (part) => [x + ax + part * (bx - ax), y + ay + part * (by - ay)];
+    lineOf({ stroke: "--ink", width: 4 }, [end(-0.3), end(1.3)]);
   });
 
   // The blocks: where they were, and where they are.
   const layout = layouts[layoutOf[at.frame]];
   const poses = posesAt(at);
   const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
-  const outline = (piece) => {
-    const corners = [];
-    for (let i = 0; i < piece.outline.length; i += 2) {
-      corners.push([piece.body, piece.outline[i] * unitM, piece.outline[i + 1] * unitM]);
-    }
-    return corners;
-  };
-  const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone", "--stone"];
-  pen.lineWidth = 1;
-  pen.setLineDash([4, 4]);
-  pen.strokeStyle = soft;
+  const outline = ({ body, outline }) =>
+    Array.from({ length: outline.length / 2 }, (_, i) => [body, outline[2 * i] * unitM, outline[2 * i + 1] * unitM]);
+  const fills = bodies === 3 ? ["--left", "--middle", "--right"] : ["--stone"];
   for (const piece of layout.pieces) {
-    path(outline(piece).map(([, x, y]) => [x, y]), true);
-    pen.stroke();
+    lineOf({ stroke: "--soft", dash: [4, 4], close: true }, outline(piece).map(([, x, y]) => [x, y]));
   }
-  pen.setLineDash([]);
-  pen.strokeStyle = pen.fillStyle = css("--fill");
-  pen.lineWidth = 1;
-  for (const piece of layout.fill) {
-    path(outline(piece).map(point), true);
-    pen.fill();
-    pen.stroke();
-  }
-  pen.strokeStyle = ink;
-  pen.lineWidth = 1.3;
+  for (const piece of layout.fill) lineOf({ fill: "--fill", stroke: "--fill" }, outline(piece).map(point));
   for (const piece of layout.pieces) {
-    pen.fillStyle = css(piece.body < 0 ? "--earth" : fills[piece.body % fills.length]);
-    path(outline(piece).map(point), true);
-    pen.fill();
-    pen.stroke();
+    const fill = piece.body < 0 ? "--earth" : fills[piece.body % fills.length];
+    lineOf({ fill, stroke: "--ink", width: 1.3 }, outline(piece).map(point));
   }
 
   // Loads stand on their blocks.
-  pen.strokeStyle = pen.fillStyle = css("--mark");
-  pen.lineWidth = 2;
   pen.textAlign = "center";
   for (const [body, x, y, over, text] of layout.loads) {
     const [px, py] = onScreen(point([body, x, y]));
-    pen.beginPath();
-    pen.moveTo(px, py - 22);
-    pen.lineTo(px, py - 2);
-    pen.moveTo(px - 4, py - 8);
-    pen.lineTo(px, py - 1);
-    pen.lineTo(px + 4, py - 8);
-    pen.moveTo(px - 0.5 * scale * over, py - 22);
-    pen.lineTo(px + 0.5 * scale * over, py - 22);
-    pen.stroke();
+    const half = 0.5 * scale * over;
+    const barbs = [[px - 4, py - 8], [px, py - 1], [px + 4, py - 8]];
+    trace({ stroke: "--mark", width: 2 }, [[px, py - 22], [px, py - 2]], barbs, [[px - half, py - 22], [px + half, py - 22]]);
+    pen.fillStyle = css("--mark");
     pen.fillText(text, px, py - 27);
   }
 
   // The ties.
-  pen.strokeStyle = css("--tie");
   data.ties.forEach((ends, tie) => {
     const broken = data.ties_broken_s[tie] !== null && times[at.frame] >= data.ties_broken_s[tie];
     const [from, to] = ends.map(point);
     const stub = ([x, y], [otherX, otherY]) => [x + 0.4 * (otherX - x), y + 0.4 * (otherY - y)];
-    pen.lineWidth = broken ? 2 : 3;
-    pen.setLineDash(broken ? [5, 4] : []);
-    for (const line of broken ? [[from, stub(from, to)], [to, stub(to, from)]] : [[from, to]]) {
-      path(line);
-      pen.stroke();
-    }
+    if (broken) lineOf({ stroke: "--tie", width: 2, dash: [5, 4] }, [from, stub(from, to)], [to, stub(to, from)]);
+    else lineOf({ stroke: "--tie", width: 3 }, [from, to]);
   });
-  pen.setLineDash([]);
 
   // Where elastic joints press, and the stress there as a wedge.
-  if (frames.largest_stress_pa) {
-    pen.fillStyle = pen.strokeStyle = css("--press");
-    data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
-      const { stresses, ends } = pressure(at.frame, joint);
-      if (stresses.every((stress) => stress === 0)) return;
-      const high = (0.6 * Math.hypot(ex - ix, ey - iy)) / frames.largest_stress_pa;
-      const [acrossX, acrossY] = data.across[joint];
-      const corner = (end, stress) => {
-        const [part, up] = [ends[end], high * stress];
-        return point([body, ix + part * (ex - ix) + up * acrossX, iy + part * (ey - iy) + up * acrossY]);
-      };
-      path([corner(0, 0), corner(0, stresses[0]), corner(1, stresses[1]), corner(1, 0)], true);
-      pen.globalAlpha = 0.55;
-      pen.fill();
-      pen.globalAlpha = 1;
-      pen.lineWidth = 3;
-      path([corner(0, 0), corner(1, 0)], false);
-      pen.stroke();
-    });
+  for (let joint = 0; frames.largest_stress_pa && joint < data.joints.length; joint += 1) {
+    const [body, ix, iy, ex, ey] = data.joints[joint];
+    const { stresses, ends } = pressure(at.frame, joint);
+    if (stresses.every((stress) => stress === 0)) continue;
+    const high = (0.6 * Math.hypot(ex - ix, ey - iy)) / frames.largest_stress_pa;
+    const [acrossX, acrossY] = data.across[joint];
+    const corner = (end, stress) => {
+      const [part, up] = [ends[end], high * stress];
+      return point([body, ix + part * (ex - ix) + up * acrossX, iy + part * (ey - iy) + up * acrossY]);
+    };
+    pen.globalAlpha = 0.55;
+    lineOf({ fill: "--press" }, [corner(0, 0), corner(0, stresses[0]), corner(1, stresses[1]), corner(1, 0)]);
+    pen.globalAlpha = 1;
+    lineOf({ stroke: "--press", width: 3 }, [corner(0, 0), corner(1, 0)]);
   }
 
   // The line of thrust, where sections are pressed.
   if (find("thrust").checked && frames.thrust_unit) {
-    pen.strokeStyle = css("--thrust");
-    pen.lineWidth = 2.5;
-    pen.beginPath();
-    let drawing = false;
+    const stretches = [[]];
     sections.forEach(([middleX, middleY, acrossX, acrossY], i) => {
       const value = thrust[at.frame * sections.length + i];
-      if (value === NO_THRUST) {
-        drawing = false;
-        return;
-      }
       const e = value * frames.thrust_unit;
-      const to = onScreen(point([layout.section_bodies[i], middleX + e * acrossX, middleY + e * acrossY]));
-      if (drawing) pen.lineTo(...to);
-      else pen.moveTo(...to);
-      drawing = true;
+      if (value === NO_THRUST) stretches.push([]);
+      else stretches.at(-1).push(point([layout.section_bodies[i], middleX + e * acrossX, middleY + e * acrossY]));
     });
-    pen.stroke();
+    lineOf({ stroke: "--thrust", width: 2.5 }, ...stretches);
   }
 
-  // The hinges.
-  pen.strokeStyle = css("--mark");
-  pen.lineWidth = 2;
+  // The hinges, and the points that are watched.
+  const mark = { stroke: "--mark", width: 2 };
   for (const [body, x, y, edge] of hingesAt(at.frame)) {
     const [px, py] = onScreen(point([body, x, y]));
-    pen.beginPath();
     if (edge === PARTED) {
-      pen.moveTo(px - 4, py - 4);
-      pen.lineTo(px + 4, py + 4);
-      pen.moveTo(px - 4, py + 4);
-      pen.lineTo(px + 4, py - 4);
-    } else {
-      pen.arc(px, py, 4, 0, 2 * Math.PI);
-      pen.fillStyle = edge === EXTRADOS ? css("--mark") : css("--paper");
-      pen.fill();
+      trace(mark, [[px - 4, py - 4], [px + 4, py + 4]], [[px - 4, py + 4], [px + 4, py - 4]]);
+      continue;
     }
-    pen.stroke();
+    pen.beginPath();
+    pen.arc(px, py, 4, 0, 2 * Math.PI);
+    paint(pen, { ...mark, fill: edge === EXTRADOS ? "--mark" : "--paper" });
   }
-
-  // The points that are watched.
-  pen.strokeStyle = css("--mark");
-  pen.fillStyle = css("--paper");
-  pen.lineWidth = 2;
   (data.points ?? []).forEach(({ at_m: [x, y] }, i) => {
     const [px, py] = onScreen(point([layout.point_bodies[i], x, y]));
-    pen.fillRect(px - 4, py - 4, 8, 8);
-    pen.strokeRect(px - 4, py - 4, 8, 8);
+    trace({ ...mark, fill: "--paper" }, [[px - 4, py - 4], [px + 4, py - 4], [px + 4, py + 4], [px - 4, py + 4]]);
   });
 
   // How the ground accelerates.
   const g = blend(groundG, 1, 0, at);
   const most = farthest(groundG);
   if (most > 0) {
-    const length = (0.2 * wide * g) / most;
     const y = tall - 38;
-    pen.strokeStyle = pen.fillStyle = css("--curve-2");
-    pen.lineWidth = 3;
-    pen.beginPath();
-    pen.moveTo(wide / 2, y);
-    pen.lineTo(wide / 2 + length, y);
-    if (Math.abs(length) > 6) {
-      const back = Math.sign(length) * 7;
-      pen.moveTo(wide / 2 + length - back, y - 5);
-      pen.lineTo(wide / 2 + length, y);
-      pen.lineTo(wide / 2 + length - back, y + 5);
-    }
-    pen.stroke();
-    pen.fillStyle = ink;
+    const tip = wide / 2 + (0.2 * wide * g) / most;
+    const back = tip - Math.sign(g) * 7;
+    const barbs = Math.abs(tip - wide / 2) > 6 ? [[back, y - 5], [tip, y], [back, y + 5]] : [];
+    trace({ stroke: "--curve-2", width: 3 }, [[wide / 2, y], [tip, y]], barbs);
+    pen.fillStyle = css("--ink");
     pen.textAlign = g < 0 ? "left" : "right";
     pen.fillText(`ground ${fixed(g, 3)} g`, wide / 2 + (g < 0 ? 10 : -10), y + 4);
   }
   find("now").textContent = inWords(at, poses);
 }
 
+/** Fills and strokes the path of a pen; areas first. */
+function paint(pen, { fill, stroke, width = 1, dash = [] }) {
+  if (fill) {
+    pen.fillStyle = css(fill);
+    pen.fill();
+  }
+  if (!stroke) return;
+  pen.strokeStyle = css(stroke);
+  pen.lineWidth = width;
+  pen.setLineDash(dash);
+  pen.stroke();
+}
+
+/** A function that draws lines through points on the screen as one path; areas are closed. */
+const tracer = (pen) => (look, ...lines) => {
+  pen.beginPath();
+  for (const line of lines) {
+    line.forEach((point, i) => (i ? pen.lineTo(...point) : pen.moveTo(...point)));
+    if (look.fill || look.close) pen.closePath();
+  }
+  paint(pen, look);
+};
+
 /** The dimensions of the structure at rest, outside it: heights left and right, widths below the ground. */
 function drawSizes(pen, onScreen, floor) {
   const [left, right] = [onScreen(low)[0], onScreen(high)[0]];
-  pen.strokeStyle = pen.fillStyle = css("--soft");
-  pen.lineWidth = 1;
   // Those that would be on another go one line farther.
   const taken = { below: [], left: [], right: [] };
   for (const { ends_m: [ax, ay, bx, by], side, text } of data.dimensions) {
-    const [a, b] = [onScreen([ax, ay]), onScreen([bx, by])];
     const axis = side === "below" ? 0 : 1;
-    const span = [a[axis], b[axis]].sort((x, y) => x - y);
+    const ends = [onScreen([ax, ay]), onScreen([bx, by])];
+    const span = ends.map((end) => end[axis]).sort((x, y) => x - y);
     const lines = taken[side];
     let line = lines.findIndex((spans) => spans.every(([from, to]) => span[1] <= from + 1 || to <= span[0] + 1));
     if (line < 0) line = lines.push([]) - 1;
     lines[line].push(span);
-    const at = side === "below" ? floor + 26 + 14 * line : side === "left" ? left - 16 - 16 * line : right + 16 + 16 * line;
-    const foot = (end) => (axis === 0 ? [end[0], at] : [at, end[1]]);
-    const ends = [foot(a), foot(b)];
-    pen.beginPath();
-    pen.moveTo(...ends[0]);
-    pen.lineTo(...ends[1]);
-    for (const [x, y] of ends) {
-      pen.moveTo(x - 3, y + 3);
-      pen.lineTo(x + 3, y - 3);
-    }
-    pen.stroke();
+    const places = { below: floor + 26 + 14 * line, left: left - 16 - 16 * line, right: right + 16 + 16 * line };
+    for (const end of ends) end[1 - axis] = places[side];
+    const ticks = ends.map(([x, y]) => [[x - 3, y + 3], [x + 3, y - 3]]);
+    tracer(pen)({ stroke: "--soft" }, ends, ...ticks);
     pen.save();
     pen.textAlign = "center";
     pen.translate((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
     if (axis === 1) pen.rotate(-Math.PI / 2);
-    // On paper of its own, where the line would strike it through.
-    const wide = pen.measureText(text).width + 6;
-    if (axis === 0) {
+    else {
+      // On paper of its own, where the line would strike it through.
+      const wide = pen.measureText(text).width + 6;
       pen.fillStyle = css("--paper");
       pen.fillRect(-wide / 2, -6, wide, 12);
-      pen.fillStyle = css("--soft");
-      pen.fillText(text, 0, 4);
-    } else {
-      pen.fillText(text, 0, side === "left" ? -4 : 12);
     }
+    pen.fillStyle = css("--soft");
+    pen.fillText(text, 0, { below: 4, left: -4, right: 12 }[side]);
     pen.restore();
   }
 }
