@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::figure::Figure;
 use super::scene::{Mark, Piece, Scene};
 use super::sheet::{Height, Sheet};
-use super::svg::{Anchor, Drawing, Stroke, color};
+use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -14,10 +14,10 @@ use crate::scenario::{Dimension, DimensionSide, metres};
 /// Colour of blocks.
 pub(crate) const STONE: &str = "#f3efe6";
 /// Colour of fill.
-pub(crate) const FILL: &str = "#e3d5bd";
+const FILL: &str = "#e3d5bd";
 const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
 /// Outline of fill.
-pub(crate) const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
+const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
 const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
 /// Colours of the bodies of a mechanism, from left to right.
@@ -50,6 +50,15 @@ pub(crate) struct Place {
 }
 
 impl Place {
+    /// Places a box, in metres, around the middle of a column of a sheet, as high as this part.
+    pub(crate) fn over([low_m, high_m]: [Vector2<f64>; 2], middle: f64, part: Frame) -> Self {
+        Self {
+            middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
+            at: Vector2::new(middle, part.top + part.height),
+            scale: (part.height / (high_m.y - low_m.y)).max(1e-9),
+        }
+    }
+
     /// The place of a point on the sheet.
     pub(crate) fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
         let away_m = point_m - self.middle_m;
@@ -77,20 +86,9 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     sheet.gap(12.0 + above_px);
     let height = Height::Structure(figure.height_px(520.0), most_px);
     sheet.part(height, |drawing, part| {
-        let scale = (part.height / size_m.y).max(1e-9);
-        let left_px = left_px + 0.5 * (width_px - scale * size_m.x);
         let (poses, hinges) = &scene.stands;
-        let view = View {
-            scene,
-            place: Place {
-                middle_m: Vector2::new(low_m.x, high_m.y),
-                at: Vector2::new(left_px, part.top),
-                scale,
-            },
-            poses,
-            hinges,
-            exaggeration: 1.0,
-        };
+        let place = Place::over([low_m, high_m], left_px + 0.5 * width_px, part);
+        let view = View::new(scene, place, poses, hinges);
         draw_dimensions(drawing, &view.place, scene);
         supports(drawing, &view.place, scene);
         view.draw_fill(drawing);
@@ -118,15 +116,34 @@ pub(crate) struct View<'a> {
     pub(crate) hinges: &'a [OpenHinge],
     /// Factor on the displacements.
     pub(crate) exaggeration: f64,
+    /// Outline of the blocks.
+    pub(crate) outline: Stroke,
 }
 
-impl View<'_> {
+impl<'a> View<'a> {
+    /// A structure to scale.
+    pub(crate) const fn new(
+        scene: &'a Scene,
+        place: Place,
+        poses: &'a [Pose],
+        hinges: &'a [OpenHinge],
+    ) -> Self {
+        Self {
+            scene,
+            place,
+            poses,
+            hinges,
+            exaggeration: 1.0,
+            outline: OUTLINE,
+        }
+    }
+
     /// The place of a point on the sheet.
     pub(crate) fn px(&self, mark: &Mark) -> Vector2<f64> {
         self.place.px(mark.moved(self.poses, self.exaggeration))
     }
 
-    fn outline(&self, piece: &Piece) -> impl Iterator<Item = Vector2<f64>> {
+    fn corners(&self, piece: &Piece) -> impl Iterator<Item = Vector2<f64>> {
         let corners = piece.moved(self.poses, self.exaggeration).into_iter();
         corners.map(|corner| self.place.px(corner))
     }
@@ -147,7 +164,7 @@ impl View<'_> {
 
     fn draw_fill(&self, drawing: &mut Drawing) {
         for piece in self.scene.fill(self.hinges) {
-            drawing.polygon("fill", self.outline(&piece), FILL, FILL_LINE);
+            drawing.polygon("fill", self.corners(&piece), FILL, FILL_LINE);
         }
     }
 
@@ -159,7 +176,7 @@ impl View<'_> {
     ) {
         for (number, piece) in self.scene.pieces(self.hinges).iter().enumerate() {
             let (name, fill) = look(number, piece.body);
-            drawing.polygon(&name, self.outline(piece), fill, OUTLINE);
+            drawing.polygon(&name, self.corners(piece), fill, self.outline);
         }
     }
 
@@ -232,16 +249,11 @@ fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
 /// Hatched ground under the supports of the structure.
 fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let mut faces = scene.supports_m(1.0);
+    let [low_m, high_m] = scene.bounds_m();
     if faces.is_empty() {
-        let [low_m, high_m] = scene.bounds_m();
-        let middle = Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y);
-        let half = Vector2::new(0.5 * (high_m.x - low_m.x), 0.0);
-        faces.push([middle - half, middle + half]);
+        faces.push([low_m, Vector2::new(high_m.x, low_m.y)]);
     }
-    let centre = {
-        let [low_m, high_m] = scene.bounds_m();
-        place.px(0.5 * (low_m + high_m))
-    };
+    let centre = place.px(0.5 * (low_m + high_m));
     for face in faces {
         let [a, b] = face.map(|end| place.px(end));
         let along = (b - a).normalize();
@@ -249,19 +261,12 @@ fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
         drawing.curve("support", [from, to], Stroke::new(color::BLACK, 2.0, ""));
         // Away from the structure.
         let across = Vector2::new(-along.y, along.x);
-        let away = across
-            * if across.dot(&(0.5 * (a + b) - centre)) < 0.0 {
-                -1.0
-            } else {
-                1.0
-            };
-        let long = (to - from).norm();
-        let mut at = 2.0;
-        while at < long {
-            let foot = from + along * at;
+        let away = across * across.dot(&(0.5 * (a + b) - centre)).signum();
+        let hatches = ((to - from).norm() / 7.0 - 2.0 / 7.0).ceil() as u32;
+        for hatch in 0..hatches {
+            let foot = from + along * (2.0 + 7.0 * f64::from(hatch));
             let end = foot + away * 7.0 - along * 5.0;
             drawing.line(foot, end, Stroke::new(color::BLACK, 0.7, ""));
-            at += 7.0;
         }
     }
 }
@@ -346,15 +351,9 @@ fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
         .map(|(joint, [intrados_m, extrados_m])| {
             let (inner, outer) = (place.px(*intrados_m), place.px(*extrados_m));
             // Supports extend beyond their faces.
-            let away = if joint == 0 || joint == last {
-                22.0
-            } else {
-                15.0
-            };
-            (
-                Text::from(joint.to_string()),
-                inner + (inner - outer).normalize() * away,
-            )
+            let is_end = joint == 0 || joint == last;
+            let away = (inner - outer).normalize() * if is_end { 22.0 } else { 15.0 };
+            (Text::from(joint.to_string()), inner + away)
         })
         .collect();
     let apart = |(text, at): &(Text, Vector2<f64>), (other, to): &(Text, Vector2<f64>)| {

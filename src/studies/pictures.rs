@@ -18,7 +18,7 @@ use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::{FARTHEST, Scene};
 use crate::output::sheet::{Height, Sheet};
-use crate::output::svg::{Anchor, Drawing, Stroke, color};
+use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::output::text::Text;
 use crate::scenario::DimensionSide;
 
@@ -93,14 +93,9 @@ impl<'a> Subject<'a> {
         width_px / size_m.amax() * size_m.y
     }
 
-    /// The structure around this middle, from this top, with this height.
-    fn at(&self, middle: f64, top: f64, height_px: f64) -> Spot<'a> {
-        let [low_m, high_m] = self.scene.blocks_m();
-        let place = Place {
-            middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), high_m.y),
-            at: Vector2::new(middle, top),
-            scale: height_px / (high_m.y - low_m.y),
-        };
+    /// The structure around this middle of a part of the sheet.
+    fn at(&self, middle: f64, part: Frame) -> Spot<'a> {
+        let place = Place::over(self.scene.blocks_m(), middle, part);
         Spot { of: *self, place }
     }
 }
@@ -122,13 +117,7 @@ impl Spot<'_> {
     }
 
     fn view<'v>(&'v self, poses: &'v [Pose], hinges: &'v [OpenHinge]) -> View<'v> {
-        View {
-            scene: self.of.scene,
-            place: self.place,
-            poses,
-            hinges,
-            exaggeration: 1.0,
-        }
+        View::new(self.of.scene, self.place, poses, hinges)
     }
 
     /// Draws the open mechanism over the structure at rest.
@@ -239,7 +228,7 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
         sheet.part(Height::Structure(arch_px, arch_px), move |drawing, part| {
             for (cell, middle) in cells {
                 let middle = middle * cell_px + 0.5 * (left - right);
-                let spot = of.at(middle, part.top, part.height);
+                let spot = of.at(middle, part);
                 if cell == 1 {
                     spot.mechanism(drawing, open);
                     continue;
@@ -298,7 +287,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let arch_px = of.height_px((0.8 * half_px).min(half_px - 2.0 * LETTER_PX));
     sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
         for (open, middle) in [(&before, 0.5), (&after, 1.5)] {
-            let spot = of.at(middle * half_px, part.top, part.height);
+            let spot = of.at(middle * half_px, part);
             spot.mechanism(drawing, open);
         }
     });
@@ -310,7 +299,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let middle = 0.5 * (figure.width_px + left - right);
     let arch_px = of.height_px(width_px);
     sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
-        let spot = of.at(middle, part.top, part.height);
+        let spot = of.at(middle, part);
         if is_wide {
             draw_dimensions(drawing, &spot.place, scene);
         }

@@ -152,11 +152,8 @@ impl Snapshots {
             sheet.part(Height::Structure(tall_px, tall_px), move |drawing, part| {
                 for (column, sample) in (0_u32..).zip(samples) {
                     let middle = (f64::from(column) + 0.5) * cell_px;
-                    let place = Place {
-                        middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
-                        at: Vector2::new(middle, part.top + part.height),
-                        scale: part.height / (1.1 * height_m),
-                    };
+                    let sway_m = Vector2::new(0.0, 0.1 * height_m);
+                    let place = Place::over([low_m, high_m + sway_m], middle, part);
                     self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
                 }
             });
@@ -194,11 +191,8 @@ impl Snapshots {
         let right = place.at + Vector2::new(half_px, 0.0);
         drawing.line(left, right, Stroke::new(color::GREY, 1.4, ""));
         let view = View {
-            scene: &self.scene,
-            place,
-            poses: &sample.poses,
-            hinges: &sample.hinges,
             exaggeration: self.exaggeration,
+            ..View::new(&self.scene, place, &sample.poses, &sample.hinges)
         };
         view.draw_built(drawing, "");
         if self.scene.has_settled() {

@@ -4,13 +4,12 @@ use nalgebra::Vector2;
 
 use super::{Path, Push, Stage, Summary};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::pose::Pose;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
 use crate::output::elevation::{HINGE, HINGE_PX, Place, STONE, View};
-use crate::output::scene::Scene;
+use crate::output::scene::{Mark as SceneMark, Scene, widened};
 use crate::output::sheet::{Height, Key, Sheet};
-use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
+use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 
 /// Largest number of pictures of the arch side by side.
 const COLUMNS: usize = 3;
@@ -31,17 +30,15 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene)
             .iter()
             .filter_map(|path| Cell::new(&spread.row, scene, path, cell_px))
             .collect();
-        let height_px = cells.iter().map(Cell::height_px).fold(0.0, f64::max);
-        sheet.part(
-            Height::Structure(height_px, height_px),
-            move |drawing, part| {
-                for (column, cell) in (0_u32..).zip(cells) {
-                    let middle = (f64::from(column) + 0.5) * cell_px;
-                    let foot = Vector2::new(middle, part.top + part.height);
-                    cell.draw(drawing, foot, part.height / height_px);
-                }
-            },
-        );
+        let heights_px = cells.iter().map(|cell| cell.height_px);
+        let height_px = heights_px.fold(0.0, f64::max);
+        let height = Height::Structure(height_px, height_px);
+        sheet.part(height, move |drawing, part| {
+            for (column, cell) in (0_u32..).zip(cells) {
+                let middle = (f64::from(column) + 0.5) * cell_px;
+                cell.draw(drawing, middle, part, part.height / height_px);
+            }
+        });
         sheet.gap(58.0);
     }
     let how = "to scale; dashed: as built; circles: hinges; blue: line of thrust";
@@ -89,92 +86,73 @@ struct Cell<'a> {
     scene: &'a Scene,
     path: &'a Path,
     stage: &'a Stage,
-    low_m: Vector2<f64>,
-    high_m: Vector2<f64>,
-    /// Pixels per metre.
-    scale: f64,
+    /// Lower left and upper right corner, as built and moved.
+    bounds_m: [Vector2<f64>; 2],
+    height_px: f64,
 }
 
 impl<'a> Cell<'a> {
     fn new(row: &'a Row, scene: &'a Scene, path: &'a Path, width_px: f64) -> Option<Self> {
         let stage = path.stages.last()?;
-        let blocks = row.outlines_m.iter().zip(&stage.poses);
-        let corners = blocks.flat_map(|(outline, pose)| {
-            let corners = outline.iter();
-            corners.flat_map(|corner| [*corner, pose.of(*corner)])
-        });
         // Fill and loads hardly move farther than the blocks.
-        let [low_m, high_m] = corners.fold(scene.frame_m(), |[low, high], corner: Vector2<f64>| {
-            [low.inf(&corner), high.sup(&corner)]
-        });
-        let across_m = high_m - low_m;
+        let blocks = scene.pieces(&[]).into_iter();
+        let moved = blocks.flat_map(|block| block.moved(&stage.poses, 1.0));
+        let bounds_m = widened(scene.frame_m(), moved);
+        let across_m = bounds_m[1] - bounds_m[0];
+        let scale = ((width_px - 30.0) / across_m.x).min(width_px / across_m.y);
         Some(Self {
             row,
             scene,
             path,
             stage,
-            low_m,
-            high_m,
-            scale: ((width_px - 30.0) / across_m.x).min(width_px / across_m.y),
+            bounds_m,
+            height_px: scale * across_m.y,
         })
     }
 
-    fn height_px(&self) -> f64 {
-        self.scale * (self.high_m.y - self.low_m.y)
-    }
-
-    /// Draws it above the middle of its foot, squeezed to this part.
-    fn draw(&self, drawing: &mut Drawing, foot: Vector2<f64>, squeezed: f64) {
-        let place = Place {
-            middle_m: Vector2::new(0.5 * (self.low_m.x + self.high_m.x), self.low_m.y),
-            at: foot,
-            scale: squeezed * self.scale,
+    /// Draws it around this middle above the lower side of a part, squeezed to this share.
+    fn draw(&self, drawing: &mut Drawing, middle: f64, part: Frame, squeezed: f64) {
+        let height = squeezed * self.height_px;
+        let top = part.top + part.height - height;
+        let own = Frame {
+            top,
+            height,
+            ..part
         };
-        let px = |point: Vector2<f64>| place.px(point);
-        let view = View {
-            scene: self.scene,
-            place,
-            poses: &self.stage.poses,
-            hinges: &[],
-            exaggeration: 1.0,
-        };
+        let place = Place::over(self.bounds_m, middle, own);
+        let view = View::new(self.scene, place, &self.stage.poses, &[]);
         view.draw_carried(drawing, false);
         view.draw_built(drawing, "");
         view.draw_blocks(drawing, |block, _| (format!("block {}", block + 1), STONE));
         view.draw_ties(drawing);
         if let Some(state) = &self.stage.state {
-            let joints = self.row.joints.iter().zip(&state.corners);
-            let thrust = joints
-                .enumerate()
-                .filter_map(|(index, (joint, [inner, outer]))| {
-                    let across = joint.extrados_m - joint.intrados_m;
-                    let at_m = joint.intrados_m + across * (outer / (inner + outer));
-                    (inner + outer > 0.0).then(|| px(self.pose_at(index).of(at_m)))
-                });
+            let joints = self.row.joints.iter().zip(&state.corners).enumerate();
+            let thrust = joints.filter_map(|(index, (joint, [inner, outer]))| {
+                let across = joint.extrados_m - joint.intrados_m;
+                let at_m = joint.intrados_m + across * (outer / (inner + outer));
+                (inner + outer > 0.0).then(|| view.px(&self.mark(index, at_m)))
+            });
             let stroke = Stroke::new(color::BLUE, 1.6, "");
             drawing.curve("thrust line", thrust, stroke);
             for hinge in &state.hinges {
                 let corner_m = self.row.joints[hinge.joint].corner_m(hinge.edge);
-                let at = px(self.pose_at(hinge.joint).of(corner_m));
+                let at = view.px(&self.mark(hinge.joint, corner_m));
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }
         }
-        let words = self.path.way.words();
+        let (words, end_m) = (self.path.way.words(), self.stage.movement_m);
         let text = match (self.path.falls_at_m, &self.path.lost) {
             (Some(at_m), _) => format!("{words} {at_m:.3} m: falls"),
-            (None, Some(_)) => format!(
-                "{words} {:.3} m: not followed further",
-                self.stage.movement_m
-            ),
-            (None, None) => format!("{words} {:.3} m: stands", self.stage.movement_m),
+            (None, Some(_)) => format!("{words} {end_m:.3} m: not followed further"),
+            (None, None) => format!("{words} {end_m:.3} m: stands"),
         };
-        let below = foot + Vector2::new(0.0, 22.0);
+        let below = place.at + Vector2::new(0.0, 22.0);
         drawing.label(below, Anchor::Middle, 0.0, text);
     }
 
-    /// The pose of the body whose face a joint lies on: the block after it, or the last block.
-    fn pose_at(&self, joint: usize) -> Pose {
-        let poses = &self.stage.poses;
-        poses[joint.min(poses.len() - 1)]
+    /// A point of the body whose face a joint lies on: the block after it, or the last block.
+    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> SceneMark {
+        let body = Some(joint.min(self.stage.poses.len() - 1));
+        SceneMark { body, at_m }
     }
 }

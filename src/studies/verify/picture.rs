@@ -12,7 +12,7 @@ use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
-use crate::output::scene::{Piece, Scene};
+use crate::output::scene::Scene;
 use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 use crate::scenario::{DimensionSide, Structure};
@@ -28,55 +28,55 @@ pub(super) fn mechanism(
     sway: Sway,
     mechanism: &Mechanism,
 ) -> String {
-    let scene = Scene::new(structure);
+    let scene = match structure.row() {
+        Ok(row) if !mechanism.body_of_block.is_empty() => {
+            Scene::of_row(&row).of_structure(structure)
+        }
+        _ => Scene::new(structure),
+    };
     let [low, high] = scene.frame_m();
     let size = high - low;
     let [left, right] =
         [DimensionSide::Left, DimensionSide::Right].map(|side| room_px(&scene, side).max(40.0));
     let width_px = figure.width_px - left - right;
     let scale = (width_px / size.x).min(figure.height_px(420.0) / size.y);
-    let below = room_px(&scene, DimensionSide::Below).max(26.0);
     let mut sheet = Sheet::new(figure, "");
     sheet.gap(26.0);
     let tall_px = scale * size.y;
     sheet.part(Height::Structure(tall_px, tall_px), |drawing, part| {
-        let place = Place {
-            middle_m: Vector2::new(0.5 * (low.x + high.x), high.y),
-            at: Vector2::new(left + 0.5 * width_px, part.top),
-            scale: part.height / size.y,
-        };
-        draw_mechanism(drawing, &place, (structure, &scene), (sway, mechanism));
+        let place = Place::over([low, high], left + 0.5 * width_px, part);
+        draw_mechanism(drawing, place, &scene, (sway, mechanism));
     });
-    sheet.gap(below);
+    sheet.gap(room_px(&scene, DimensionSide::Below).max(26.0));
     sheet.finish()
 }
 
 fn draw_mechanism(
     drawing: &mut Drawing,
-    place: &Place,
-    (structure, scene): (&Structure, &Scene),
+    place: Place,
+    scene: &Scene,
     (sway, mechanism): (Sway, &Mechanism),
 ) {
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let [low, high] = scene.frame_m();
-    draw_dimensions(drawing, place, scene);
+    draw_dimensions(drawing, &place, scene);
+    let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
+        hinge: placed.hinge,
+        position_m: Vector2::new(placed.x_m, placed.y_m),
+    });
+    let hinges: Vec<OpenHinge> = hinges.collect();
     let view = View {
-        scene,
-        place: *place,
-        poses: &[],
-        hinges: &[],
-        exaggeration: 1.0,
+        outline: Stroke::new("#777777", 0.6, ""),
+        ..View::new(scene, place, &[], &hinges)
     };
     view.draw_carried(drawing, false);
-    let thin = Stroke::new("#777777", 0.6, "");
-    for piece in pieces(structure, mechanism) {
-        let (name, fill) = match piece.body {
+    let known = &mechanism.body_of_block;
+    view.draw_blocks(drawing, |block, body| {
+        match known.get(block).copied().unwrap_or(body) {
             None => ("still".to_owned(), STILL),
             Some(body) => (format!("body {}", body + 1), BODIES[body % BODIES.len()]),
-        };
-        let outline = piece.outline_m.iter().map(|corner| px(*corner));
-        drawing.polygon(&name, outline, fill, thin);
-    }
+        }
+    });
     view.draw_ties(drawing);
     let moves = |body: &Body| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
     let fastest = mechanism.bodies.iter().map(|body| moves(body).norm());
@@ -90,19 +90,11 @@ fn draw_mechanism(
         if delta.norm() > 6.0 {
             let back = -delta.normalize() * 7.0;
             let across = turned(back) * 0.45;
-            drawing.polygon(
-                "",
-                [end, end + back + across, end + back - across],
-                color::BLUE,
-                arrow,
-            );
+            let barbs = [end, end + back + across, end + back - across];
+            drawing.polygon("", barbs, color::BLUE, arrow);
         }
-        drawing.circle(
-            &format!("centre {number}"),
-            at,
-            2.4,
-            Stroke::new(color::BLACK, 1.2, ""),
-        );
+        let black = Stroke::new(color::BLACK, 1.2, "");
+        drawing.circle(&format!("centre {number}"), at, 2.4, black);
         let label = at + Vector2::new(0.0, 17.0);
         drawing.label(label, Anchor::Middle, 0.0, number.to_string());
     }
@@ -117,25 +109,6 @@ fn draw_mechanism(
         let label = at + Vector2::new(side, if away.y < 0.0 { -3.0 } else { 15.0 });
         drawing.label(label, Anchor::Middle, 0.0, name.to_string());
     }
-}
-
-fn pieces(structure: &Structure, mechanism: &Mechanism) -> Vec<Piece> {
-    if !mechanism.body_of_block.is_empty()
-        && let Ok(row) = structure.row()
-    {
-        let scene = Scene::of_row(&row);
-        let blocks = scene.pieces(&[]).into_iter().zip(&mechanism.body_of_block);
-        let moving = blocks.map(|(piece, body)| Piece {
-            body: *body,
-            outline_m: piece.outline_m,
-        });
-        return moving.collect();
-    }
-    let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
-        hinge: placed.hinge,
-        position_m: Vector2::new(placed.x_m, placed.y_m),
-    });
-    Scene::new(structure).pieces(&hinges.collect::<Vec<_>>())
 }
 
 /// Acceleration against displacement of the oscillator: its divided curve, the spectra of the limit states at their damping, and the
