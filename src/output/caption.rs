@@ -1,7 +1,9 @@
 //! One line with the input of a picture: the structure, the ground and the model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::scenario::{Axis, Ground, Quantity, RightFoot, Scaling, Scenario, Series, Structure};
+use crate::scenario::{
+    Axis, Ground, Quantity, Record, RightFoot, Scaling, Scenario, Series, Structure,
+};
 
 /// True if a value of this key varies along the axes of a picture. The table of a pulse is called `pulse`.
 type Varies<'a> = &'a dyn Fn(&str) -> bool;
@@ -34,60 +36,53 @@ fn varied_key(axis: &Axis) -> String {
 
 /// The structure, with its values that do not vary.
 fn structure(structure: &Structure, varies: Varies<'_>) -> String {
-    let (name, values) = match structure {
+    let shape = |name: &str, values: &[(&str, &str, f64, &str)]| -> Vec<String> {
+        let constant = values
+            .iter()
+            .filter(|(key, ..)| !varies(&format!("{name}.{key}")));
+        let words = |(_, before, value, after): &(&str, &str, f64, &str)| {
+            format!("{before}{}{after}", four_digits(*value))
+        };
+        constant.map(words).collect()
+    };
+    match structure {
         Structure::Arch(arch) => {
-            let shape = [
-                "mean_radius_m",
-                "thickness_ratio",
-                "embrace_deg",
-                "span_m",
-                "rise_m",
-                "thickness_m",
-            ];
-            let varies_shape = shape.iter().any(|key| varies(&format!("arch.{key}")));
-            let mut values = match arch.measured_at.filter(|_| !varies_shape) {
-                Some(line) => {
-                    let [span_m, rise_m] = arch.span_and_rise_m(line).map(four_digits);
-                    let thick_m = four_digits(arch.mean_radius_m * arch.thickness_ratio);
-                    let at = line.in_words();
-                    vec![(
-                        "",
-                        format!("span {span_m} m, rise {rise_m} m {at}, {thick_m} m thick"),
-                    )]
-                }
-                None => vec![
-                    (
-                        "arch.mean_radius_m",
-                        format!("R {} m", four_digits(arch.mean_radius_m)),
-                    ),
-                    (
-                        "arch.thickness_ratio",
-                        format!("t/R {}", four_digits(arch.thickness_ratio)),
-                    ),
-                    (
-                        "arch.embrace_deg",
-                        format!("{} degrees", four_digits(arch.embrace_deg)),
-                    ),
+            let mut values = shape(
+                "arch",
+                &[
+                    ("mean_radius_m", "R ", arch.mean_radius_m, " m"),
+                    ("thickness_ratio", "t/R ", arch.thickness_ratio, ""),
+                    ("embrace_deg", "", arch.embrace_deg, " degrees"),
                 ],
-            };
-            let voussoirs = arch.voussoirs.map(|count| format!("{count} voussoirs"));
-            let voussoirs = voussoirs.unwrap_or_else(|| "hinges anywhere".to_owned());
-            values.push(("arch.voussoirs", voussoirs));
-            ("arch", values)
+            );
+            let measures = ["span_m", "rise_m", "thickness_m"];
+            let is_constant = |key: &&str| !varies(&format!("arch.{key}"));
+            if let Some(line) = arch.measured_at
+                && values.len() == 3
+                && measures.iter().all(is_constant)
+            {
+                let [span_m, rise_m] = arch.span_and_rise_m(line).map(four_digits);
+                let thick_m = four_digits(arch.mean_radius_m * arch.thickness_ratio);
+                let at = line.in_words();
+                values = vec![format!(
+                    "span {span_m} m, rise {rise_m} m {at}, {thick_m} m thick"
+                )];
+            }
+            if !varies("arch.voussoirs") {
+                let voussoirs = arch.voussoirs.map(|count| format!("{count} voussoirs"));
+                values.push(voussoirs.unwrap_or_else(|| "hinges anywhere".to_owned()));
+            }
+            format!("arch: {}", values.join(", "))
         }
         Structure::Column(column) => {
-            let [high_m, wide_m] = [column.height_m, column.width_m].map(four_digits);
             let values = [
-                ("column.height_m", format!("{high_m} m high")),
-                ("column.width_m", format!("{wide_m} m wide")),
+                ("height_m", "", column.height_m, " m high"),
+                ("width_m", "", column.width_m, " m wide"),
             ];
-            ("column", values.into())
+            format!("column: {}", shape("column", &values).join(", "))
         }
-        Structure::Masonry(_) => return "blocks".to_owned(),
-    };
-    let values = values.into_iter().filter(|(key, _)| !varies(key));
-    let values: Vec<_> = values.map(|(_, words)| words).collect();
-    format!("{name}: {}", values.join(", "))
+        Structure::Masonry(_) => "blocks".to_owned(),
+    }
 }
 
 /// Four digits are enough to identify a value.
@@ -117,10 +112,7 @@ fn ground(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
             format!("right foot by a wave of {speed_m_s} m/s{side}")
         }
         Some(RightFoot::Late(_) | RightFoot::Wave(_)) => "right foot later".to_owned(),
-        Some(RightFoot::Record(record)) => {
-            let files: Vec<_> = record.series().map(Series::name).collect();
-            format!("right foot by {}", files.join(" and "))
-        }
+        Some(RightFoot::Record(record)) => format!("right foot by {}", files(record)),
     };
     Some(format!("{left}, {right}"))
 }
@@ -130,22 +122,20 @@ fn of_left_foot(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
         Ground::Pulse(pulse) => {
             let kind = pulse.kind.name();
             let varies = |key: &str| {
-                ["pulse", kind]
-                    .iter()
-                    .any(|table| varies(&format!("ground.{table}.{key}")))
+                let varies = |table: &str| varies(&format!("ground.{table}.{key}"));
+                varies("pulse") || varies(kind)
             };
-            let mut part = format!("{} pulse", kind.replace('_', " "));
-            if !varies("duration_s") {
-                part += &format!(" of {} s", pulse.duration_s);
-            }
-            if !varies("amplitude_g") {
-                part += &format!(", {} g", pulse.amplitude_g);
-            }
-            Some(part)
+            let duration = format!(" of {} s", pulse.duration_s);
+            let amplitude = format!(", {} g", pulse.amplitude_g);
+            let parts = [("duration_s", duration), ("amplitude_g", amplitude)].into_iter();
+            let parts = parts
+                .filter(|(key, _)| !varies(key))
+                .map(|(_, words)| words);
+            let name = format!("{} pulse", kind.replace('_', " "));
+            Some([name].into_iter().chain(parts).collect())
         }
         Ground::Record(record) => {
-            let files: Vec<_> = record.series().map(Series::name).collect();
-            let name = format!("record {}", files.join(" and "));
+            let name = format!("record {}", files(record));
             Some(match record.main.scaling {
                 _ if varies("ground.record.scale") => name,
                 Scaling::Factor(1.0) => name,
@@ -154,6 +144,11 @@ fn of_left_foot(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
             })
         }
     }
+}
+
+fn files(record: &Record) -> String {
+    let files: Vec<_> = record.series().map(Series::name).collect();
+    files.join(" and ")
 }
 
 fn model(scenario: &Scenario, varies: Varies<'_>) -> String {

@@ -82,18 +82,17 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure().tie_places();
     }
-    summary.is_arch = scenario.structure().thrusts();
-    if !summary.is_arch {
+    summary.is_stack = !scenario.structure().thrusts();
+    if summary.is_stack {
         return Ok(summary);
     }
     summary.four_links = Some(match scenario.mechanisms() {
         // Limit analysis of the row is complete without them.
-        Err(FourLinkError::Ties) => FourLinks::None {
-            none_because: "four links take no ties, so there is no unstable equilibrium and no equivalent block"
-                .to_owned(),
-        },
         Err(error) => FourLinks::None {
-            none_because: error.to_string(),
+            none_because: match error {
+                FourLinkError::Ties => "four links take no ties, so there is no unstable equilibrium and no equivalent block".to_owned(),
+                error => error.to_string(),
+            },
         },
         Ok(model) => {
             summary.bodies = model.bodies();
@@ -140,19 +139,16 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
 fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
     let sides = Sides::try_of(|sway| {
         let onset = friction::onset(row, coefficient, sway)?;
-        let joints = |onset: &FrictionOnset| {
-            let joints = onset.yields.iter().map(|joint| YieldingJoint {
-                joint: joint.joint,
-                opens_intrados: joint.opens[0],
-                opens_extrados: joint.opens[1],
-                slips_towards: joint.slips,
-            });
-            joints.collect()
+        let joint = |joint: &friction::Yield| YieldingJoint {
+            joint: joint.joint,
+            opens_intrados: joint.opens[0],
+            opens_extrados: joint.opens[1],
+            slips_towards: joint.slips,
         };
         Ok::<_, FrictionError>(FrictionSide {
             incipient_acceleration_g: onset.as_ref().map(|onset| onset.acceleration_g),
             sliding_governs: onset.as_ref().is_some_and(FrictionOnset::sliding_governs),
-            mechanism: onset.as_ref().map(joints),
+            mechanism: onset.map(|onset| onset.yields.iter().map(joint).collect()),
         })
     })?;
     Ok(Friction {

@@ -2,7 +2,6 @@
 
 use askama::Template;
 use serde::Serialize;
-use serde_json::{Map, Value};
 
 use super::NoLimit;
 use crate::argument::fixed;
@@ -17,12 +16,12 @@ use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
-use crate::output::summary::summary_of;
+use crate::output::summary::{Named, summary_of};
 use crate::output::template::{filters, render};
 use crate::studies::results::Answer;
 
 /// The onset of motion of a structure, to either side.
-#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]
 #[template(path = "studies/limit/words.txt")]
 pub struct Summary {
     /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion if its springings have
@@ -35,7 +34,7 @@ pub struct Summary {
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism that sways right, in radians. Present for four links
     /// and columns.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub unstable_rotations: Option<Map<String, Value>>,
+    pub unstable_rotations: Option<Named<f64>>,
     /// Equivalent free-standing blocks. Present for four links and columns.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalent_block: Option<Equivalent>,
@@ -63,9 +62,9 @@ pub struct Summary {
     /// Frame of reference, and the place of each tie.
     #[serde(skip)]
     pub(super) tie_places: Vec<String>,
-    /// Whether the joints of a row are those of an arch; `false` for a stack.
+    /// Whether a row is a stack on its base, and no arch.
     #[serde(skip)]
-    pub(super) is_arch: bool,
+    pub(super) is_stack: bool,
 }
 
 /// A hinge of the mechanism that starts.
@@ -211,37 +210,22 @@ impl Summary {
             incipient_acceleration_g,
             incipient_acceleration_m_s2: incipient_acceleration_g.map(in_m_s2),
             mechanism,
-            unstable_rotations: None,
-            equivalent_block: None,
-            capacity_g: None,
-            capacity_not_found: None,
-            hinges: None,
-            ties: None,
-            four_links: None,
-            friction: None,
-            bodies: Vec::new(),
-            tie_places: Vec::new(),
-            is_arch: true,
+            ..Self::default()
         }
     }
 
     /// The summary of a structure that starts as a mechanism of one degree of freedom.
     pub(super) fn of_mechanism(model: &dyn MechanismModel, gravity_m_s2: f64) -> Self {
         let bodies = model.bodies();
-        let unstable = model
-            .critical_rotations_rad(Sway::Right)
-            .into_iter()
-            .map(Value::from);
-        let unstable = columns(&bodies, "rotation", "rad")
-            .into_iter()
-            .zip(unstable);
+        let unstable_rad = model.critical_rotations_rad(Sway::Right);
+        let names = columns(&bodies, "rotation", "rad").into_iter();
         let hinges = |sway| {
             let hinges = model.hinges_after(0, sway);
             hinges.into_iter().map(OpenHinge::Link).collect()
         };
         let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
         Self {
-            unstable_rotations: Some(unstable.collect()),
+            unstable_rotations: Some(Named(names.zip(unstable_rad).collect())),
             equivalent_block: model.equivalent(Sway::Right, gravity_m_s2),
             bodies,
             ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
@@ -275,9 +259,9 @@ impl Summary {
     }
 
     /// Rotations at the unstable equilibrium with the names of their bodies.
-    fn unstable_by_body(&self, rotations_rad: &Map<String, Value>) -> String {
-        let rotations_rad: Vec<f64> = rotations_rad.values().filter_map(Value::as_f64).collect();
-        self.by_body(&rotations_rad)
+    fn unstable_by_body(&self, Named(rotations_rad): &Named<f64>) -> String {
+        let rotations_rad = rotations_rad.iter().map(|(_, value)| *value);
+        self.by_body(&rotations_rad.collect::<Vec<_>>())
     }
 }
 

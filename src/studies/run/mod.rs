@@ -6,6 +6,7 @@ mod feet;
 mod film;
 mod open_joints;
 pub mod overlay;
+mod packed;
 mod picture;
 mod points;
 pub mod report;
@@ -313,7 +314,7 @@ impl RunResults<'_> {
         let (text, opening) = (&mut self.words, [samples, &self.verdict]);
         let collected = &self.collected;
         collected.write(self.run, &mut folder, &self.history, opening, text)?;
-        folder.write(SUMMARY, &pretty(&self.summary))?;
+        folder.write(SUMMARY, pretty(&self.summary))?;
         let path = folder.path().to_owned();
         folder.complete()?;
         let files = self.run.files().into_iter().map(|name| match name {
@@ -447,10 +448,10 @@ impl Collected {
         let title = scenario.title().unwrap_or("Rocking history");
         let subject = run.subject(title);
         let picture = self.picture.draw(figure, &subject, history, &self.points);
-        folder.write(PICTURE, &picture)?;
+        folder.write(PICTURE, picture)?;
         if let Some(report) = &self.report {
             let page = report.page(scenario, history, Some(&self.points), opening, words);
-            folder.write(REPORT, &page)?;
+            folder.write(REPORT, page)?;
         }
         for snapshots in &self.snapshots {
             if snapshots.is_film() {
@@ -460,7 +461,7 @@ impl Collected {
                 let path = path.display();
                 let _ = writeln!(words, "  {count} pictures of a film in {path}");
             } else {
-                folder.write(SNAPSHOTS, &snapshots.draw(figure, title))?;
+                folder.write(SNAPSHOTS, snapshots.draw(figure, title))?;
                 *words += &snapshots.outside();
             }
         }

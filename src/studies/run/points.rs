@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde_json::{Value, json};
 
-use super::report::packed::curve;
+use super::packed::curve;
 use super::summary::PointPeaks;
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::chart::Mark;

@@ -4,16 +4,14 @@
 //! displacements and thrust as 16-bit multiples of a unit, states and joints in 8 bits.
 //! Everything drawn is thinned, so that the page stays below half a megabyte for rows of a few dozen blocks.
 
-pub(super) mod packed;
-
 use nalgebra::Vector2;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use self::packed::{
+use super::film::Film;
+use super::packed::{
     MOST, body_number, curve, eighth, encoded, floats, layouts, piece as drawn_piece, whole,
 };
-use super::film::Film;
 use super::picture::LARGEST_EXCESS;
 use super::points::Points;
 use crate::dynamics::fall::FallEnd;

@@ -1,7 +1,7 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Event, Impact, Sample};
+use crate::dynamics::history::{Event, Impact, Sample, TieSample};
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
@@ -25,54 +25,63 @@ pub(super) fn rotations(
     scales: Option<Scales>,
 ) -> Vec<Column<'static, Sample>> {
     let bodies = model.bodies();
+    let rates = columns(&bodies, "rate", "rad_s");
     let mut all = vec![
-        column("time_s", |sample: &Sample| sample.time_s),
-        column("ground_acceleration_m_s2", |sample: &Sample| {
+        of_sample("time_s", |sample| sample.time_s),
+        of_sample("ground_acceleration_m_s2", |sample| {
             sample.ground_acceleration_m_s2
         }),
-        column("phase", |sample: &Sample| sample.phase),
-        column("state", |sample: &Sample| sample.state.name()),
+        of_sample("phase", |sample| sample.phase),
+        of_sample("state", |sample| sample.state.name()),
         numbers(columns(&bodies, "rotation", "rad"), |sample: &Sample| {
             &sample.rotations_rad
         }),
-        numbers(columns(&bodies, "rate", "rad_s"), |sample: &Sample| {
-            &sample.rates_rad_s
-        }),
+        numbers(rates, |sample: &Sample| &sample.rates_rad_s),
         match model.row() {
-            Some(_) => column("open_joints", |sample: &Sample| sample.hinges.len()),
-            None => column("thrust_excess_ratio", |sample: &Sample| {
-                sample.demand.excess_ratio
-            }),
+            Some(_) => of_sample("open_joints", |sample| sample.hinges.len()),
+            None => of_sample("thrust_excess_ratio", |sample| sample.demand.excess_ratio),
         },
-        column("friction_demand", |sample: &Sample| sample.demand.friction),
+        of_sample("friction_demand", |sample| sample.demand.friction),
     ];
     if ground.has_vertical() {
-        all.push(column("vertical_acceleration_m_s2", |sample: &Sample| {
+        all.push(of_sample("vertical_acceleration_m_s2", |sample| {
             sample.vertical_acceleration_m_s2
         }));
     }
     if ground.right_foot().is_some() {
-        all.extend([
-            column("right_foot_x_m", |sample: &Sample| sample.feet_apart_m.x),
-            column("right_foot_y_m", |sample: &Sample| sample.feet_apart_m.y),
-        ]);
+        all.push(of_sample("right_foot_x_m", |sample| sample.feet_apart_m.x));
+        all.push(of_sample("right_foot_y_m", |sample| sample.feet_apart_m.y));
     }
     if let Some(scales) = scales {
         all.extend([
-            column("p_t", move |sample: &Sample| {
-                sample.time_s * scales.frequency_rad_s
-            }),
-            column("acceleration_over_incipient", move |sample: &Sample| {
+            of_sample("p_t", move |sample| sample.time_s * scales.frequency_rad_s),
+            of_sample("acceleration_over_incipient", move |sample| {
                 // Ground that accelerates to the right pushes to the left.
                 let ground_m_s2 = sample.ground_acceleration_m_s2;
                 ground_m_s2 / scales.incipient_m_s2[usize::from(ground_m_s2 > 0.0)]
             }),
-            column("rotation_over_critical", |sample: &Sample| {
+            of_sample("rotation_over_critical", |sample| {
                 sample.rotation_over_critical.unwrap_or(0.0)
             }),
         ]);
     }
     all
+}
+
+/// A column with a quantity of a sample.
+fn of_sample<C: Into<Cell<'static>>>(
+    name: &'static str,
+    cell: impl Fn(&Sample) -> C + 'static,
+) -> Column<'static, Sample> {
+    column(name, cell)
+}
+
+/// A column with a quantity of an event.
+fn of_event<C: Into<Cell<'static>>>(
+    name: &'static str,
+    cell: impl Fn(&Event) -> C + 'static,
+) -> Column<'static, Event> {
+    column(name, cell)
 }
 
 /// Columns of `poses.csv`, one row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
@@ -88,7 +97,7 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
             .flat_map(move |(quantity, unit)| columns(body, quantity, unit))
     });
     vec![
-        column("time_s", |sample: &Sample| sample.time_s),
+        of_sample("time_s", |sample| sample.time_s),
         several(names, |sample: &Sample, cells| {
             let poses = sample.poses.iter();
             let values = poses
@@ -113,43 +122,35 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let gaps = (0..shape.joints)
         .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
     let pressures = (0..shape.pressing).flat_map(|joint| {
-        [
-            format!("normal_{joint}_n"),
-            format!("shear_{joint}_n"),
-            format!("eccentricity_{joint}_ratio"),
-            format!("contact_{joint}_ratio"),
-            format!("stress_{joint}_intrados_pa"),
-            format!("stress_{joint}_extrados_pa"),
-        ]
+        let of_joint = [
+            ("normal", "n"),
+            ("shear", "n"),
+            ("eccentricity", "ratio"),
+            ("contact", "ratio"),
+            ("stress", "intrados_pa"),
+            ("stress", "extrados_pa"),
+        ];
+        of_joint.map(|(quantity, unit)| format!("{quantity}_{joint}_{unit}"))
     });
-    let ties = (1..=shape.ties).flat_map(|tie| {
-        [
-            format!("tie_{tie}_force_n"),
-            format!("tie_{tie}_elongation_m"),
-        ]
-    });
+    let ties = (1..=shape.ties)
+        .flat_map(|tie| ["force_n", "elongation_m"].map(|what| format!("tie_{tie}_{what}")));
     let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
     vec![
-        column("time_s", |sample: &Sample| sample.time_s),
+        of_sample("time_s", |sample| sample.time_s),
         numbers(gaps, |sample: &Sample| sample.gaps_m.as_flattened()),
         numbers(slips, |sample: &Sample| &sample.offsets_m),
         several(pressures, |sample: &Sample, cells| {
             for joint in &sample.pressures {
-                let [intrados_pa, extrados_pa] = joint.edge_stresses_pa;
-                cells.extend([
-                    Cell::from(joint.normal_n),
-                    Cell::from(joint.shear_n),
-                    Cell::from(joint.eccentricity_ratio),
-                    Cell::from(joint.contact_ratio),
-                    Cell::from(intrados_pa),
-                    Cell::from(extrados_pa),
-                ]);
+                cells.extend([joint.normal_n, joint.shear_n].map(Cell::from));
+                cells.push(joint.eccentricity_ratio.into());
+                cells.push(joint.contact_ratio.into());
+                cells.extend(joint.edge_stresses_pa.map(Cell::from));
             }
         }),
         several(ties, |sample: &Sample, cells| {
-            for tie in &sample.ties {
-                cells.extend([Cell::from(tie.force_n), Cell::from(tie.elongation_m)]);
-            }
+            let ties = sample.ties.iter();
+            let cells_of = |tie: &TieSample| [tie.force_n, tie.elongation_m].map(Cell::from);
+            cells.extend(ties.flat_map(cells_of));
         }),
     ]
 }
@@ -175,33 +176,32 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// Rows of blocks have thousands of impacts and hundreds of bodies, so the columns of bodies are left out.
 pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
-        column("time_s", |event: &Event| event.time_s),
+        of_event("time_s", |event| event.time_s),
         row_number("phase"),
-        column("kind", |event: &Event| event.kind.name()),
-        column("sway", |event: &Event| event.state.sway().map(Sway::name)),
-        column("mechanism", |event: &Event| event.mechanism),
+        of_event("kind", |event| event.kind.name()),
+        of_event("sway", |event| event.state.sway().map(Sway::name)),
+        of_event("mechanism", |event| event.mechanism),
     ];
-    let energy = column("energy_j", |event: &Event| event.energy_j);
+    let energy = of_event("energy_j", |event| event.energy_j);
     if model.shape().ties > 0 {
-        all.push(column("tie", |event: &Event| event.tie.map(|tie| tie + 1)));
+        all.push(of_event("tie", |event| event.tie.map(|tie| tie + 1)));
     }
     match model.as_mechanisms() {
         Some(model) => {
             let (bodies, sections) = (model.bodies(), sections(model));
             let rotations = columns(&bodies, "rotation", "rad");
+            let rates = columns(&bodies, "rate", "rad_s");
             all.extend([
                 numbers(rotations, |event: &Event| &event.rotations_rad),
-                numbers(columns(&bodies, "rate", "rad_s"), |event: &Event| {
-                    &event.rates_rad_s
-                }),
+                numbers(rates, |event: &Event| &event.rates_rad_s),
                 energy,
                 hinges("hinge", sections, |event| &event.hinges),
             ]);
         }
         None => all.extend([
             energy,
-            column("joints_open", |event: &Event| joint_numbers(&event.hinges)),
-            column("edges_open", |event: &Event| joint_edges(&event.hinges)),
+            of_event("joints_open", |event| joint_numbers(&event.hinges)),
+            of_event("edges_open", |event| joint_edges(&event.hinges)),
         ]),
     }
     all
@@ -224,7 +224,7 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
     vec![
         row_number("impact"),
-        column("time_s", |event: &Event| event.time_s),
+        of_event("time_s", |event| event.time_s),
         of_impact("sway_before", |impact| impact.sway_before.name()),
         of_impact("sway_after", |impact| impact.sway_after().name()),
         of_impact("restitution", |impact| impact.restitution),
@@ -240,11 +240,8 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
             by_hinge(sections, |hinge| vec![format!("hinge_{hinge}_deg")]),
             move |event: &Event, cells| {
                 let opened = hinge_cells(opened(event), sections);
-                cells.extend(
-                    opened
-                        .into_iter()
-                        .map(|(angle_deg, _)| Cell::from(angle_deg)),
-                );
+                let angles_deg = opened.into_iter().map(|(angle_deg, _)| angle_deg);
+                cells.extend(angles_deg.map(Cell::from));
             },
         ),
         several(
@@ -280,7 +277,7 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
 pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
-        column("time_s", |event: &Event| event.time_s),
+        of_event("time_s", |event| event.time_s),
         of_impact("joints_shut", |impact| joint_numbers(&impact.closed)),
         of_impact("edges_shut", |impact| joint_edges(&impact.closed)),
         of_impact("joints_opened", |impact| joint_numbers(&impact.opened)),
@@ -364,18 +361,18 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
 
 /// Numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
-    let numbers = hinges.iter().filter_map(|hinge| match hinge {
-        Hinge::Joint { joint, .. } => Some(joint.to_string()),
-        Hinge::Section { .. } | Hinge::Toe(_) => None,
-    });
-    numbers.collect::<Vec<_>>().join(" ")
+    of_joints(hinges, |joint, _| joint.to_string())
 }
 
 /// Edges of these joints, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
-    let names = hinges.iter().filter_map(|hinge| match hinge {
-        Hinge::Joint { edge, .. } => Some(edge.map_or("both", Edge::name)),
+    of_joints(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
+}
+
+fn of_joints(hinges: &[Hinge], words: impl Fn(usize, Option<Edge>) -> String) -> String {
+    let texts = hinges.iter().filter_map(|hinge| match *hinge {
+        Hinge::Joint { joint, edge } => Some(words(joint, edge)),
         Hinge::Section { .. } | Hinge::Toe(_) => None,
     });
-    names.collect::<Vec<_>>().join(" ")
+    texts.collect::<Vec<_>>().join(" ")
 }

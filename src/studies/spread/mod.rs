@@ -73,32 +73,20 @@ impl Way {
     /// The movements of both springings after this distance along it, in metres.
     #[must_use]
     pub fn movements(&self, movement_m: f64) -> Movements {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
         // Quarters of a turn have no rounding.
-        let [outwards, down] = match self.angle_deg {
-            0.0 => [1.0, 0.0],
-            90.0 => [0.0, 1.0],
-            180.0 => [-1.0, 0.0],
-            -90.0 => [0.0, -1.0],
-            angle_deg => {
-                let (sin, cos) = angle_deg.to_radians().sin_cos();
-                [cos, sin]
-            }
-        };
+        let is_quarter = self.angle_deg % 90.0 == 0.0;
+        let [outwards, down] = [cos, sin].map(|part| if is_quarter { part.round() } else { part });
         let movement = Movement {
             spread_m: movement_m * outwards,
             settlement_m: movement_m * down,
             rotation_rad: 0.0,
         };
-        match self.springing {
-            Springing::Left => Movements {
-                left: movement,
-                ..Movements::default()
-            },
-            Springing::Right => Movements {
-                right: movement,
-                ..Movements::default()
-            },
-        }
+        let (left, right) = match self.springing {
+            Springing::Left => (movement, Movement::default()),
+            Springing::Right => (Movement::default(), movement),
+        };
+        Movements { left, right }
     }
 }
 

@@ -148,13 +148,9 @@ impl Way {
         crown: Carried,
         gravity_m_s2: f64,
     ) -> Result<Self, CapacityError> {
-        let masses = (0..).zip(bodies).map(|(index, body)| {
-            let (at_m, body_of) = (body.centre_m, Some(index));
-            let point = Carried {
-                at_m,
-                body: body_of,
-            };
-            (body.mass_kg, point)
+        let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
+            let at_m = own.centre_m;
+            (own.mass_kg, Carried { at_m, body })
         });
         let masses: Vec<(f64, Carried)> = masses.collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
@@ -211,22 +207,21 @@ impl Mechanism {
             terms.sum()
         };
         let ties = found.ties.iter();
-        let held_kg = ties
-            .clone()
-            .map(|tie| tie.force_kg * (tie.lengthening * scale));
+        let held_kg = ties.clone();
+        let held_kg = held_kg.map(|tie| tie.force_kg * (tie.lengthening * scale));
         let way = found.way.as_ref().ok();
         let crown = way.and_then(|way| way.crown.as_ref()).map(Capacity::end);
         let end = way.map(|way| way.centre.end());
         let yielding = way.and_then(|way| basis.yielding(way));
         let curve = way.map(|way| {
             let points = way.centre.curve.iter();
-            let points = points.map(|point| {
+            let curve = points.map(|point| {
                 [
                     point.oscillator_displacement_m,
                     point.oscillator_acceleration_g,
                 ]
             });
-            points.collect()
+            curve.collect()
         });
         let hinges = found.hinges.iter().map(|(hinge, at_m)| PlacedHinge {
             hinge: *hinge,
@@ -400,10 +395,8 @@ pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>,
             Found::of_onset(row, sway, &found, gravity_m_s2)
         };
         let mut mechanism = Mechanism::new(found, basis);
-        let may_slide = row
-            .as_ref()
-            .ok()
-            .filter(|_| slips || mechanism.way.is_none());
+        let sliding = slips || mechanism.way.is_none();
+        let may_slide = row.as_ref().ok().filter(|_| sliding);
         mechanism.slides_at_g = may_slide.and_then(|row| slides_at_g(row, coefficient, sway));
         match mechanism.slides_at_g {
             Some(at_g) if slips || model.is_err() => Err(NoCheck::Slides {
@@ -415,11 +408,10 @@ pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>,
             _ => Ok((sway, mechanism)),
         }
     };
-    let sides = Sway::ALL.iter().copied();
-    let checked = sides.filter(|sway| match basis.settings.sides {
-        CheckedSides::Both => true,
-        CheckedSides::Right => *sway == Sway::Right,
-        CheckedSides::Left => *sway == Sway::Left,
-    });
-    checked.map(of).collect()
+    let checked = match basis.settings.sides {
+        CheckedSides::Both => Sway::ALL,
+        CheckedSides::Right => &[Sway::Right],
+        CheckedSides::Left => &[Sway::Left],
+    };
+    checked.iter().copied().map(of).collect()
 }

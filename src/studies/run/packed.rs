@@ -72,7 +72,7 @@ pub(super) fn floats(values: impl Iterator<Item = f64>) -> String {
 }
 
 /// The times of a curve, followed by its values.
-pub(in super::super) fn curve(points: impl IntoIterator<Item = (f64, f64)>) -> String {
+pub(super) fn curve(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let (times_s, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
     floats(times_s.into_iter().chain(values))
 }
