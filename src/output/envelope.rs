@@ -3,16 +3,52 @@
 /// Largest number of columns to which a curve is thinned: about two per pixel.
 pub(crate) const COLUMNS: usize = 1600;
 
+/// A long series in at most a given number of columns. A column holds equally many values as the others; when there are too many
+/// columns, pairs of them become one.
+#[derive(Clone, Debug)]
+pub(crate) struct Thinned<T> {
+    most: usize,
+    group: usize,
+    /// Number of values in the last column.
+    in_last: usize,
+    pub(crate) columns: Vec<T>,
+}
+
+impl<T> Thinned<T> {
+    pub(crate) const fn new(most: usize) -> Self {
+        Self {
+            most,
+            group: 1,
+            in_last: 0,
+            columns: Vec::new(),
+        }
+    }
+
+    /// The column to which the next value belongs; `None` if that value begins another. `join` adds a column to the one before it.
+    pub(crate) fn next(&mut self, join: impl Fn(&mut T, T)) -> Option<&mut T> {
+        if self.in_last == self.group && self.columns.len() == self.most {
+            let mut all = std::mem::take(&mut self.columns).into_iter();
+            while let Some(mut column) = all.next() {
+                self.in_last = self.group;
+                if let Some(after) = all.next() {
+                    join(&mut column, after);
+                    self.in_last += self.group;
+                }
+                self.columns.push(column);
+            }
+            self.group *= 2;
+        }
+        let is_full = self.columns.is_empty() || self.in_last == self.group;
+        self.in_last = if is_full { 1 } else { self.in_last + 1 };
+        self.columns.last_mut().filter(|_| !is_full)
+    }
+}
+
 /// A long series of values, thinned to the smallest and largest of each of equal groups.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
-    /// Largest number of columns.
-    most: usize,
-    group: usize,
-    /// Number of samples in the last column.
-    in_last: usize,
     /// Time and value of the minimum and of the maximum of each column.
-    columns: Vec<[(f64, f64); 2]>,
+    thinned: Thinned<[(f64, f64); 2]>,
     last: Option<(f64, f64)>,
 }
 
@@ -26,10 +62,7 @@ impl Envelope {
     /// An envelope thinned to at most this many columns.
     pub(crate) const fn of_columns(most: usize) -> Self {
         Self {
-            most,
-            group: 1,
-            in_last: 0,
-            columns: Vec::new(),
+            thinned: Thinned::new(most),
             last: None,
         }
     }
@@ -37,29 +70,16 @@ impl Envelope {
     pub(crate) fn push(&mut self, time_s: f64, value: f64) {
         let point = (time_s, value);
         self.last = Some(point);
-        if self.in_last < self.group
-            && let Some(column) = self.columns.last_mut()
-        {
-            *column = joined(*column, [point; 2]);
-            self.in_last += 1;
-            return;
+        match self.thinned.next(join) {
+            Some(column) => join(column, [point; 2]),
+            None => self.thinned.columns.push([point; 2]),
         }
-        if self.columns.len() == self.most {
-            self.columns = self
-                .columns
-                .chunks(2)
-                .map(|pair| joined(pair[0], pair[pair.len() - 1]))
-                .collect();
-            self.group *= 2;
-        }
-        self.columns.push([point; 2]);
-        self.in_last = 1;
     }
 
     /// The points to draw, in order of time.
     pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
-        let extremes = self.columns.iter().flat_map(|[low, high]| {
+        let extremes = self.thinned.columns.iter().flat_map(|[low, high]| {
             if low.0 <= high.0 {
                 [*low, *high]
             } else {
@@ -75,10 +95,13 @@ impl Envelope {
     }
 }
 
-fn joined(a: [(f64, f64); 2], b: [(f64, f64); 2]) -> [(f64, f64); 2] {
-    let low = if b[0].1 < a[0].1 { b[0] } else { a[0] };
-    let high = if b[1].1 > a[1].1 { b[1] } else { a[1] };
-    [low, high]
+fn join([low, high]: &mut [(f64, f64); 2], after: [(f64, f64); 2]) {
+    if after[0].1 < low.1 {
+        *low = after[0];
+    }
+    if after[1].1 > high.1 {
+        *high = after[1];
+    }
 }
 
 #[cfg(test)]

@@ -290,16 +290,13 @@ impl Scene {
     #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
         match &self.outline {
-            Outline::Ring {
-                ring,
-                mean_radius_m,
-                joints_rad,
-            } => {
+            Outline::Ring { joints_rad, .. } => {
                 let ends = |angle_rad: &f64| {
-                    [Edge::Intrados, Edge::Extrados]
-                        .map(|edge| ring.point(*angle_rad, edge) * *mean_radius_m)
+                    let [inner, outer] = [Edge::Intrados, Edge::Extrados]
+                        .map(|edge| self.on_ring_m(*angle_rad, edge));
+                    Some([inner?, outer?])
                 };
-                joints_rad.iter().map(ends).collect()
+                joints_rad.iter().filter_map(ends).collect()
             }
             Outline::Block { .. } => Vec::new(),
             Outline::Row { .. } => (0..)
@@ -364,45 +361,46 @@ impl Scene {
         let last = hinges.len().saturating_sub(1);
         let marks = hinges.iter().enumerate();
         let marks = marks.filter_map(|(index, open)| {
+            let mark = self.hinge(open.hinge)?;
             // The last hinge lies on the part that stands still.
-            let link_after = (index < last).then_some(index);
-            match (open.hinge, &self.outline) {
-                (
-                    Hinge::Section { angle_rad, edge },
-                    Outline::Ring {
-                        ring,
-                        mean_radius_m,
-                        ..
-                    },
-                ) => Some(Mark {
-                    body: link_after,
-                    at_m: ring.point(angle_rad, edge) * *mean_radius_m,
-                }),
-                (Hinge::Toe(side), Outline::Block { outline_m }) => Some(Mark {
-                    body: Some(0),
-                    at_m: match side {
-                        Sway::Left => outline_m[0],
-                        Sway::Right => outline_m[outline_m.len() - 1],
-                    },
-                }),
-                (
-                    Hinge::Joint {
-                        joint,
-                        edge: Some(edge),
-                    },
-                    Outline::Row { .. },
-                ) => self.corners(joint).map(|[intrados, extrados]| {
-                    let mark = match edge {
-                        Edge::Intrados => intrados,
-                        Edge::Extrados => extrados,
-                    };
-                    let body = if self.linked { link_after } else { mark.body };
-                    Mark { body, ..mark }
-                }),
-                _ => None,
-            }
+            let link = (index < last).then_some(index);
+            let body = if self.linked { link } else { mark.body };
+            Some(Mark { body, ..mark })
         });
         marks.collect()
+    }
+
+    fn hinge(&self, hinge: Hinge) -> Option<Mark> {
+        let (body, at_m) = match (hinge, &self.outline) {
+            (Hinge::Section { angle_rad, edge }, Outline::Ring { .. }) => {
+                (None, self.on_ring_m(angle_rad, edge)?)
+            }
+            (Hinge::Toe(Sway::Left), Outline::Block { outline_m }) => (Some(0), outline_m[0]),
+            (Hinge::Toe(Sway::Right), Outline::Block { outline_m }) => {
+                (Some(0), outline_m[outline_m.len() - 1])
+            }
+            (Hinge::Joint { joint, edge }, Outline::Row { .. }) => {
+                let [intrados, extrados] = self.corners(joint)?;
+                return Some(match edge? {
+                    Edge::Intrados => intrados,
+                    Edge::Extrados => extrados,
+                });
+            }
+            _ => return None,
+        };
+        Some(Mark { body, at_m })
+    }
+
+    /// A point on an edge of a ring, in metres.
+    fn on_ring_m(&self, angle_rad: f64, edge: Edge) -> Option<Vector2<f64>> {
+        match &self.outline {
+            Outline::Ring {
+                ring,
+                mean_radius_m,
+                ..
+            } => Some(ring.point(angle_rad, edge) * *mean_radius_m),
+            _ => None,
+        }
     }
 
     /// The corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several

@@ -34,16 +34,10 @@ pub fn compared(runs: &[RunResults<'_>]) -> String {
     text + &believed(runs)
 }
 
-fn ends(
-    Summary {
-        outcome,
-        outcome_time_s,
-        ..
-    }: &Summary,
-) -> String {
-    match outcome {
-        Outcome::NeverMoved | Outcome::Vibrates => outcome.to_string(),
-        _ => format!("{outcome} at {outcome_time_s:.4} s"),
+fn ends(history: &Summary) -> String {
+    match history.outcome {
+        outcome @ (Outcome::NeverMoved | Outcome::Vibrates) => outcome.to_string(),
+        outcome => format!("{outcome} at {:.4} s", history.outcome_time_s),
     }
 }
 
@@ -55,25 +49,26 @@ fn believed(runs: &[RunResults<'_>]) -> String {
     };
     let (best, own, varied) = (best.run, &best.history, &best.varied);
     let is_elastic = best.scenario.motion().hinges() == Hinges::Elastic;
-    if own.outcome == Outcome::Incomplete {
-        return format!(
-            "  {}: no verdict, so there is nothing to compare\n",
-            best.name()
-        );
-    }
+    let name = best.name();
+    let happens = match own.outcome {
+        Outcome::Incomplete => {
+            return format!("  {name}: no verdict, so there is nothing to compare\n");
+        }
+        Outcome::Overturned(_) => "overturns",
+        _ => "survives",
+    };
     let mut text = match otherwise(own, varied) {
         Some(otherwise) => format!(
-            "  {}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {} as given, and {otherwise}\n",
-            best.name(),
-            happens(own)
+            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {otherwise}\n"
         ),
-        None if is_elastic && !all_agree(own, varied) => format!(
-            "  {} assume least, but the dependence of the outcome on joint stiffness is unknown\n",
-            best.name()
-        ),
+        None if is_elastic && !all_agree(own, varied) => {
+            format!(
+                "  {name} assume least, but the dependence of the outcome on joint stiffness is unknown\n"
+            )
+        }
         None => {
             let why = best.scenario.motion().hinges().model().trusted_because;
-            format!("  believe {}: {why}\n", best.name())
+            format!("  believe {name}: {why}\n")
         }
     };
     let others = runs.iter().map(|results| (results.run, &results.history));
@@ -82,21 +77,14 @@ fn believed(runs: &[RunResults<'_>]) -> String {
         let late_s = other.outcome_time_s - own.outcome_time_s;
         let when = if late_s < 0.0 { "earlier" } else { "later" };
         let times = other.largest_rotation_rad() / own.largest_rotation_rad();
-        let _ = match Verdict::from(other.outcome) {
-            Verdict::Incomplete => Ok(()),
-            other if other != verdict => writeln!(text, "  {name}: ANOTHER OUTCOME"),
-            Verdict::Overturns => {
-                let apart_s = late_s.abs();
-                writeln!(text, "  {name}: overturns too, {apart_s:.4} s {when}")
-            }
-            _ if own.largest_rotation_rad() > 0.0 => {
-                writeln!(
-                    text,
-                    "  {name}: survives too, with {times:.2} times that rotation"
-                )
-            }
-            _ => Ok(()),
+        let differs = match Verdict::from(other.outcome) {
+            Verdict::Incomplete => continue,
+            other if other != verdict => "ANOTHER OUTCOME".to_owned(),
+            Verdict::Overturns => format!("overturns too, {:.4} s {when}", late_s.abs()),
+            _ if own.largest_rotation_rad() == 0.0 => continue,
+            _ => format!("survives too, with {times:.2} times that rotation"),
         };
+        let _ = writeln!(text, "  {name}: {differs}");
     }
     text
 }
@@ -119,16 +107,7 @@ pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
 /// Whether the motion was computed with other properties, and ends alike with all of them.
 fn all_agree(own: &Summary, varied: &[Varied]) -> bool {
     let own = Verdict::from(own.outcome);
-    let agrees = |Varied { result, .. }: &Varied| {
-        let other = result.as_ref().map(|other| Verdict::from(other.outcome));
-        other.is_ok_and(|other| other == own)
-    };
-    !varied.is_empty() && varied.iter().all(agrees)
-}
-
-const fn happens(history: &Summary) -> &'static str {
-    match history.outcome {
-        Outcome::Overturned(_) => "overturns",
-        _ => "survives",
-    }
+    let ends = varied.iter().map(|one| one.result.as_ref());
+    let mut agree = ends.map(|end| end.is_ok_and(|other| Verdict::from(other.outcome) == own));
+    !varied.is_empty() && agree.all(|agrees| agrees)
 }

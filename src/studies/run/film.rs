@@ -1,15 +1,12 @@
 //! The frames of an animation: a history thinned to a limited number of samples.
 
 use crate::dynamics::history::Sample;
+use crate::output::envelope::Thinned;
 
 /// Every sample, or every second, fourth, eighth ... one, so that there are no more than a given number; and the last one.
 #[derive(Clone, Debug)]
 pub(super) struct Film {
-    most: usize,
-    /// One sample in this many is kept.
-    every: usize,
-    samples: usize,
-    frames: Vec<Sample>,
+    thinned: Thinned<Sample>,
     last: Option<Sample>,
 }
 
@@ -17,40 +14,25 @@ impl Film {
     /// An empty film, of at most this many frames plus the last one.
     pub(super) const fn new(most: usize) -> Self {
         Self {
-            most,
-            every: 1,
-            samples: 0,
-            frames: Vec::new(),
+            thinned: Thinned::new(most),
             last: None,
         }
     }
 
     /// Takes a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
-        if self.samples.is_multiple_of(self.every) {
-            if self.frames.len() == self.most {
-                self.frames = self.frames.drain(..).step_by(2).collect();
-                self.every *= 2;
-            }
-            if self.samples.is_multiple_of(self.every) {
-                self.frames.push(sample.clone());
-            }
+        if self.thinned.next(|_, _| ()).is_none() {
+            self.thinned.columns.push(sample.clone());
         }
-        self.samples += 1;
         self.last = Some(sample.clone());
     }
 
     /// The frames in order of time.
     pub(super) fn frames(&self) -> Vec<&Sample> {
-        let later = |last: &&Sample| {
-            self.frames
-                .last()
-                .is_none_or(|kept| kept.time_s < last.time_s)
-        };
-        self.frames
-            .iter()
-            .chain(self.last.as_ref().filter(later))
-            .collect()
+        let kept = &self.thinned.columns;
+        let is_kept = |last: &&Sample| kept.last().is_some_and(|kept| kept.time_s >= last.time_s);
+        let last = self.last.as_ref().filter(|last| !is_kept(last));
+        kept.iter().chain(last).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Mark, Shape};
+use crate::output::envelope::Thinned;
 use crate::output::panels::Panels;
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
@@ -29,13 +30,15 @@ pub(super) struct OpenJoints {
     count: usize,
     /// Names of the hinges at the two edges.
     edges: [&'static str; 2],
-    /// Number of samples in a column, and in the last one.
-    group: usize,
-    in_last: usize,
-    /// The time at which each column begins.
-    starts_s: Vec<f64>,
-    /// A bit for each of [`KINDS`], column by column.
-    bits: Vec<u8>,
+    /// The time at which each column begins, and for each joint a bit for each of [`KINDS`].
+    thinned: Thinned<(f64, Vec<u8>)>,
+}
+
+/// Adds the bits of a column to those of another.
+fn join((_, bits): &mut (f64, Vec<u8>), (_, after): (f64, Vec<u8>)) {
+    for (own, after) in bits.iter_mut().zip(after) {
+        *own |= after;
+    }
 }
 
 impl OpenJoints {
@@ -51,51 +54,32 @@ impl OpenJoints {
         Self {
             count,
             edges,
-            group: 1,
-            in_last: 0,
-            starts_s: Vec::new(),
-            bits: Vec::new(),
+            thinned: Thinned::new(JOINT_COLUMNS),
         }
     }
 
     /// Whether any joint is ever open in one of these ways.
     fn has(&self, kinds: u8) -> bool {
-        self.bits.iter().any(|bits| bits & kinds != 0)
+        let mut columns = self.thinned.columns.iter();
+        columns.any(|(_, bits)| bits.iter().any(|bits| bits & kinds != 0))
     }
 
     pub(super) fn push(&mut self, sample: &Sample) {
-        if self.in_last == self.group || self.starts_s.is_empty() {
-            if self.starts_s.len() == JOINT_COLUMNS {
-                self.halve();
-            }
-            self.starts_s.push(sample.time_s);
-            self.bits.resize(self.starts_s.len() * self.count, 0);
-            self.in_last = 0;
-        }
-        self.in_last += 1;
-        let first = (self.starts_s.len() - 1) * self.count;
+        let mut bits = vec![0; self.count];
         for open in &sample.hinges {
             if let Hinge::Joint { joint, edge } = open.hinge {
-                self.bits[first + joint] |= match edge {
+                bits[joint] |= match edge {
                     Some(Edge::Intrados) => 1,
                     Some(Edge::Extrados) => 2,
                     None => 4,
                 };
             }
         }
-    }
-
-    /// Merges the columns in pairs.
-    fn halve(&mut self) {
-        self.group *= 2;
-        self.starts_s = self.starts_s.iter().copied().step_by(2).collect();
-        let pairs = self.bits.chunks(2 * self.count);
-        self.bits = pairs
-            .flat_map(|pair| {
-                let (first, second) = pair.split_at(self.count);
-                first.iter().zip(second).map(|(a, b)| a | b)
-            })
-            .collect();
+        let own = (sample.time_s, bits);
+        match self.thinned.next(join) {
+            Some(column) => join(column, own),
+            None => self.thinned.columns.push(own),
+        }
     }
 
     /// Adds the panel of the joints; nothing if none is ever open.
@@ -129,13 +113,12 @@ impl OpenJoints {
 
     /// The times from which and to which a joint is open in this way.
     fn stretches(&self, joint: usize, bit: u8, end_s: f64) -> Vec<[f64; 2]> {
-        let is_open = |column: &usize| self.bits[column * self.count + joint] & bit != 0;
-        let mut columns = 0..self.starts_s.len();
+        let is_open = |(_, bits): &&(f64, Vec<u8>)| bits[joint] & bit != 0;
+        let mut columns = self.thinned.columns.iter();
         let mut stretches = Vec::new();
-        while let Some(first) = columns.find(is_open) {
+        while let Some((from_s, _)) = columns.find(is_open) {
             let end = columns.find(|column| !is_open(column));
-            let end_s = end.map_or(end_s, |end| self.starts_s[end]);
-            stretches.push([self.starts_s[first], end_s]);
+            stretches.push([*from_s, end.map_or(end_s, |(to_s, _)| *to_s)]);
         }
         stretches
     }
@@ -170,19 +153,15 @@ mod tests {
         for i in 0..10_001 {
             joints.push(&sample(f64::from(i), i == 7_777));
         }
-        let columns = joints.starts_s.len();
-        assert!((JOINT_COLUMNS / 2..=JOINT_COLUMNS).contains(&columns));
-        assert_eq!(joints.bits.len(), 3 * columns);
-        assert!(joints.starts_s.is_sorted());
-        let of_joint = |joint: usize| joints.bits.iter().skip(joint).step_by(3).copied();
-        assert!(of_joint(0).all(|bits| bits == 0));
-        assert!(of_joint(1).all(|bits| bits == 1));
-        let parted: Vec<_> = of_joint(2)
-            .enumerate()
-            .filter(|(_, bits)| *bits == 4)
-            .collect();
+        let columns = &joints.thinned.columns;
+        assert!((JOINT_COLUMNS / 2..=JOINT_COLUMNS).contains(&columns.len()));
+        assert!(columns.iter().all(|(_, bits)| bits.len() == 3));
+        assert!(columns.is_sorted_by(|one, next| one.0 < next.0));
+        assert!(columns.iter().all(|(_, bits)| bits[0] == 0));
+        assert!(columns.iter().all(|(_, bits)| bits[1] == 1));
+        let parted: Vec<_> = columns.iter().filter(|(_, bits)| bits[2] == 4).collect();
         assert_eq!(parted.len(), 1);
-        let start_s = joints.starts_s[parted[0].0];
-        assert!((0.0..joints.group as f64).contains(&(7_777.0 - start_s)));
+        let width_s = columns[1].0 - columns[0].0;
+        assert!((0.0..width_s).contains(&(7_777.0 - parted[0].0)));
     }
 }

@@ -150,19 +150,18 @@ impl Points {
 
     /// Names of their curves, for the displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
-        let named = self.watched.iter().map(|watched| {
-            let place = place(watched.point.at_m);
-            AXES.map(|(_, positive)| format!("point {place}, {positive}"))
-        });
+        let places = self.watched.iter().map(|one| place(one.point.at_m));
+        let named = places.map(|at| AXES.map(|(_, positive)| format!("point {at}, {positive}")));
         named.collect()
     }
 
     /// The bodies that carry them while these hinges are open.
     pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
-        let watched = self.watched.iter();
-        watched
-            .map(|watched| self.scene.mark(&watched.point, hinges).body)
-            .collect()
+        let marks = self
+            .watched
+            .iter()
+            .map(|one| self.scene.mark(&one.point, hinges));
+        marks.map(|mark| mark.body).collect()
     }
 
     /// Their positions and named curves in millimetres, for the page.
@@ -185,14 +184,7 @@ fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64>
 
 /// A position as people would type it.
 pub(super) fn place(at_m: Vector2<f64>) -> String {
-    let text = |x: f64| {
-        // Rounded to a millimetre, without trailing zeros.
-        let rounded = (1e3 * x).round() / 1e3;
-        if rounded == 0.0 {
-            "0".to_owned()
-        } else {
-            rounded.to_string()
-        }
-    };
-    format!("{},{}", text(at_m.x), text(at_m.y))
+    // Rounded to a millimetre; adding zero makes a negative zero positive.
+    let [x, y] = [at_m.x, at_m.y].map(|metres| (1e3 * metres).round() / 1e3 + 0.0);
+    format!("{x},{y}")
 }

@@ -212,9 +212,7 @@ slider.addEventListener("input", () => {
   seek(Number(slider.value));
 });
 find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
-find("thrust").addEventListener("change", draw);
-find("ride").addEventListener("change", draw);
-find("sizes").addEventListener("change", draw);
+for (const id of ["thrust", "ride", "sizes"]) find(id).addEventListener("change", draw);
 // A structure that had rotated far enough as it overturned has no fall.
 find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
 find("fall-from").textContent = Number(historyEnd.toFixed(3));
