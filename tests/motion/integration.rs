@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
 use archrock::internals::hybrid::engine::{
-    EngineError, Finish, GuardValue, HybridSystem, Moment, Observer, Settings, Transition, simulate,
+    EngineError, Finish, HybridSystem, Moment, Observer, Settings, Transition, simulate,
 };
 use archrock::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
 
@@ -245,11 +245,8 @@ impl HybridSystem<2> for Ball {
         if lies { &[] } else { &[()] }
     }
 
-    fn guard_value(&self, (): (), now: &Moment<bool, 2>) -> GuardValue {
-        GuardValue {
-            value: now.state[0],
-            rate: now.state[1],
-        }
+    fn guard_value(&self, (): (), now: &Moment<bool, 2>) -> (f64, f64) {
+        (now.state[0], now.state[1])
     }
 
     fn fired_at_once(&self, _: &Moment<bool, 2>) -> Option<()> {
@@ -284,12 +281,12 @@ fn until(count: usize, most: Option<usize>) -> ControlFlow<()> {
 }
 
 impl Observer<Ball, 2> for Log {
-    fn step(&mut self, _: &Ball, _: &Moment<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
+    fn step(&mut self, _: &Moment<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
         self.steps.push(*step);
         until(self.steps.len(), self.most_steps)
     }
 
-    fn transition(&mut self, _: &Ball, transition: &Transition<bool, (), 2>) -> ControlFlow<()> {
+    fn transition(&mut self, transition: &Transition<bool, (), 2>) -> ControlFlow<()> {
         self.bounces
             .push((transition.time_s, transition.before, transition.after));
         until(self.bounces.len(), self.most_bounces)

@@ -194,7 +194,7 @@ impl TieSample {
 }
 
 /// The largest force of a tie in a history, and its state at the end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct TieSummary {
     /// The largest force with which it pulled, in N; of a tie that breaks, also where it broke.
     pub peak_force_n: f64,
@@ -224,12 +224,10 @@ impl TieSummary {
         Self {
             peak_force_n: memory.force_n.0[0],
             peak_force_time_s: time_s,
-            yielded_s: None,
-            broken_s: None,
             yielded_m: memory.yielded_m.0[0],
             force_n: memory.force_n.0[0],
             elastic_j: memory.energy_j(tie).0[0],
-            taken_j: 0.0,
+            ..Self::default()
         }
     }
 
@@ -643,7 +641,7 @@ impl HalfCycle {
 }
 
 /// The slip in a motion.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sliding {
     /// Energy that friction took, in J.
     pub friction_j: f64,
@@ -666,11 +664,9 @@ impl Sliding {
     #[must_use]
     pub fn none(joints: usize) -> Self {
         Self {
-            friction_j: 0.0,
             offsets_m: vec![0.0; joints],
             largest_offsets_m: vec![0.0; joints],
-            unconverged: 0,
-            bound_error: 0.0,
+            ..Self::default()
         }
     }
 }

@@ -106,10 +106,8 @@ pub trait Model: Debug + Send + Sync {
             answers: vec![None; cases.len()],
         };
         self.work(cases, &mut all);
-        let answers = all.answers.into_iter();
-        answers
-            .map(|answer| answer.expect("all jobs have ended"))
-            .collect()
+        let answers: Option<Vec<_>> = all.answers.into_iter().collect();
+        answers.expect("all jobs have ended")
     }
 
     /// Does all jobs on these cases. A model that computes several motions at once does so here; no result depends on what is beside it.
@@ -121,10 +119,7 @@ pub trait Model: Debug + Send + Sync {
     fn shape(&self) -> Shape {
         Shape {
             bodies: self.bodies().len(),
-            joints: 0,
-            slipping: 0,
-            pressing: 0,
-            ties: 0,
+            ..Shape::default()
         }
     }
 
@@ -166,6 +161,17 @@ pub struct Job {
     pub until: Until,
 }
 
+impl Job {
+    /// The motion of a model itself in a case.
+    pub(super) const fn of(case: usize, until: Until) -> Self {
+        Self {
+            case,
+            repetition: None,
+            until,
+        }
+    }
+}
+
 /// Motions to compute, where the answer to one may ask for others.
 pub trait Jobs {
     /// The next one; `None` if there is none until another one has ended.
@@ -197,11 +203,7 @@ struct All {
 
 impl Jobs for All {
     fn next(&mut self) -> Option<Job> {
-        self.waiting.next().map(|case| Job {
-            case,
-            repetition: None,
-            until: self.until,
-        })
+        self.waiting.next().map(|case| Job::of(case, self.until))
     }
 
     fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {

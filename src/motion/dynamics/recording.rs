@@ -165,7 +165,7 @@ fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
 }
 
 /// The size of the samples of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shape {
     /// Number of bodies.
     pub bodies: usize,

@@ -111,13 +111,18 @@ pub struct RepeatedValue {
 }
 
 impl RepeatedValue {
-    /// The range of these values: first that of the motion itself, then those of its repetitions.
-    fn of(values: &[f64]) -> Self {
-        Self {
-            own: values[0],
-            min: values.iter().copied().fold(f64::INFINITY, f64::min),
-            max: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
+    /// The range of the value in the motion itself and of those in its repetitions.
+    fn of(own: f64, others: impl IntoIterator<Item = f64>) -> Self {
+        let range = Self {
+            own,
+            min: own,
+            max: own,
+        };
+        others.into_iter().fold(range, |range, other| Self {
+            min: range.min.min(other),
+            max: range.max.max(other),
+            ..range
+        })
     }
 
     /// Whether all peaks agree so well that they are certain to [`SAME_PEAK_RATIO`].
@@ -131,47 +136,38 @@ impl Repeatability {
     /// Compares a motion of a row with its repetitions, given with their names.
     #[must_use]
     pub fn new(own: &Summary, repetitions: &[(&'static str, Summary)]) -> Self {
-        let runs: Vec<&Summary> = std::iter::once(own)
-            .chain(repetitions.iter().map(|(_, summary)| summary))
-            .collect();
+        let others: Vec<&Summary> = repetitions.iter().map(|(_, other)| other).collect();
+        let runs: Vec<&Summary> = [&[own], &others[..]].concat();
         let mut cycles = own.half_cycles();
         let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
         let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
         cycles.retain(|cycle| cycle.peak_rad >= least_rad);
         let beside = |own: HalfCycle| {
-            let others = repetitions
-                .iter()
-                .map(|(_, other)| Some(own.counterpart(&other.row()?.half_cycles)?.peak_rad));
-            let peaks_rad: Option<Vec<f64>> =
-                std::iter::once(Some(own.peak_rad)).chain(others).collect();
-            RepeatedHalfCycle {
-                own,
-                peak_rad: peaks_rad.map(|peaks_rad| RepeatedValue::of(&peaks_rad)),
-            }
+            let peak_rad =
+                |other: &&Summary| Some(own.counterpart(&other.row()?.half_cycles)?.peak_rad);
+            let peaks_rad: Option<Vec<f64>> = others.iter().map(peak_rad).collect();
+            let peak_rad = peaks_rad.map(|peaks_rad| RepeatedValue::of(own.peak_rad, peaks_rad));
+            RepeatedHalfCycle { own, peak_rad }
         };
         let half_cycles: Vec<_> = cycles.into_iter().map(beside).collect();
         let differs = |cycle: &RepeatedHalfCycle| !cycle.is_certain();
         let parts = half_cycles.iter().position(differs);
-        let stands = |summary: &&Summary| !matches!(summary.outcome, Outcome::Overturned(_));
-        let largest_rad: Vec<f64> = runs
-            .iter()
-            .map(|summary| summary.largest_rotation_rad())
-            .collect();
-        let all_stand = runs.iter().all(stands);
+        let all_stand = runs.iter().all(|run| run.overturned_s().is_none());
+        let largest_rad = || {
+            let others_rad = others.iter().map(|other| other.largest_rotation_rad());
+            RepeatedValue::of(own.largest_rotation_rad(), others_rad)
+        };
         let early = |(name, other): &(&'static str, Summary)| early_difference(own, name, other);
+        let slips_m = all_stand.then(|| slips_m(&runs)).flatten();
         Self {
             repeated: repetitions.iter().map(|(name, _)| *name).collect(),
-            outcomes: runs.iter().map(|summary| summary.outcome).collect(),
+            outcomes: runs.iter().map(|run| run.outcome).collect(),
             same_until_half_cycle: parts.unwrap_or(half_cycles.len()),
             parts_at_s: parts.map(|parts| half_cycles[parts].own.start_s),
             half_cycles,
-            largest_rad: all_stand.then(|| RepeatedValue::of(&largest_rad)),
+            largest_rad: all_stand.then(largest_rad),
             early: repetitions.iter().find_map(early),
-            slips_m: if all_stand {
-                slips_m(&runs)
-            } else {
-                Vec::new()
-            },
+            slips_m: slips_m.unwrap_or_default(),
         }
     }
 
@@ -212,15 +208,13 @@ impl Repeatability {
     }
 }
 
-/// Slips of the joints at the end of all these motions; empty where joints do not slip.
-fn slips_m(runs: &[&Summary]) -> Vec<RepeatedValue> {
+/// Slips of the joints at the end of all these motions; `None` where joints do not slip.
+fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
     let slipped = runs.iter().map(|run| run.row()?.sliding.as_ref());
-    let Some(all) = slipped.collect::<Option<Vec<_>>>() else {
-        return Vec::new();
-    };
+    let all: Vec<_> = slipped.collect::<Option<_>>()?;
     let joint = |joint: usize| {
-        let slips_m: Vec<f64> = all.iter().map(|sliding| sliding.offsets_m[joint]).collect();
-        RepeatedValue::of(&slips_m)
+        let mut slips_m = all.iter().map(|sliding| sliding.offsets_m[joint]);
+        Some(RepeatedValue::of(slips_m.next()?, slips_m))
     };
     (0..all[0].offsets_m.len()).map(joint).collect()
 }
@@ -243,10 +237,8 @@ fn early_difference(
     }
     let others = &other.row()?.half_cycles;
     let cycles = own.half_cycles();
-    let largest_rad = cycles
-        .iter()
-        .map(|cycle| cycle.peak_rad)
-        .fold(0.0, f64::max);
+    let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
+    let largest_rad = peaks_rad.fold(0.0, f64::max);
     let before = cycles
         .iter()
         .take_while(|cycle| cycle.peak_rad < largest_rad)
@@ -376,18 +368,9 @@ pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> 
     let mut checks = Checks::new(model, cases);
     checks.settles = until == Until::Settled;
     // If the result does not depend on how it is computed, the fast way serves.
-    let until = if checks.names.is_empty() {
-        Until::End
-    } else {
-        until
-    };
-    checks.waiting = (0..cases.len())
-        .map(|case| Job {
-            case,
-            repetition: None,
-            until,
-        })
-        .collect();
+    let repeats = !checks.names.is_empty();
+    let until = if repeats { until } else { Until::End };
+    checks.waiting = (0..cases.len()).map(|case| Job::of(case, until)).collect();
     model.work(cases, &mut checks);
     checks.answers()
 }
@@ -436,10 +419,8 @@ impl<'a> Checks<'a> {
     /// Keeps the history of a case, and queues its first repetition if that may matter.
     fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
         let (_, request) = &self.cases[case];
-        if own
-            .as_ref()
-            .is_ok_and(|own| !is_plain(self.model, request, own))
-        {
+        let matters = |own: &Summary| !is_plain(self.model, request, own);
+        if own.as_ref().is_ok_and(matters) {
             self.repeat(case, 0);
         }
         self.own[case] = Some(own);
@@ -449,11 +430,9 @@ impl<'a> Checks<'a> {
     /// other, and left to the end the last of them would run with nothing beside it.
     fn repeat(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
-            self.waiting.push_front(Job {
-                case,
-                repetition: Some(repetition),
-                until: Until::Safe,
-            });
+            let job = Job::of(case, Until::Safe);
+            let repetition = Some(repetition);
+            self.waiting.push_front(Job { repetition, ..job });
         }
     }
 

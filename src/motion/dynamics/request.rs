@@ -1,5 +1,6 @@
 //! The request for a history: how long it lasts, and how accurate it is.
 
+use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use serde::Serialize;
@@ -83,37 +84,36 @@ impl Request {
 
     /// Refuses numbers that no simulation on this ground can work with.
     pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
-        within("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2)?;
-        within("end_s", self.end_s, Self::TIME_S)?;
-        within("output_step_s", self.output_step_s, Self::TIME_S)?;
-        within(
-            "relative_tolerance",
-            self.relative_tolerance,
-            Self::RELATIVE_TOLERANCE,
-        )?;
-        within(
-            "rest_energy_ratio",
-            self.rest_energy_ratio,
-            Self::REST_ENERGY_RATIO,
-        )?;
-        if let Some(initial) = self.initial {
-            within(
-                "rotation_rad",
-                initial.rotation_rad,
-                Initial::MIN_ROTATION_RAD..=std::f64::consts::PI,
-            )?;
+        for (argument, value, range) in [
+            ("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2),
+            ("end_s", self.end_s, Self::TIME_S),
+            ("output_step_s", self.output_step_s, Self::TIME_S),
+            (
+                "relative_tolerance",
+                self.relative_tolerance,
+                Self::RELATIVE_TOLERANCE,
+            ),
+            (
+                "rest_energy_ratio",
+                self.rest_energy_ratio,
+                Self::REST_ENERGY_RATIO,
+            ),
+        ] {
+            within(argument, value, range)?;
+        }
+        if let Some(Initial { rotation_rad, .. }) = self.initial {
+            within("rotation_rad", rotation_rad, Initial::MIN_ROTATION_RAD..=PI)?;
         }
         let lasts_s = self.lasts_s(ground);
         if lasts_s / self.output_step_s <= Self::MOST_SAMPLES {
             return Ok(());
         }
-        Err(ArgumentError {
-            argument: "output_step_s",
-            value: self.output_step_s,
-            allowed: format!(
-                "at least {:?}, for ten million samples",
-                lasts_s / Self::MOST_SAMPLES
-            ),
-        })
+        let least_s = lasts_s / Self::MOST_SAMPLES;
+        let allowed = format!("at least {least_s:?}, for ten million samples");
+        Err(ArgumentError::new(
+            "output_step_s",
+            self.output_step_s,
+            allowed,
+        ))
     }
 }

@@ -7,3 +7,4 @@ pub(super) mod course;
 pub mod error;
 pub(super) mod standing;
 pub(super) mod stepper;
+pub(super) mod task;

@@ -145,13 +145,7 @@ impl GroundSpectrum {
     pub fn new(hazard: Hazard, site: Site) -> Result<Self, ArgumentError> {
         let (ag_g, f0, tc_star_s) = (hazard.ag_g, hazard.f0, hazard.tc_star_s);
         let t_e_s = site.soil.t_e_s();
-        let refused = |argument, value, allowed| {
-            Err(ArgumentError {
-                argument,
-                value,
-                allowed,
-            })
-        };
+        let refused = |argument, value, allowed| Err(ArgumentError::new(argument, value, allowed));
         if !(2.2..=10.0).contains(&f0) {
             let allowed = "a number from 2.2 (NTC 2018, § 3.2.1) to 10".to_owned();
             return refused("f0", f0, allowed);

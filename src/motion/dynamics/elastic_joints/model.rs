@@ -12,10 +12,11 @@ use crate::dynamics::model::{
 };
 use crate::dynamics::recording::Shape;
 use crate::dynamics::row::clock::Settings;
-use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, Task, balanced};
+use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, balanced};
 use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
+use crate::dynamics::row::task::Task;
 use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::Row;

@@ -12,11 +12,10 @@ use crate::dynamics::history::{
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::repeatability::GONE;
 use crate::dynamics::row::clock::Marks;
-use crate::dynamics::row::course::{
-    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, Task,
-};
+use crate::dynamics::row::course::{Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::{Stepper, equal_step, open_hinge};
+use crate::dynamics::row::task::Task;
 use crate::dynamics::until::Until;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -549,16 +548,14 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         if let Some(error) = self.lane_mut().lost.take() {
             return Err(error);
         }
-        let course = self.course();
+        let course = self.course_mut();
         if stood && course.moved {
-            let time_s = course.time;
-            self.course_mut().opened.clear();
-            let energy_j = self.course().potential;
+            let (time_s, energy_j) = (course.time, course.potential);
+            course.opened.clear();
             self.report_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
         }
-        for (tie, kind) in std::mem::take(&mut self.lane_mut().happened) {
-            self.report_tie(tie, kind);
-        }
+        let happened = std::mem::take(&mut self.lane_mut().happened);
+        self.report_ties(happened);
         Ok(())
     }
 

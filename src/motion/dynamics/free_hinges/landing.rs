@@ -17,6 +17,8 @@
 mod observation;
 mod search;
 
+use std::ops::Range;
+
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
@@ -25,9 +27,10 @@ use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::{Course, Task};
+use crate::dynamics::row::course::Course;
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::Stepper as _;
+use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::contact::closing::Closer;
 use crate::mechanics::contact::{Corners, Load, Program};
@@ -48,7 +51,7 @@ const LAST_THREE_RATIO: f64 = 1e-6;
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 
 /// Blocks that moved as one in the last drift.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     first: usize,
     mass: f64,
@@ -89,18 +92,6 @@ struct Crowd {
     /// When the first of them was.
     first_s: f64,
     impacts: usize,
-}
-
-impl Crowd {
-    fn count(&mut self, time_s: f64, within_s: f64) {
-        if self.impacts == 0 || time_s - self.first_s > within_s {
-            *self = Self {
-                first_s: time_s,
-                impacts: 0,
-            };
-        }
-        self.impacts += 1;
-    }
 }
 
 pub struct LandingStepper<'a> {
@@ -149,7 +140,13 @@ pub struct LandingStepper<'a> {
 }
 
 impl<'a> LandingStepper<'a> {
-    fn new(task: Task<'a>, standing: &Stance, recorder: Option<&'a mut dyn Recorder>) -> Self {
+    /// A stepper that starts at the stance of the row, or released at rest with the initial rotations.
+    pub fn new(
+        task: Task<'a>,
+        standing: &Stance,
+        initial_rad: Option<&[f64]>,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Result<Self, RowMotionError> {
         let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = Rest::new(row, &standing.placement);
@@ -176,7 +173,7 @@ impl<'a> LandingStepper<'a> {
             program,
             closer: Closer::new(row),
             ties: Ties::new(row, standing),
-            pieces: Vec::with_capacity(blocks),
+            pieces: vec![Piece::default()],
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
             free: vec![Twist::ZERO; blocks],
@@ -196,34 +193,9 @@ impl<'a> LandingStepper<'a> {
             crowd: Crowd::default(),
             lies_since_s: None,
         };
-        stepper.stand_still();
+        stepper.weigh_pieces();
         stepper.course.note_ties(stepper.ties.memories());
         stepper.course.note_return();
-        stepper
-    }
-
-    /// All blocks at rest, as one piece.
-    fn stand_still(&mut self) {
-        self.pieces.clear();
-        self.pieces.push(Piece {
-            first: 0,
-            mass: 0.0,
-            inertia: 0.0,
-            centre: Vector2::zeros(),
-            velocity: Vector2::zeros(),
-            rate: 0.0,
-        });
-        self.weigh_pieces();
-    }
-
-    /// A stepper that starts at the stance of the row, or released at rest with the initial rotations.
-    pub fn released(
-        task: Task<'a>,
-        standing: &Stance,
-        initial_rad: Option<&[f64]>,
-        recorder: Option<&'a mut dyn Recorder>,
-    ) -> Result<Self, RowMotionError> {
-        let mut stepper = Self::new(task, standing, recorder);
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -281,12 +253,18 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
+    /// The blocks of a piece.
+    fn blocks_of(&self, piece: usize) -> Range<usize> {
+        let next = self.pieces.get(piece + 1);
+        self.pieces[piece].first..next.map_or(self.free.len(), |next| next.first)
+    }
+
     /// Motions of the blocks after a kick of this duration, before contact.
     fn kick(&mut self, kick: Vector2<f64>, lasts_s: f64) {
-        let blocks = self.free.len();
-        for (index, piece) in self.pieces.iter().enumerate() {
-            let end = self.pieces.get(index + 1).map_or(blocks, |next| next.first);
-            self.free[piece.first..end].fill(piece.twist(kick));
+        for index in 0..self.pieces.len() {
+            let twist = self.pieces[index].twist(kick);
+            let blocks = self.blocks_of(index);
+            self.free[blocks].fill(twist);
         }
         let centres_m = &self.placement.centres_m;
         let free = &mut self.free;
@@ -406,37 +384,28 @@ impl<'a> LandingStepper<'a> {
 
     /// Work of the right support by the impulses of the last solution, and of ties that pulled for this duration.
     fn work_of_right_support(&mut self, lasts_s: f64) -> f64 {
-        if !self.right.moves() {
+        let (true, Some(frame)) = (self.right.moves(), self.placement.frames.last()) else {
             return 0.0;
-        }
+        };
         self.program.joint_impulses(&mut self.shares);
-        let mut joints = self.placement.frames.iter().zip(&self.shares);
-        let by_row = joints
-            .next_back()
-            .map_or(Vector2::zeros(), |(frame, shares)| {
-                let [along, normal] = shares;
-                frame.along * *along + frame.normal * *normal
-            });
+        let [along, normal] = self.shares[self.shares.len() - 1];
+        let by_row = frame.along * along + frame.normal * normal;
         let impulse = by_row + self.ties.on_right_support_n() * lasts_s;
         -impulse.dot(&self.right.mean_m_s())
     }
 
-    /// Starts the next program with the corners that land: most of them press.
-    fn press_landed(&mut self) {
-        for (joint, (touching, closed)) in self.touching.iter().zip(&self.closed).enumerate() {
-            for (edge, (touches, touched)) in touching.iter().zip(closed).enumerate() {
-                if *touches && !touched {
-                    self.program.press(joint, edge);
-                }
-            }
-        }
+    /// Adds that work to the energy balance, and returns it.
+    fn note_right_support(&mut self, lasts_s: f64) -> f64 {
+        let work = self.work_of_right_support(lasts_s);
+        self.course.of_row.right_foot_j += work;
+        work
     }
 
-    /// Starts the next program with the corners that pressed before the impact too: most do so again under gravity.
-    fn press_again(&mut self) {
-        for (joint, pressed) in self.pressed.iter().enumerate() {
-            for (edge, pressed) in pressed.iter().enumerate() {
-                if *pressed {
+    /// Starts the next program with these corners pressed.
+    fn press(&mut self, presses: impl Fn(&Self, usize, usize) -> bool) {
+        for joint in 0..self.touching.len() {
+            for edge in 0..2 {
+                if presses(self, joint, edge) {
                     self.program.press(joint, edge);
                 }
             }
@@ -481,24 +450,14 @@ impl<'a> LandingStepper<'a> {
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.course.of_row.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
-        let work = self.work_of_right_support(to_s - from_s);
-        self.course.of_row.right_foot_j += work;
+        self.note_right_support(to_s - from_s);
         // In a shorter time the rounding of the velocities exceeds the effect of the forces.
         if step.merged || to_s - from_s < self.course.task.settings.shortest_step_s {
             return;
         }
         self.program.joint_impulses(&mut self.shares);
-        let (mut least, mut demand) = (f64::INFINITY, 0.0_f64);
-        let loaded = self.course.least_load_n() * (to_s - from_s);
-        for [tangential, normal] in &self.shares {
-            least = least.min(*normal);
-            if *normal >= loaded {
-                demand = demand.max(tangential.abs() / normal);
-            }
-        }
-        self.friction_demand = demand;
-        let of_row = &mut self.course.of_row;
-        of_row.least_normal_n = of_row.least_normal_n.min(least / (to_s - from_s));
+        let impulses = self.shares.iter().copied();
+        self.friction_demand = self.course.note_forces(impulses, to_s - from_s);
     }
 
     /// Moves the row over a step that was solved.
@@ -547,16 +506,16 @@ impl<'a> LandingStepper<'a> {
         let stood = &self.rest.placement.support_poses;
         let poses = self.right.poses(stood);
         self.placement.move_supports(poses);
-        self.ties.move_supports(poses);
+        self.ties.supports = poses;
         self.placement.open(|joint| change[joint]);
         if was_open || self.placement.open_corners() > 0 {
-            self.right.is_followed();
+            self.right.followed_m = self.right.gone_m;
         }
     }
 
     /// Makes the pieces of the solution those of the motion, and notes about which corners they turn.
     fn take_pieces(&mut self) {
-        self.right.take();
+        self.right.velocity_m_s = self.right.next_m_s;
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
         for (joint, _) in self.program.open_joints() {
@@ -569,32 +528,21 @@ impl<'a> LandingStepper<'a> {
 
     /// Centres of the pieces in the present position.
     fn weigh_pieces(&mut self) {
-        let blocks = &self.row.blocks;
         for index in 0..self.pieces.len() {
-            let end = self
-                .pieces
-                .get(index + 1)
-                .map_or(blocks.len(), |next| next.first);
-            let piece = &mut self.pieces[index];
             let (mut first, mut mass) = (Vector2::zeros(), 0.0);
-            for (block, centre) in blocks[piece.first..end]
-                .iter()
-                .zip(&self.placement.centres_m[piece.first..end])
-            {
-                first += centre * block.mass_kg;
-                mass += block.mass_kg;
+            for block in self.blocks_of(index) {
+                let mass_kg = self.row.blocks[block].mass_kg;
+                first += self.placement.centres_m[block] * mass_kg;
+                mass += mass_kg;
             }
-            piece.centre = first / mass;
-            piece.mass = mass;
+            let piece = &mut self.pieces[index];
+            (piece.centre, piece.mass) = (first / mass, mass);
         }
     }
 
-    /// Whether a corner touches that did not at the beginning of the step.
-    fn has_landed(&self) -> bool {
-        let corners = self.placement.gaps_m.iter().zip(&self.closed);
-        corners
-            .flat_map(|(gaps, closed)| gaps.iter().zip(closed))
-            .any(|(gap, closed)| *gap == 0.0 && !closed)
+    /// Whether this corner touches, and did not at the beginning of the step.
+    fn has_landed(&self, joint: usize, edge: usize) -> bool {
+        self.placement.gaps_m[joint][edge] == 0.0 && !self.closed[joint][edge]
     }
 
     /// Completes the velocity at a landing with the old mechanism, then projects it.
@@ -608,17 +556,24 @@ impl<'a> LandingStepper<'a> {
         self.free.copy_from_slice(&self.program.velocities);
         self.touch_shut();
         self.program.start_from(&self.pressed);
-        self.press_landed();
+        // Most of the corners that land press.
+        self.press(Self::has_landed);
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
-        let work = self.work_of_right_support(0.0);
-        self.course.of_row.right_foot_j += work;
+        let work = self.note_right_support(0.0);
         self.course.of_row.energy_taken_j += kinetic_before + work - kinetic_after;
         self.take_pieces();
         self.kicked_s = self.course.time;
         self.course.impacts += 1;
-        self.crowd
-            .count(self.course.time, self.course.task.settings.shortest_step_s);
+        let (first_s, within_s) = (
+            self.crowd.first_s,
+            self.course.task.settings.shortest_step_s,
+        );
+        if self.crowd.impacts == 0 || self.course.time - first_s > within_s {
+            self.crowd.first_s = self.course.time;
+            self.crowd.impacts = 0;
+        }
+        self.crowd.impacts += 1;
         Ok(())
     }
 
@@ -655,9 +610,8 @@ impl<'a> LandingStepper<'a> {
         self.solve()?;
         self.form_pieces();
         self.course.of_row.ground_j -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
-        let work = self.work_of_right_support(self.course.time - self.kicked_s);
-        self.course.of_row.right_foot_j += work;
-        self.right.take();
+        self.note_right_support(self.course.time - self.kicked_s);
+        self.right.velocity_m_s = self.right.next_m_s;
         Ok(())
     }
 }
@@ -769,7 +723,8 @@ mod tests {
                 .unwrap();
             let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
             let task = Task::new(&row, &ground, 9.81, settings);
-            let mut stepper = LandingStepper::new(task, &Stance::undeformed(&row), None);
+            let mut stepper =
+                LandingStepper::new(task, &Stance::undeformed(&row), None, None).unwrap();
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;

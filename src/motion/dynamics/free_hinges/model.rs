@@ -69,13 +69,7 @@ impl RowOptions {
                 within(argument, value, range)?;
             }
         }
-        let wrong = |argument, value, allowed| {
-            Err(ArgumentError {
-                argument,
-                value,
-                allowed,
-            })
-        };
+        let wrong = |argument, value, allowed| Err(ArgumentError::new(argument, value, allowed));
         match (self.longest_step_s, self.shortest_step_s) {
             (_, Some(shortest_s)) if self.friction_coefficient.is_some() => wrong(
                 "shortest_step_s",

@@ -6,9 +6,9 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::clock::Settings;
-use crate::dynamics::row::course::Task;
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper;
+use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::stance::Stance;
 
@@ -43,7 +43,7 @@ pub fn motion(
     task.settings.within(MOST_STEPS, remedy)?;
     // A recorder of any lifetime serves for as long as the task.
     let recorder = recorder.map(|recorder| recorder as _);
-    let released = |recorder| LandingStepper::released(task, standing, initial_rad, recorder);
+    let released = |recorder| LandingStepper::new(task, standing, initial_rad, recorder);
     let Some(coefficient) = task.settings.friction_coefficient else {
         return stepper::run(released(recorder)?);
     };

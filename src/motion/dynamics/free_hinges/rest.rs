@@ -3,6 +3,7 @@
 
 use nalgebra::Vector2;
 
+use crate::dynamics::row::course::{OVERTURNED_RAD, OVERTURNED_RATIO};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::Corners;
 use crate::mechanics::geometry::pose::Pose;
@@ -42,22 +43,31 @@ impl<'a> Rest<'a> {
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
-    /// Rise of the blocks with these centres, times their masses.
-    pub fn rise_kg_m(&self, centres_m: &[Vector2<f64>]) -> f64 {
-        self.moved_kg_m(centres_m, |moved| moved.y)
-    }
-
-    /// Horizontal displacement of the centre of gravity times the mass.
-    pub fn sway_kg_m(&self, centres_m: &[Vector2<f64>]) -> f64 {
-        self.moved_kg_m(centres_m, |moved| moved.x)
-    }
-
-    fn moved_kg_m(&self, centres_m: &[Vector2<f64>], part: impl Fn(Vector2<f64>) -> f64) -> f64 {
+    /// Displacements of blocks with these centres, times their masses.
+    pub fn moved_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
         let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
         blocks
-            .map(|(block, (now, stood))| block.mass_kg * part(now - stood))
+            .map(|(block, (now, stood))| (now - stood) * block.mass_kg)
             .sum()
+    }
+
+    /// True if a block with this centre and rotation has turned too far, or moved too far from its positions relative to both feet, which
+    /// have moved so far.
+    pub fn is_left_by(
+        &self,
+        blocks: impl Iterator<Item = (Vector2<f64>, f64)>,
+        feet_m: [Vector2<f64>; 2],
+    ) -> bool {
+        let far = (OVERTURNED_RATIO * self.row.size_m).powi(2);
+        let stood = self.placement.centres_m.iter().zip(&self.placement.poses);
+        let is_left = |((centre_m, rotation_rad), (stood_m, pose)): ((_, f64), (_, &Pose))| {
+            let moved_m: Vector2<f64> = centre_m - stood_m;
+            let is_far = |foot_m: &Vector2<f64>| (moved_m - foot_m).norm_squared() >= far;
+            (rotation_rad - pose.rotation_rad()).abs() >= OVERTURNED_RAD
+                || feet_m.iter().all(is_far)
+        };
+        blocks.zip(stood).any(is_left)
     }
 }
 

@@ -12,15 +12,16 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::Pose;
 
 /// The right support.
+#[derive(Default)]
 pub(super) struct RightSupport<'a> {
     /// `None` if both feet move alike, or the row has only one.
     feet: Option<FeetApart<'a>>,
     /// Its displacement relative to the left support, in metres.
     pub gone_m: Vector2<f64>,
     /// That displacement when the joints last followed it: movements too small to open a joint add up.
-    followed_m: Vector2<f64>,
+    pub followed_m: Vector2<f64>,
     /// Its velocity over the last step or after the last impact, and in the present solution.
-    velocity_m_s: Vector2<f64>,
+    pub velocity_m_s: Vector2<f64>,
     pub next_m_s: Vector2<f64>,
 }
 
@@ -28,21 +29,13 @@ impl<'a> RightSupport<'a> {
     pub fn new(row: &Row, ground: &'a GroundMotion) -> Self {
         Self {
             feet: FeetApart::of(row, ground),
-            gone_m: Vector2::zeros(),
-            followed_m: Vector2::zeros(),
-            velocity_m_s: Vector2::zeros(),
-            next_m_s: Vector2::zeros(),
+            ..Self::default()
         }
     }
 
     /// True if it ever moves relative to the left one.
     pub const fn moves(&self) -> bool {
         self.feet.is_some()
-    }
-
-    /// True if it has moved by more than this.
-    pub fn is_gone(&self, least_m: f64) -> bool {
-        self.moves() && self.gone_m.norm() > least_m
     }
 
     /// Positions of the supports, from their initial ones.
@@ -71,20 +64,10 @@ impl<'a> RightSupport<'a> {
         (self.velocity_m_s + self.next_m_s) * 0.5
     }
 
-    /// Takes over the present solution as the motion.
-    pub const fn take(&mut self) {
-        self.velocity_m_s = self.next_m_s;
-    }
-
     /// Moves to its position at a time.
     pub fn go(&mut self, time_s: f64) {
         if let Some(feet) = &mut self.feet {
             self.gone_m = feet.at(time_s);
         }
-    }
-
-    /// Notes that the joints have followed it.
-    pub const fn is_followed(&mut self) {
-        self.followed_m = self.gone_m;
     }
 }

@@ -22,11 +22,10 @@ use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::history::{EventKind, Sample, Sliding};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::{
-    Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO, SWAY_RATIO, Summit, Task,
-};
+use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO, SWAY_RATIO, Summit};
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, only};
+use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode, Program};
@@ -63,8 +62,6 @@ pub struct SlidingStepper<'a> {
     velocities: Vec<Vector3<f64>>,
     contacts: Vec<Contact>,
     ties: Ties<'a>,
-    /// Energy dissipated so far by yielding and breaking ties.
-    taken_by_ties: f64,
     /// Contributions of ties to the velocities of the blocks in a kick.
     pulled: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
@@ -90,8 +87,6 @@ pub struct SlidingStepper<'a> {
     least_energy: f64,
     friction_demand: f64,
     centres: Vec<Vector2<f64>>,
-    /// Rotations and rates of the blocks before a step in which no joint was open at first.
-    before: Vec<(f64, f64)>,
 }
 
 impl<'a> SlidingStepper<'a> {
@@ -129,14 +124,14 @@ impl<'a> SlidingStepper<'a> {
         course.of_row.sliding = Some(Sliding::none(joints));
         course.note_ties(ties.memories());
         course.note_return();
-        let start_energy = gravity * rest.rise_kg_m(&placement.centres_m);
+        let start_energy = gravity * rest.moved_kg_m(&placement.centres_m).y;
         // Heights include the energy that friction dissipated: friction may hold the row up to its highest position.
         course.summit = Summit::new(start_energy, ground.start_s());
         let stands = rest.has(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
             let rotations = rest.turned_rad(rotations);
-            let sway = rest.sway_kg_m(&placement.centres_m);
+            let sway = rest.moved_kg_m(&placement.centres_m).x;
             course.released(rotations, start_energy, sway, true);
         }
         Self {
@@ -159,14 +154,12 @@ impl<'a> SlidingStepper<'a> {
             supports,
             stands,
             ties,
-            taken_by_ties: 0.0,
             pulled: vec![Vector3::zeros(); blocks],
             held_back: 0.0,
             landing: None,
             least_energy: f64::INFINITY,
             friction_demand: 0.0,
             centres: placement.centres_m.to_vec(),
-            before: Vec::with_capacity(blocks),
             faces,
             thinnest_m,
             positions,
@@ -181,29 +174,18 @@ impl<'a> SlidingStepper<'a> {
         (-ground - fall, ground)
     }
 
-    /// Finds the contributions of ties to the velocities of the blocks from the last kick until a time.
-    fn pull(&mut self, to_s: f64) {
-        if self.ties.are_none() {
-            return;
-        }
+    /// Loads the program with the velocities after this kick, which lasts up to a time, and after the pull of ties for as long.
+    fn load(&mut self, kick: Vector2<f64>, to_s: f64) {
+        let lasts_s = to_s - self.kicked_s;
         self.pulled.fill(Vector3::zeros());
         let pulled = &mut self.pulled;
-        self.ties.pull(
-            &self.centres,
-            to_s - self.kicked_s,
-            |block, velocity, turning| {
+        self.ties
+            .pull(&self.centres, lasts_s, |block, velocity, turning| {
                 pulled[block] += Vector3::new(velocity.x, velocity.y, turning);
-            },
-        );
-    }
-
-    fn load(
-        program: &mut Program,
-        velocities: &[Vector3<f64>],
-        kick: Vector2<f64>,
-        pulled: &[Vector3<f64>],
-    ) {
-        program.load(|block| velocities[block] + Vector3::new(kick.x, kick.y, 0.0) + pulled[block]);
+            });
+        let (velocities, kick) = (&self.velocities, Vector3::new(kick.x, kick.y, 0.0));
+        self.program
+            .load(|block| velocities[block] + kick + pulled[block]);
     }
 
     fn kinetic(&self) -> f64 {
@@ -277,8 +259,7 @@ impl<'a> SlidingStepper<'a> {
         }
         self.right.step(self.course.time, step);
         self.lag(step);
-        self.pull(to_s);
-        Self::load(&mut self.program, &self.velocities, kick, &self.pulled);
+        self.load(kick, to_s);
         let fastest = self
             .velocities
             .iter()
@@ -306,15 +287,8 @@ impl<'a> SlidingStepper<'a> {
 
     fn note_forces(&mut self, time_s: f64) {
         let impulses = self.program.impulses.iter();
-        let normals = impulses.clone().map(|impulse| impulse.x + impulse.y);
-        let least = normals.fold(f64::INFINITY, f64::min);
-        let loaded = self.course.least_load_n() * time_s;
-        self.friction_demand = impulses
-            .filter(|impulse| impulse.x + impulse.y >= loaded)
-            .map(|impulse| impulse.z.abs() / (impulse.x + impulse.y))
-            .fold(0.0, f64::max);
-        let of_row = &mut self.course.of_row;
-        of_row.least_normal_n = of_row.least_normal_n.min(least / time_s);
+        let impulses = impulses.map(|impulse| [impulse.z, impulse.x + impulse.y]);
+        self.friction_demand = self.course.note_forces(impulses, time_s);
     }
 
     /// Moves the blocks for a step; returns the events of ties in it.
@@ -330,12 +304,12 @@ impl<'a> SlidingStepper<'a> {
         }
         self.course.time += step;
         if self.right.moves() {
-            self.right.take();
+            self.right.velocity_m_s = self.right.next_m_s;
             self.right.go(self.course.time);
-            self.right.is_followed();
+            self.right.followed_m = self.right.gone_m;
             let poses = self.right.poses(&self.rest.placement.support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
-            self.ties.move_supports(poses);
+            self.ties.supports = poses;
         }
         for joint in 0..self.faces.len() {
             let contact = contact(&self.faces, &self.supports, &self.positions, joint);
@@ -356,15 +330,14 @@ impl<'a> SlidingStepper<'a> {
         }
         let kinetic = self.kinetic();
         let (blocks, positions) = (&self.row.blocks, &self.positions);
+        let before = self.course.potential + self.ties.taken_j();
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
         let happened = self.course.note_ties(self.ties.memories());
-        let height = self.gravity * self.rest.rise_kg_m(&self.centres);
+        let height = self.gravity * self.rest.moved_kg_m(&self.centres).y;
         let potential = height + self.ties.energy_j();
         let taken = self.ties.taken_j();
-        let before = self.course.potential + self.taken_by_ties;
         self.audit(kinetic + 0.5 * (before + potential + taken));
-        self.taken_by_ties = taken;
         let sway = self.displacement();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         let rotations = self.rest.turned_rad(rotations);
@@ -399,16 +372,10 @@ impl<'a> SlidingStepper<'a> {
     /// True if a block has turned too far, or moved too far from its positions relative to both feet.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.slides();
-        let gone = [left, right + self.right.gone_m];
-        let far = (OVERTURNED_RATIO * self.row.size_m).powi(2);
-        let stood = &self.rest.placement;
-        let stood = stood.centres_m.iter().zip(&stood.poses);
-        let mut blocks = stood.zip(&self.positions);
-        blocks.any(|((centre_m, pose), position)| {
-            let moved = position.centre_m - centre_m;
-            (position.rotation_rad - pose.rotation_rad()).abs() >= OVERTURNED_RAD
-                || gone.iter().all(|gone| (moved - gone).norm_squared() >= far)
-        })
+        let blocks = self.positions.iter();
+        let blocks = blocks.map(|position| (position.centre_m, position.rotation_rad));
+        let feet_m = [left, right + self.right.gone_m];
+        self.rest.is_left_by(blocks, feet_m)
     }
 
     /// Compares the energy in the middle of a step, less the work of the ground, with the least so far: growth beyond that was
@@ -424,15 +391,15 @@ impl<'a> SlidingStepper<'a> {
     /// Returns the kinetic energy there.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
-        self.auxiliary
+        mem::swap(&mut self.program, &mut self.auxiliary);
+        self.program
             .place(&self.faces, &self.contacts, &self.positions);
-        self.auxiliary.start_from(&self.program, 0.5);
-        self.pull(self.course.time);
-        Self::load(&mut self.auxiliary, &self.velocities, kick, &self.pulled);
+        self.program.start_from(&self.auxiliary, 0.5);
+        self.load(kick, self.course.time);
         self.right.stop_at(self.course.time);
         let last = self.faces.len() - 1;
         let parting = self.carried(last, self.right.next_m_s);
-        let (modes, contacts, step) = (&self.program.modes, &self.contacts, self.last_step);
+        let (modes, contacts, step) = (&self.auxiliary.modes, &self.contacts, self.last_step);
         let apart = |joint: usize| {
             let gap = |end: usize| {
                 if modes[joint].pressed[end] {
@@ -448,13 +415,14 @@ impl<'a> SlidingStepper<'a> {
                 apart
             }
         };
-        self.auxiliary
+        self.program
             .solve(apart, RATE_TOLERANCE * self.gravity * step);
+        mem::swap(&mut self.program, &mut self.auxiliary);
         0.5 * self.auxiliary.twice_kinetic_j()
     }
 
-    /// Reports the joints that opened in a step that began at this time, with this energy and with no joint open.
-    fn note_uplift(&mut self, from_s: f64, energy_j: f64) {
+    /// Reports the joints that opened in a step that began at this time, with this energy, these rotations and rates, and with no joint open.
+    fn note_uplift(&mut self, from_s: f64, energy_j: f64, turns: Vec<(f64, f64)>) {
         let opened = &mut self.course.opened;
         opened.clear();
         for (joint, mode) in self.program.modes.iter().enumerate() {
@@ -469,9 +437,7 @@ impl<'a> SlidingStepper<'a> {
             self.stands &= !is_open;
         }
         if !self.stands {
-            self.report_uplift(from_s, energy_j, |stepper| {
-                stepper.before.iter().copied().unzip()
-            });
+            self.report_uplift(from_s, energy_j, |_| turns.into_iter().unzip());
         }
     }
 
@@ -486,7 +452,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// True if the right support has moved relative to the left one.
     fn right_support_is_gone(&self) -> bool {
-        self.right.is_gone(APART_RATIO * self.thinnest_m)
+        self.right.gone_m.norm() > APART_RATIO * self.thinnest_m
     }
 
     /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slide of the row
@@ -502,7 +468,8 @@ impl<'a> SlidingStepper<'a> {
             .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
             .sum();
         let mass = self.row.mass_kg();
-        let sway = self.rest.sway_kg_m(&self.centres) - mass * (slid + 0.5 * self.right.gone_m.x);
+        let sway =
+            self.rest.moved_kg_m(&self.centres).x - mass * (slid + 0.5 * self.right.gone_m.x);
         if sway.abs() > SWAY_RATIO * mass * self.row.size_m {
             sway
         } else {
@@ -543,15 +510,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let to_s = self.course.time + 0.5 * step;
         let (kick, ground) = self.kick(to_s);
         let momentum = self.momentum();
-        let stood = self
-            .stands
-            .then(|| (self.course.time, self.kinetic() + self.course.potential));
-        if self.stands {
-            let mut before = mem::take(&mut self.before);
-            before.clear();
-            before.extend(self.turns());
-            self.before = before;
-        }
+        let stood = self.stands.then(|| {
+            let energy_j = self.kinetic() + self.course.potential;
+            (self.course.time, energy_j, self.turns().collect())
+        });
         self.solve(step, to_s, kick)?;
         let mean_m_s = self.right.mean_m_s();
         if self.right.moves() {
@@ -587,16 +549,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             self.course.await_impact();
         }
         let happened = self.drift(step);
-        if let Some((from_s, energy_j)) = stood {
-            self.note_uplift(from_s, energy_j);
+        if let Some((from_s, energy_j, turns)) = stood {
+            self.note_uplift(from_s, energy_j, turns);
         } else {
             self.stands = self.touches_as_it_stood();
         }
         let scale_j = self.course.task.energy_scale_j;
         self.course.mind_balance(scale_j, || scale_j);
-        for (tie, kind) in happened {
-            self.report_tie(tie, kind);
-        }
+        self.report_ties(happened);
         Ok(())
     }
 

@@ -9,19 +9,14 @@ use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
 use crate::mechanics::tie::{Tie, TieLine, TieMemory};
 
-/// A tie that moves.
-struct Pulling<'a> {
-    tie: &'a Tie,
-    memory: TieMemory<Lanes<1>>,
-    line: TieLine,
-}
-
 /// The ties of a row.
 pub(super) struct Ties<'a> {
     row: &'a Row,
-    ties: Vec<Pulling<'a>>,
-    /// Positions of the left and the right support.
-    supports: [Pose; 2],
+    memories: Vec<TieMemory<Lanes<1>>>,
+    /// How they lie.
+    lines: Vec<TieLine>,
+    /// Positions of the left and the right support: with each the ends of ties on the ground nearer to it move.
+    pub supports: [Pose; 2],
     /// Elastic energy at the initial position.
     at_rest_j: f64,
 }
@@ -29,19 +24,10 @@ pub(super) struct Ties<'a> {
 impl<'a> Ties<'a> {
     /// Ties of a row whose motion starts from this stance.
     pub fn new(row: &'a Row, standing: &Stance) -> Self {
-        let lines = standing.lines(row).zip(&standing.ties);
-        let ties = row
-            .ties
-            .iter()
-            .zip(lines)
-            .map(|(tie, (line, memory))| Pulling {
-                tie,
-                line,
-                memory: *memory,
-            });
         let mut ties = Self {
             row,
-            ties: ties.collect(),
+            memories: standing.ties.clone(),
+            lines: standing.lines(row).collect(),
             supports: standing.placement.support_poses,
             at_rest_j: 0.0,
         };
@@ -50,20 +36,16 @@ impl<'a> Ties<'a> {
     }
 
     pub fn are_none(&self) -> bool {
-        self.ties.is_empty()
-    }
-
-    /// Moves the supports, and with each the ends of ties on the ground nearer to it.
-    pub const fn move_supports(&mut self, poses: [Pose; 2]) {
-        self.supports = poses;
+        self.memories.is_empty()
     }
 
     /// Forces on the right support.
     pub fn on_right_support_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
-        let ends = self.ties.iter().flat_map(|tie| {
-            let force = tie.line.along * tie.memory.force_n.0[0];
-            tie.tie.ends.into_iter().zip([force, -force])
+        let ends = self.memories().zip(&self.lines);
+        let ends = ends.flat_map(|((tie, memory), line)| {
+            let force = line.along * memory.force_n.0[0];
+            tie.ends.into_iter().zip([force, -force])
         });
         ends.filter(|(anchor, _)| anchor.block.is_none() && anchor.support(feet_m) == 1)
             .map(|(_, force)| force)
@@ -73,9 +55,10 @@ impl<'a> Ties<'a> {
     /// Stretches the ties to these poses of the blocks.
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
         let lines = lines(self.row, &self.supports, pose);
-        for (tie, line) in self.ties.iter_mut().zip(lines) {
-            tie.line = line;
-            tie.memory.stretch(tie.tie, Lanes([tie.line.stretch_m]));
+        let ties = self.row.ties.iter().zip(&mut self.memories);
+        for ((now, (tie, memory)), line) in self.lines.iter_mut().zip(ties).zip(lines) {
+            *now = line;
+            memory.stretch(tie, Lanes([line.stretch_m]));
         }
     }
 
@@ -87,30 +70,28 @@ impl<'a> Ties<'a> {
         lasts_s: f64,
         mut gain: impl FnMut(usize, Vector2<f64>, f64),
     ) {
-        for tie in &self.ties {
-            let impulse = tie.memory.force_n.0[0] * lasts_s;
-            tie.line
-                .pull(&self.row.blocks, centres_m, impulse, &mut gain);
+        for (memory, line) in self.memories.iter().zip(&self.lines) {
+            let impulse = memory.force_n.0[0] * lasts_s;
+            line.pull(&self.row.blocks, centres_m, impulse, &mut gain);
         }
     }
 
     /// Their elastic energy, above that at the initial position.
     pub fn energy_j(&self) -> f64 {
         let each = self
-            .ties
-            .iter()
-            .map(|tie| tie.memory.energy_j(tie.tie).0[0]);
+            .memories()
+            .map(|(tie, memory)| memory.energy_j(tie).0[0]);
         each.sum::<f64>() - self.at_rest_j
     }
 
     /// Energy that they dissipated by yielding and breaking.
     pub fn taken_j(&self) -> f64 {
-        self.ties.iter().map(|tie| tie.memory.taken_j.0[0]).sum()
+        self.memories.iter().map(|memory| memory.taken_j.0[0]).sum()
     }
 
     /// The ties and their memories.
     pub fn memories(&self) -> impl Iterator<Item = (&Tie, TieMemory<Lanes<1>>)> {
-        self.ties.iter().map(|tie| (tie.tie, tie.memory))
+        self.row.ties.iter().zip(self.memories.iter().copied())
     }
 
     pub fn samples(&self) -> impl Iterator<Item = TieSample> {

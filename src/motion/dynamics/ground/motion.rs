@@ -33,21 +33,16 @@ impl GroundMotion {
 
     /// Pieces given by their ends and formulas in the time since `start_s`.
     pub(super) fn from_pieces(start_s: f64, formulas: Vec<(f64, Formula)>) -> Self {
-        let formulas = formulas.into_iter();
-        Self::join(
-            start_s,
-            formulas.map(|(end, formula)| (start_s + end, start_s, formula)),
-        )
+        let placed = |(end, formula)| (start_s + end, start_s, formula);
+        Self::join(start_s, formulas.into_iter().map(placed))
     }
 
     /// Quiet from time zero until `start_s` (from `start_s` on if that is negative), then the pieces given by end, origin and formula, then
     /// quiet for good.
     pub(super) fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
         let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
-        let all = [quiet(start_s)]
-            .into_iter()
-            .chain(moving)
-            .chain([quiet(f64::INFINITY)]);
+        let all = [quiet(start_s)].into_iter().chain(moving);
+        let all = all.chain([quiet(f64::INFINITY)]);
         let mut pieces = Vec::new();
         let mut piece_start_s = start_s.min(0.0);
         for (end_s, origin_s, formula) in all {
@@ -189,10 +184,10 @@ impl GroundMotion {
     /// the right.
     #[must_use]
     pub fn pushes_m_s2(&self, until_s: f64) -> [f64; 2] {
-        self.ends_until_m_s2(until_s)
-            .fold([0.0; 2], |[right, left], at: Vector2<f64>| {
-                [f64::max(right, -at.x), f64::max(left, at.x)]
-            })
+        let ends = self.ends_until_m_s2(until_s);
+        ends.fold([0.0; 2], |[right, left], at| {
+            [f64::max(right, -at.x), f64::max(left, at.x)]
+        })
     }
 
     /// The accelerations at the ends of the pieces that begin before a time, and at that time.
@@ -237,10 +232,8 @@ impl GroundMotion {
 
     fn own_free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let falls = |acceleration: Vector2<f64>| gravity_m_s2 + acceleration.y <= 0.0;
-        let piece = self
-            .pieces
-            .iter()
-            .find(|piece| piece.ends_m_s2().into_iter().any(falls))?;
+        let mut pieces = self.pieces.iter();
+        let piece = pieces.find(|piece| piece.ends_m_s2().into_iter().any(falls))?;
         if falls(piece.ends_m_s2()[0]) {
             return Some(piece.start_s);
         }

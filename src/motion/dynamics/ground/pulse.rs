@@ -153,55 +153,43 @@ impl PulseShape {
         }
         within("amplitude_m_s2.x", amplitude_m_s2.x, ACCELERATION_M_S2)?;
         within("amplitude_m_s2.y", amplitude_m_s2.y, ACCELERATION_M_S2)?;
-        Ok(GroundMotion::from_pieces(
-            self.start_s,
-            self.pieces(amplitude_m_s2),
-        ))
+        let pieces = self.pieces(amplitude_m_s2);
+        Ok(GroundMotion::from_pieces(self.start_s, pieces))
     }
 
     /// Ends in the time since the start, and formulas.
     fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
-        let shaped = |shape: Shape| Formula::Shaped {
-            amplitude: a,
-            shape,
-        };
+        let shaped = |amplitude, shape| Formula::Shaped { amplitude, shape };
         let sine = |periods: f64, phase_rad: f64| {
-            shaped(Shape::Sine(Sine {
+            let sine = Sine {
                 amplitude: 1.0,
                 frequency_rad_s: periods * 2.0 * PI / t,
                 phase_rad,
-            }))
+            };
+            shaped(a, Shape::Sine(sine))
         };
+        let linear = |at_origin, slope| Formula::Linear { at_origin, slope };
         let cut =
             |ends: &[f64], formula: Formula| ends.iter().map(|end| (end * t, formula)).collect();
         match self.pulse {
             Pulse::Rectangular => vec![(t, Formula::constant(a))],
             Pulse::StepPair => {
-                vec![
-                    (t, Formula::constant(a)),
-                    (3.0 * t, Formula::constant(-0.5 * a)),
-                ]
+                let back = Formula::constant(-0.5 * a);
+                vec![(t, Formula::constant(a)), (3.0 * t, back)]
             }
             Pulse::HalfSine => cut(&[0.5, 1.0], sine(0.5, 0.0)),
             Pulse::OneSine => cut(&[0.25, 0.75, 1.0], sine(1.0, 0.0)),
             Pulse::OneCosine => cut(&[0.5, 1.0], sine(1.0, 0.5 * PI)),
             Pulse::Triangular => {
                 let slope = 2.0 * a / t;
-                let up = Formula::Linear {
-                    at_origin: Vector2::zeros(),
-                    slope,
-                };
-                let down = Formula::Linear {
-                    at_origin: 2.0 * a,
-                    slope: -slope,
-                };
+                let (up, down) = (linear(Vector2::zeros(), slope), linear(2.0 * a, -slope));
                 vec![(0.5 * t, up), (t, down)]
             }
             Pulse::Ricker => {
                 // The troughs of the wavelet are at x^2 = 3/2.
                 let trough = 1.5_f64.sqrt() / PI;
-                let ricker = shaped(Shape::Ricker { period_s: t });
+                let ricker = shaped(a, Shape::Ricker { period_s: t });
                 cut(&[2.0 - trough, 2.0, 2.0 + trough, 4.0], ricker)
             }
             Pulse::AntisymmetricRicker => {
@@ -210,11 +198,8 @@ impl PulseShape {
                 let peak = inner * 6.0_f64.sqrt() * (-0.5 * inner * inner).exp();
                 let ends =
                     [-outer, -inner, inner, outer].map(|y| 2.5 + y * 3.0_f64.sqrt() / (2.0 * PI));
-                let wavelet = Formula::Shaped {
-                    amplitude: a / peak,
-                    shape: Shape::AntisymmetricRicker { period_s: t },
-                };
-                cut(&[ends[0], ends[1], ends[2], ends[3], 5.0], wavelet)
+                let wavelet = shaped(a / peak, Shape::AntisymmetricRicker { period_s: t });
+                cut(&[&ends[..], &[5.0]].concat(), wavelet)
             }
             Pulse::MavroeidisPapageorgiou | Pulse::Gabor | Pulse::WindowedSine => {
                 let cut = || CutTrain::new(self.pulse, t, self.train);
@@ -226,56 +211,47 @@ impl PulseShape {
 
 impl CutTrain {
     fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Self {
-        let t = duration_s;
+        let (t, cycles) = (duration_s, train.cycles);
+        // A sum of sines of these amplitudes and periods, with the phase of the train at this time.
+        let beat = |terms: [(f64, f64); 3], middle_s: f64| {
+            Shape::Beat(terms.map(|(amplitude, periods)| {
+                let frequency_rad_s = periods * 2.0 * PI / t;
+                let phase_rad = train.phase_rad - frequency_rad_s * middle_s;
+                Sine {
+                    amplitude,
+                    frequency_rad_s,
+                    phase_rad,
+                }
+            }))
+        };
+        let (less, more) = (1.0 - 1.0 / cycles, 1.0 + 1.0 / cycles);
         let (shape, length_s) = match pulse {
             Pulse::MavroeidisPapageorgiou => {
                 // The product of cosines is a sum of three; about its middle the derivative is this.
-                let length_s = train.cycles * t;
-                let term = |part: f64, periods: f64| {
-                    let frequency_rad_s = periods * 2.0 * PI / t;
-                    Sine {
-                        amplitude: -part * periods,
-                        frequency_rad_s,
-                        phase_rad: train.phase_rad - 0.5 * frequency_rad_s * length_s,
-                    }
-                };
-                let side = 1.0 / train.cycles;
-                let shape =
-                    Shape::Beat([term(1.0, 1.0), term(0.5, 1.0 - side), term(0.5, 1.0 + side)]);
-                (shape, length_s)
+                let terms = [(-1.0, 1.0), (-0.5 * less, less), (-0.5 * more, more)];
+                (beat(terms, 0.5 * (cycles * t)), cycles * t)
             }
             Pulse::Gabor => {
-                let centre_s = 3.0 * train.cycles * t / PI;
+                let centre_s = 3.0 * cycles * t / PI;
+                let frequency_rad_s = 2.0 * PI / t;
                 let shape = Shape::Gabor {
                     centre_s,
-                    frequency_rad_s: 2.0 * PI / t,
+                    frequency_rad_s,
                     train,
                 };
                 (shape, 2.0 * centre_s)
             }
             _ => {
                 // The windowed sine: sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
-                let term = |amplitude: f64, periods: f64| Sine {
-                    amplitude,
-                    frequency_rad_s: periods * 2.0 * PI / t,
-                    phase_rad: train.phase_rad,
-                };
-                let side = 1.0 / train.cycles;
-                let shape = Shape::Beat([
-                    term(0.5, 1.0),
-                    term(-0.25, 1.0 - side),
-                    term(-0.25, 1.0 + side),
-                ]);
-                (shape, train.cycles * t)
+                let terms = [(0.5, 1.0), (-0.25, less), (-0.25, more)];
+                (beat(terms, 0.0), cycles * t)
             }
         };
         let mut ends_s = shape.extrema_s(length_s, t);
         ends_s.push(length_s);
         // Where the train begins it is no stronger than at its strongest extremum or its end.
-        let peak = ends_s
-            .iter()
-            .map(|end| shape.at(*end).0.abs())
-            .fold(0.0, f64::max);
+        let values = ends_s.iter().map(|end| shape.at(*end).0.abs());
+        let peak = values.fold(0.0, f64::max);
         Self {
             shape,
             ends_s,

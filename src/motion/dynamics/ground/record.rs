@@ -27,11 +27,9 @@ impl GroundMotion {
     /// When there are fewer than two samples, or a number is outside its range.
     pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
         within("step_s", step_s, MIN_STEP_S..=1e9)?;
-        let samples: Vec<_> = horizontal_m_s2
-            .iter()
-            .enumerate()
-            .map(|(index, acceleration)| (index as f64 * step_s, *acceleration))
-            .collect();
+        let samples = horizontal_m_s2.iter().enumerate();
+        let samples = samples.map(|(index, acceleration)| (index as f64 * step_s, *acceleration));
+        let samples: Vec<_> = samples.collect();
         check("horizontal_m_s2", &samples)?;
         Ok(Self::polylines(&samples, &[], 0.0))
     }
@@ -71,11 +69,9 @@ impl GroundMotion {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
         corners.dedup_by(|later, earlier| *later - *earlier < MIN_CORNER_SPACING_S);
-        let mut components = [Polyline::new(horizontal), Polyline::new(vertical)];
+        let mut components = [horizontal, vertical];
         let lines = corners.windows(2).map(|ends| {
-            let [x, y] = components
-                .each_mut()
-                .map(|component| component.line(ends[0], ends[1]));
+            let [x, y] = components.each_mut().map(|samples| line(samples, ends));
             let formula = Formula::Linear {
                 at_origin: Vector2::new(x.0, y.0),
                 slope: Vector2::new(x.1, y.1),
@@ -90,10 +86,11 @@ impl GroundMotion {
 /// Checks that samples can be joined by lines.
 fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundError> {
     if samples.len() < 2 {
-        let count = samples.len();
-        return Err(GroundError(format!(
-            "`{argument}` has too few samples ({count}): it must have at least 2"
-        )));
+        let why = format!(
+            "has too few samples ({}): it must have at least 2",
+            samples.len()
+        );
+        return Err(GroundError(format!("`{argument}` {why}")));
     }
     let mut before_s = f64::NEG_INFINITY;
     for (index, &(time_s, acceleration)) in samples.iter().enumerate() {
@@ -112,29 +109,18 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
     Ok(())
 }
 
-/// Straight lines between samples, read from left to right.
-struct Polyline<'a> {
-    samples: &'a [(f64, f64)],
-}
-
-impl<'a> Polyline<'a> {
-    const fn new(samples: &'a [(f64, f64)]) -> Self {
-        Self { samples }
+/// Value at the first of two times, without a sample in between, and slope of the line there between samples. Those before are dropped.
+fn line(samples: &mut &[(f64, f64)], ends: &[f64]) -> (f64, f64) {
+    let middle = 0.5 * (ends[0] + ends[1]);
+    while samples.len() > 1 && samples[1].0 <= middle {
+        *samples = &samples[1..];
     }
-
-    /// Value at `start` and slope of the line between two times without a sample in between.
-    fn line(&mut self, start: f64, end: f64) -> (f64, f64) {
-        let middle = 0.5 * (start + end);
-        while self.samples.len() > 1 && self.samples[1].0 <= middle {
-            self.samples = &self.samples[1..];
+    match **samples {
+        [(t0, a0), (t1, a1), ..] if t0 <= middle => {
+            let slope = (a1 - a0) / (t1 - t0);
+            (a0 + slope * (ends[0] - t0), slope)
         }
-        match *self.samples {
-            [(t0, a0), (t1, a1), ..] if t0 <= middle => {
-                let slope = (a1 - a0) / (t1 - t0);
-                (a0 + slope * (start - t0), slope)
-            }
-            _ => (0.0, 0.0),
-        }
+        _ => (0.0, 0.0),
     }
 }
 

@@ -17,17 +17,13 @@ impl<'a> GroundVelocity<'a> {
     /// The velocity of a ground motion.
     #[must_use]
     pub fn new(ground: &'a GroundMotion) -> Self {
-        let mut at_starts_m_s = ground
-            .pieces
-            .iter()
-            .scan(Vector2::zeros(), |velocity_m_s, piece| {
-                let at_start = *velocity_m_s;
-                if piece.end_s.is_finite() {
-                    *velocity_m_s += piece.velocity_gained_m_s(piece.end_s);
-                }
-                Some(at_start)
-            })
-            .collect::<Vec<_>>();
+        let (mut velocity_m_s, mut at_starts_m_s) = (Vector2::zeros(), Vec::new());
+        for piece in &ground.pieces {
+            at_starts_m_s.push(velocity_m_s);
+            if piece.end_s.is_finite() {
+                velocity_m_s += piece.velocity_gained_m_s(piece.end_s);
+            }
+        }
         if let Some(last) = at_starts_m_s.last_mut().filter(|_| ground.stops) {
             *last = Vector2::zeros();
         }
@@ -134,12 +130,10 @@ impl<'a> FeetApart<'a> {
 
     /// Between feet that move like this, the left and the right one.
     fn between(feet: [&'a GroundMotion; 2]) -> Self {
+        let [left_s, right_s] = feet.map(GroundMotion::end_s);
         Self {
             ways: feet.map(|ground| Way::new(GroundVelocity::new(ground))),
-            end_s: feet
-                .map(GroundMotion::end_s)
-                .into_iter()
-                .fold(0.0, f64::max),
+            end_s: left_s.max(right_s).max(0.0),
         }
     }
 

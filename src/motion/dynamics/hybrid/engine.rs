@@ -11,15 +11,6 @@ use thiserror::Error;
 use super::integrator::{IntegratorError, State, Step, Task, integrate};
 use crate::dynamics::history::Cost;
 
-/// Value of a guard, positive until the event, and its rate of change.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuardValue {
-    /// The guard's value.
-    pub value: f64,
-    /// Its rate of change, per second.
-    pub rate: f64,
-}
-
 /// A system at an instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<M, const N: usize> {
@@ -78,8 +69,8 @@ pub trait HybridSystem<const N: usize> {
     /// The guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
-    /// Value of a guard, which fires when it falls below zero.
-    fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> GuardValue;
+    /// Value of a guard, which fires when it falls below zero, and its rate of change, per second.
+    fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (f64, f64);
 
     /// The guard that has already fired when a piece begins or a mode is entered, if any.
     fn fired_at_once(&self, now: &Moment<Self::Mode, N>) -> Option<Self::Guard>;
@@ -108,12 +99,12 @@ pub struct Transition<M, G, const N: usize> {
 /// Listener to a simulation. Steps and transitions come in the order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// A stretch of motion without event, in the mode and on the piece of its beginning.
-    fn step(&mut self, _: &S, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
+    fn step(&mut self, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
     /// An event.
-    fn transition(&mut self, _: &S, _: &Transition<S::Mode, S::Guard, N>) -> ControlFlow<()> {
+    fn transition(&mut self, _: &Transition<S::Mode, S::Guard, N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
@@ -214,7 +205,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
             after,
         };
         (now.mode, now.state) = (to, after);
-        finish.stopped = observer.transition(system, &transition).is_break();
+        finish.stopped = observer.transition(&transition).is_break();
     }
     Ok(finish)
 }
@@ -240,7 +231,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
         let event = first_event(system, &from, &step);
         step.end_s = event.map_or(end_s, |(_, time_s)| time_s);
         finish.now.time_s = step.end_s;
-        finish.stopped = observer.step(system, &from, &step).is_break();
+        finish.stopped = observer.step(&from, &step).is_break();
         return Ok(event.map(|(guard, _)| guard));
     }
     let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
@@ -264,7 +255,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
             ControlFlow::Break(())
         }
         None => {
-            let flow = observer.step(system, &from, step);
+            let flow = observer.step(&from, step);
             if flow.is_break() {
                 stopped_s = Some(step.end_s);
             }
@@ -280,7 +271,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     let cost = &mut finish.cost;
     let landed = land(system, &from, &task, guard, time_s, &step, cost)?;
     finish.now = from.at(landed.end_s, &landed.end);
-    finish.stopped = observer.step(system, &from, &landed).is_break();
+    finish.stopped = observer.step(&from, &landed).is_break();
     Ok(Some(guard))
 }
 
@@ -327,8 +318,8 @@ fn land<S: HybridSystem<N>, const N: usize>(
         ControlFlow::Continue(())
     };
     integrate(&again, slope, watch, cost)?;
-    let guard = system.guard_value(guard, &from.at(time_s, &landed.end));
-    let rest_s = -guard.value / guard.rate;
+    let (value, rate) = system.guard_value(guard, &from.at(time_s, &landed.end));
+    let rest_s = -value / rate;
     if rest_s.abs() < CLOSED_BY_TANGENT * span_s {
         landed.end_s += rest_s;
         landed.end += landed.end_slope * rest_s;
@@ -343,12 +334,8 @@ const INTERPOLATED: f64 = 2e-4;
 /// Largest fraction of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;
 
-/// A guard's value at an instant.
-#[derive(Clone, Copy, Debug)]
-struct Point {
-    time_s: f64,
-    guard: GuardValue,
-}
+/// A time, with the value of a guard then and its rate of change.
+type Point = (f64, (f64, f64));
 
 /// The first guard to fire within a step, and when.
 fn first_event<S: HybridSystem<N>, const N: usize>(
@@ -358,14 +345,12 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
 ) -> Option<(S::Guard, f64)> {
     let mut first: Option<(S::Guard, f64)> = None;
     for guard in system.guards(from.mode) {
-        let point = |time_s: f64, state: &State<N>| Point {
-            time_s,
-            guard: system.guard_value(*guard, &from.at(time_s, state)),
+        let point = |time_s: f64, state: &State<N>| -> Point {
+            let at = system.guard_value(*guard, &from.at(time_s, state));
+            (time_s, at)
         };
-        let (start, end) = (
-            point(step.start_s, &step.start),
-            point(step.end_s, &step.end),
-        );
+        let start = point(step.start_s, &step.start);
+        let end = point(step.end_s, &step.end);
         let inside = |time_s: f64| point(time_s, &system.between(step, time_s));
         if let Some(time_s) = first_crossing(start, end, HALVINGS, &inside)
             && first.is_none_or(|(_, earliest)| time_s < earliest)
@@ -392,40 +377,36 @@ fn first_crossing(
     halvings: u32,
     at: &impl Fn(f64) -> Point,
 ) -> Option<f64> {
-    let third_s = (end.time_s - start.time_s) / 3.0;
-    let bernstein = [
-        start.guard.value,
-        start.guard.value + third_s * start.guard.rate,
-        end.guard.value - third_s * end.guard.rate,
-        end.guard.value,
-    ];
+    let ((start_s, (from, from_rate)), (end_s, (to, to_rate))) = (start, end);
+    let third_s = (end_s - start_s) / 3.0;
+    let bernstein = [from, from + third_s * from_rate, to - third_s * to_rate, to];
     let never_negative = bernstein.iter().all(|value| *value >= 0.0);
     if never_negative || bernstein.is_sorted() {
         return None;
     }
     let falls = bernstein.is_sorted_by(|earlier, later| earlier >= later);
     if falls || halvings == 0 {
-        let crosses = start.guard.value >= 0.0 && end.guard.value < 0.0;
-        return crosses.then(|| falling_root(start.time_s, end.time_s, |time_s| at(time_s).guard));
+        let crosses = from >= 0.0 && to < 0.0;
+        return crosses.then(|| falling_root(start_s, end_s, |time_s| at(time_s).1));
     }
-    let middle = at(0.5 * (start.time_s + end.time_s));
+    let middle = at(0.5 * (start_s + end_s));
     first_crossing(start, middle, halvings - 1, at)
         .or_else(|| first_crossing(middle, end, halvings - 1, at))
 }
 
 /// The zero of a falling guard that is negative at the end and not at the start: Newton's method from
 /// the end, safeguarded by bisection.
-pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> GuardValue) -> f64 {
+pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;
     for _ in 0..200 {
-        let at_guess = guard(guess_s);
-        if at_guess.value < 0.0 {
+        let (value, rate) = guard(guess_s);
+        if value < 0.0 {
             negative_s = guess_s;
         } else {
             positive_s = guess_s;
         }
-        let newton_s = guess_s - at_guess.value / at_guess.rate;
+        let newton_s = guess_s - value / rate;
         let next_s = if newton_s >= positive_s && newton_s <= negative_s {
             newton_s
         } else {
@@ -444,13 +425,7 @@ mod tests {
     use super::*;
 
     fn crossing(end_s: f64, guard: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
-        let at = |time_s: f64| {
-            let (value, rate) = guard(time_s);
-            Point {
-                time_s,
-                guard: GuardValue { value, rate },
-            }
-        };
+        let at = |time_s: f64| (time_s, guard(time_s));
         first_crossing(at(0.0), at(end_s), HALVINGS, &at)
     }
 

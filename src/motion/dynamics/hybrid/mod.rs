@@ -1,6 +1,5 @@
 //! One degree of freedom at a time: smooth motion in modes, and jumps between them.
 pub mod engine;
-mod first_fall;
 pub mod integrator;
 mod posture;
 pub mod rocking;

@@ -10,10 +10,11 @@
 
 use nalgebra::Vector2;
 
-use super::engine::{self, GuardValue, HybridSystem};
+use super::engine::{self, HybridSystem};
 use super::integrator::{State, Step};
 use crate::dynamics::ground::{GroundMotion, Piece};
 use crate::mechanics::chain::{Coefficients, Demand, Link, Mechanism, MechanismChain, Motion};
+use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 
 /// Discrete state of a rocking structure.
@@ -101,7 +102,7 @@ pub struct Rocking<'a, C: MechanismChain> {
     /// structure's unit of mass times the square of its unit of length, per s2.
     pub barrier: f64,
     /// Horizontal acceleration that lifts the structure off to the right and to the left, in units of gravity.
-    uplift_g: [f64; 2],
+    uplift_g: Sides<f64>,
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
@@ -116,21 +117,21 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         gravity_m_s2: f64,
         rest_energy_ratio: f64,
     ) -> Self {
-        let sides = [Sway::Right, Sway::Left];
+        let uplift_g = Sides::of(|side| UPLIFT_FACTOR * chain.incipient_towards_g(side));
         let mut rocking = Self {
             chain,
             ground,
             gravity_m_s2,
             rest_energy_ratio,
             barrier: f64::INFINITY,
-            uplift_g: sides.map(|side| UPLIFT_FACTOR * chain.incipient_towards_g(side)),
+            uplift_g,
         };
-        for (side, uplift_g) in sides.into_iter().zip(0..) {
+        for side in [Sway::Right, Sway::Left] {
             if let Some(first) = chain.link_from(side, 0) {
                 rocking.barrier = rocking.barrier.min(rocking.barrier_of(first));
-                let opening_g = first.at_zero.s_y / first.at_zero.s_x;
-                let uplift_g = &mut rocking.uplift_g[uplift_g];
-                *uplift_g = uplift_g.max(OPENING_FACTOR * opening_g);
+                let opening_g = OPENING_FACTOR * (first.at_zero.s_y / first.at_zero.s_x);
+                let uplift_g = rocking.uplift_g.to_mut(side);
+                *uplift_g = uplift_g.max(opening_g);
             }
         }
         rocking
@@ -375,42 +376,29 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn guard_value(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> GuardValue {
+    fn guard_value(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> (f64, f64) {
         let piece = self.piece(now.piece);
         let (q, rate) = (now.state[0], now.state[1]);
         match (guard, now.mode) {
             (Guard::Uplift(sway), _) => {
                 let (acceleration, jerk) = piece.at(now.time_s);
-                let uplift_g = match sway {
-                    Sway::Right => self.uplift_g[0],
-                    Sway::Left => self.uplift_g[1],
-                };
-                let tilt = Vector2::new(sway.sign(), uplift_g);
-                GuardValue {
-                    value: tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration),
-                    rate: tilt.dot(&jerk),
-                }
+                let tilt = Vector2::new(sway.sign(), *self.uplift_g.to(sway));
+                let value = tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration);
+                (value, tilt.dot(&jerk))
             }
-            (Guard::Closing, _) => GuardValue { value: q, rate },
-            (Guard::Critical, Phase::Rocking(swing)) if piece.stays_still() => GuardValue {
-                value: swing.link.critical_rad - q,
-                rate: -rate,
-            },
-            (Guard::Limit, Phase::Rocking(swing)) => GuardValue {
-                value: swing.link.limit_rad - q,
-                rate: -rate,
-            },
-            (Guard::Critical | Guard::Limit, _) => GuardValue {
-                value: 1.0,
-                rate: 0.0,
-            },
+            (Guard::Closing, _) => (q, rate),
+            (Guard::Critical, Phase::Rocking(swing)) if piece.stays_still() => {
+                (swing.link.critical_rad - q, -rate)
+            }
+            (Guard::Limit, Phase::Rocking(swing)) => (swing.link.limit_rad - q, -rate),
+            (Guard::Critical | Guard::Limit, _) => (1.0, 0.0),
         }
     }
 
     fn fired_at_once(&self, now: &Moment<'a, C::Mechanism>) -> Option<Guard> {
         match now.mode {
             Phase::Rest => {
-                let fired = |guard: &Guard| self.guard_value(*guard, now).value < 0.0;
+                let fired = |guard: &Guard| self.guard_value(*guard, now).0 < 0.0;
                 self.guards(now.mode).iter().copied().find(fired)
             }
             Phase::Rocking(swing) => {

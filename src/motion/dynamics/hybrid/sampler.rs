@@ -20,7 +20,8 @@ use crate::mechanics::geometry::pose::Pose;
 const FALL_TOLERANCE: f64 = 1e-6;
 
 /// Takes samples at multiples of the output step.
-pub(super) struct Sampler<'r> {
+pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
+    rocking: &'r Rocking<'a, C>,
     output_step_s: f64,
     next: u64,
     pub(super) phase: usize,
@@ -36,9 +37,14 @@ pub(super) struct Sampler<'r> {
     pub(super) recorder: &'r mut dyn Recorder,
 }
 
-impl<'r> Sampler<'r> {
-    pub(super) fn new(output_step_s: f64, recorder: &'r mut dyn Recorder) -> Self {
+impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
+    pub(super) fn new(
+        rocking: &'r Rocking<'a, C>,
+        output_step_s: f64,
+        recorder: &'r mut dyn Recorder,
+    ) -> Self {
         Self {
+            rocking,
             output_step_s,
             next: 0,
             phase: 0,
@@ -67,7 +73,8 @@ impl<'r> Sampler<'r> {
         self.recorder.sample(sample)
     }
 
-    fn sample<C: MechanismChain>(&mut self, rocking: &Rocking<'_, C>, now: &Now<'_, C>) -> Sample {
+    fn sample(&mut self, now: &Now<'a, C>) -> Sample {
+        let rocking = self.rocking;
         let mut sample = mem::take(&mut self.spare);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
         sample.begin(now.time_s, ground_m_s2, self.phase);
@@ -107,16 +114,11 @@ impl<'r> Sampler<'r> {
     }
 
     /// Takes the samples of a step.
-    pub(super) fn step<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        from: &Now<'_, C>,
-        step: &Step<3>,
-    ) -> ControlFlow<()> {
+    pub(super) fn step(&mut self, from: &Now<'a, C>, step: &Step<3>) -> ControlFlow<()> {
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
-            let state = rocking.between(step, time_s);
-            let sample = self.sample(rocking, &from.at(time_s, &state));
+            let state = self.rocking.between(step, time_s);
+            let sample = self.sample(&from.at(time_s, &state));
             self.next += 1;
             if let Some(held) = self.held.replace(sample) {
                 let flow = self.emit(&held);
@@ -128,14 +130,10 @@ impl<'r> Sampler<'r> {
     }
 
     /// The last sample, at the end of the simulation.
-    pub(super) fn finish<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        now: &Now<'_, C>,
-    ) -> ControlFlow<()> {
-        let pieces = &rocking.ground.pieces;
+    pub(super) fn finish(&mut self, now: &Now<'a, C>) -> ControlFlow<()> {
+        let pieces = &self.rocking.ground.pieces;
         let piece = pieces.partition_point(|piece| piece.start_s <= now.time_s) - 1;
-        let last = self.sample(rocking, &Moment { piece, ..*now });
+        let last = self.sample(&Moment { piece, ..*now });
         // A sample that differs from the end by rounding only is replaced.
         if let Some(held) = self.held.take()
             && held.time_s < now.time_s - 1e-9 * self.output_step_s
@@ -147,11 +145,8 @@ impl<'r> Sampler<'r> {
 
     /// Follows a mechanism that has overturned, if its recorder follows falls: it turns about the same hinges, also beyond the limit
     /// position, where the first of them begins to close.
-    pub(super) fn follow_fall<C: MechanismChain>(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        from: &Now<'_, C>,
-    ) {
+    pub(super) fn follow_fall(&mut self, from: &Now<'a, C>) {
+        let rocking = self.rocking;
         let Phase::Overturned(swing) = from.mode else {
             return;
         };
@@ -189,7 +184,7 @@ impl<'r> Sampler<'r> {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
                     let state = rocking.between(step, time_s);
-                    let sample = self.sample(rocking, &overturned.at(time_s, &state));
+                    let sample = self.sample(&overturned.at(time_s, &state));
                     self.next += 1;
                     ended = self.recorder.fall(&sample);
                     if let Some(at) = fall::end_at(&sample) {

@@ -2,10 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::engine::{
-    GuardValue, HybridSystem, Observer, Settings, Transition, falling_root, simulate,
-};
-use super::first_fall::overturns;
+use super::engine::{HybridSystem, Observer, Settings, Transition, falling_root, simulate};
 use super::integrator::Step;
 use super::posture::{Now, Rotations, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
@@ -97,9 +94,7 @@ macro_rules! models {
                 ground: &GroundMotion,
                 request: &Request,
             ) -> Result<Option<Sway>, SimulationError> {
-                let rocking = checked(self, ground, request)?;
-                let tolerance = request.relative_tolerance;
-                overturns(&rocking, tolerance).map_err(SimulationError::computation)
+                first_fall(self, ground, request)
             }
         }
     )+};
@@ -127,49 +122,39 @@ fn history_of<C: MechanismChain + MechanismModel>(
         relative_tolerance: request.relative_tolerance,
         max_transitions: MAX_TRANSITIONS,
     };
-    let mut watched = Watched {
-        tally: Tally::new(&rocking, mode, &state),
-        sampler: recorder.map(|recorder| Sampler::new(request.output_step_s, recorder)),
-    };
-    let finish = simulate(&rocking, mode, state, &settings, &mut watched);
+    let mut tally = Tally::new(&rocking, mode, &state);
+    tally.sampler =
+        recorder.map(|recorder| Sampler::new(&rocking, request.output_step_s, recorder));
+    let finish = simulate(&rocking, mode, state, &settings, &mut tally);
     let finish = finish.map_err(SimulationError::computation)?;
-    let Watched {
-        mut tally,
-        mut sampler,
-    } = watched;
     let now = &finish.now;
-    if let Some(sampler) = sampler.as_mut().filter(|_| !finish.stopped) {
+    if let Some(sampler) = tally.sampler.as_mut().filter(|_| !finish.stopped) {
         // The history ends here whether the recorder breaks or not.
-        let _ = sampler.finish(&rocking, now);
-        sampler.follow_fall(&rocking, now);
+        let _ = sampler.finish(now);
+        sampler.follow_fall(now);
     }
     tally.note_peak(now.mode, &now.state);
-    tally.check_energy(&rocking, now.mode, &now.state);
-    let (outcome, outcome_time_s) = match (now.mode, tally.last_rest_s) {
-        (Phase::Overturned(swing), _) => (
-            Outcome::Overturned(swing.sway),
-            tally.last_outward_s.unwrap_or(now.time_s),
-        ),
-        (Phase::Rest, Some(time_s)) => (Outcome::Rest, time_s),
-        (Phase::Rest, None) => (Outcome::NeverMoved, now.time_s),
-        (Phase::Rocking(_), _) => (Outcome::StillRocking, now.time_s),
-    };
+    tally.check_energy(now.mode, &now.state);
     let may_overturn = |swing: Swing<'_, C::Mechanism>| {
         rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
     };
     let outcome = match now.mode {
-        Phase::Overturned(_) => outcome,
+        Phase::Overturned(swing) => Outcome::Overturned(swing.sway),
         _ if now.time_s < ground.end_s() => Outcome::Incomplete,
         Phase::Rocking(swing) if may_overturn(swing) => Outcome::Incomplete,
-        _ => outcome,
+        Phase::Rocking(_) => Outcome::StillRocking,
+        Phase::Rest if tally.last_rest_s.is_some() => Outcome::Rest,
+        Phase::Rest => Outcome::NeverMoved,
     };
-    let before_fall = tally.peaks_before_fall.take();
-    let (peak_rotations_rad, peak_over_critical) = before_fall
-        .filter(|_| matches!(outcome, Outcome::Overturned(_)))
-        .unwrap_or_else(|| {
-            let peaks_rad = tally.peak_rotations_rad.as_ref().to_vec();
-            (peaks_rad, tally.peak_over_critical)
-        });
+    let (mut outcome_time_s, mut peaks) = (now.time_s, tally.peaks());
+    match (now.mode, tally.last_passage, tally.last_rest_s) {
+        (Phase::Overturned(_), Some(passage), _) => (outcome_time_s, peaks) = passage,
+        (Phase::Rest, _, Some(time_s)) => outcome_time_s = time_s,
+        _ => {}
+    }
+    let (peak_rotations_rad, peak_over_critical) = peaks;
+    let sampler = tally.sampler.as_ref();
+    let demanding = sampler.filter(|sampler| sampler.recorder.wants_demand());
     Ok(Summary {
         outcome,
         outcome_time_s,
@@ -177,15 +162,51 @@ fn history_of<C: MechanismChain + MechanismModel>(
         impacts: tally.impacts,
         peak_rotations_rad,
         energy_defect_ratio: tally.largest_defect / rocking.barrier,
-        thrust: sampler
-            .filter(|sampler| sampler.recorder.wants_demand())
-            .map(|sampler| match outcome {
-                Outcome::Overturned(_) => sampler.thrust_before_critical,
-                _ => sampler.thrust,
-            }),
+        thrust: demanding.map(|sampler| match outcome {
+            Outcome::Overturned(_) => sampler.thrust_before_critical,
+            _ => sampler.thrust,
+        }),
         cost: finish.cost,
         details: Details::Mechanisms { peak_over_critical },
     })
+}
+
+/// Time after the end of the ground motion by which the first fall is over, in seconds: near the unstable
+/// equilibrium a motion dwells for some forty of its time scales before rounding decides.
+const AFTER_S: f64 = 1e6;
+
+/// The side to which a structure at rest is overturned in its first fall, before its hinges ever close; `None` if it is not. It does not
+/// depend on the impact model.
+fn first_fall<C: MechanismChain + MechanismModel>(
+    chain: &C,
+    ground: &GroundMotion,
+    request: &Request,
+) -> Result<Option<Sway>, SimulationError> {
+    let rocking = checked(chain, ground, request)?;
+    let settings = Settings {
+        end_s: ground.end_s() + AFTER_S,
+        relative_tolerance: request.relative_tolerance,
+        // Uplift, and the event that ends the first fall.
+        max_transitions: 2,
+    };
+    let state = RockingState::zeros();
+    let finish = simulate(&rocking, Phase::Rest, state, &settings, &mut FirstFall);
+    match finish.map_err(SimulationError::computation)?.now.mode {
+        Phase::Overturned(swing) => Ok(Some(swing.sway)),
+        Phase::Rest | Phase::Rocking(_) => Ok(None),
+    }
+}
+
+/// Breaks when the hinges close.
+struct FirstFall;
+
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for FirstFall {
+    fn transition(&mut self, transition: &RockingTransition<'a, C>) -> ControlFlow<()> {
+        match transition.guard {
+            Guard::Closing => ControlFlow::Break(()),
+            Guard::Uplift(_) | Guard::Critical | Guard::Limit => ControlFlow::Continue(()),
+        }
+    }
 }
 
 /// The structure on its ground, if the request is valid.
@@ -198,11 +219,8 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     if let Some(initial) = request.initial {
         let limit_rad = chain.limit_rad(initial.sway);
         if initial.rotation_rad >= limit_rad {
-            return Err(SimulationError::Argument(ArgumentError {
-                argument: "rotation_rad",
-                value: initial.rotation_rad,
-                allowed: format!("below {limit_rad:?}, the limit position of the first mechanism"),
-            }));
+            let allowed = format!("below {limit_rad:?}, the limit position of the first mechanism");
+            return Err(ArgumentError::new("rotation_rad", initial.rotation_rad, allowed).into());
         }
     }
     if ground.right_foot().is_some() {
@@ -298,29 +316,35 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
     }
 }
 
-/// Collects what a summary needs.
-struct Tally<C: MechanismChain> {
+/// Collects what a summary needs, and takes samples for a recorder.
+struct Tally<'r, 'a, C: MechanismChain> {
+    rocking: &'r Rocking<'a, C>,
+    sampler: Option<Sampler<'r, 'a, C>>,
     impacts: usize,
     peak_rotations_rad: Rotations<C>,
     peak_over_critical: f64,
-    last_outward_s: Option<f64>,
-    /// The largest rotations up to then, and over the critical one.
-    peaks_before_fall: Option<(Vec<f64>, f64)>,
+    /// When it last passed the unstable equilibrium outwards, and the peaks up to then.
+    last_passage: Option<(f64, (Vec<f64>, f64))>,
     last_rest_s: Option<f64>,
     /// Initial energy minus what the impacts took.
     energy_without_work: f64,
     largest_defect: f64,
 }
 
-impl<C: MechanismChain> Tally<C> {
-    fn new(rocking: &Rocking<'_, C>, mode: Mode<'_, C::Mechanism>, state: &RockingState) -> Self {
+impl<'r, 'a, C: MechanismChain> Tally<'r, 'a, C> {
+    fn new(
+        rocking: &'r Rocking<'a, C>,
+        mode: Mode<'a, C::Mechanism>,
+        state: &RockingState,
+    ) -> Self {
         let (none, _) = posture(rocking, Phase::Rest, state);
         let mut tally = Self {
+            rocking,
+            sampler: None,
             impacts: 0,
             peak_rotations_rad: none,
             peak_over_critical: 0.0,
-            last_outward_s: None,
-            peaks_before_fall: None,
+            last_passage: None,
             last_rest_s: None,
             energy_without_work: match mode {
                 Phase::Rocking(swing) => rocking.energy(swing.link, state),
@@ -344,54 +368,59 @@ impl<C: MechanismChain> Tally<C> {
         }
     }
 
-    fn check_energy(
-        &mut self,
-        rocking: &Rocking<'_, C>,
-        mode: Mode<'_, C::Mechanism>,
-        state: &RockingState,
-    ) {
+    /// The largest rotations so far, and over the critical one.
+    fn peaks(&self) -> (Vec<f64>, f64) {
+        let peaks_rad = self.peak_rotations_rad.as_ref().to_vec();
+        (peaks_rad, self.peak_over_critical)
+    }
+
+    fn check_energy(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Phase::Rocking(Swing { link, .. }) = mode {
-            let defect = rocking.energy(link, state) - self.energy_without_work - state[2];
+            let defect = self.rocking.energy(link, state) - self.energy_without_work - state[2];
             self.largest_defect = self.largest_defect.max(defect.abs());
         }
     }
 
     /// Notes turning points and passages of the unstable equilibrium in a step.
-    fn step(&mut self, rocking: &Rocking<'_, C>, mode: Mode<'_, C::Mechanism>, step: &Step<3>) {
+    fn note_step(&mut self, mode: Mode<'_, C::Mechanism>, step: &Step<3>) {
         let Phase::Rocking(Swing { link, .. }) = mode else {
             return;
         };
+        let rocking = self.rocking;
         // It may turn back in the very step of uplift, in which it starts at zero rate.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
-            let turn_s = falling_root(step.start_s, step.end_s, |time_s| GuardValue {
-                value: rocking.between(step, time_s)[1],
-                rate: step.start_slope[1]
-                    + bend * (time_s - step.start_s) / (step.end_s - step.start_s),
+            let turn_s = falling_root(step.start_s, step.end_s, |time_s| {
+                let part = bend * (time_s - step.start_s) / (step.end_s - step.start_s);
+                (rocking.between(step, time_s)[1], step.start_slope[1] + part)
             });
             self.note_peak(mode, &rocking.between(step, turn_s));
-            self.check_energy(rocking, mode, &step.end);
+            self.check_energy(mode, &step.end);
         }
         if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
             let passage_s = falling_root(step.start_s, step.end_s, |time_s| {
                 let state = rocking.between(step, time_s);
-                GuardValue {
-                    value: link.critical_rad - state[0],
-                    rate: -state[1],
-                }
+                (link.critical_rad - state[0], -state[1])
             });
-            self.last_outward_s = Some(passage_s);
             self.note_peak(mode, &rocking.between(step, passage_s));
-            let peaks = self.peak_rotations_rad.as_ref().to_vec();
-            self.peaks_before_fall = Some((peaks, self.peak_over_critical));
+            self.last_passage = Some((passage_s, self.peaks()));
+        }
+    }
+}
+
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<'_, 'a, C> {
+    fn step(&mut self, from: &Now<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+        self.note_step(from.mode, step);
+        match &mut self.sampler {
+            Some(sampler) => sampler.step(from, step),
+            None => ControlFlow::Continue(()),
         }
     }
 
-    /// Notes an event.
-    fn transition<'a>(&mut self, rocking: &Rocking<'a, C>, transition: &RockingTransition<'a, C>) {
-        self.check_energy(rocking, transition.from, &transition.before);
+    fn transition(&mut self, transition: &RockingTransition<'a, C>) -> ControlFlow<()> {
+        self.check_energy(transition.from, &transition.before);
         let rests = matches!(transition.to, Phase::Rest);
-        if let Some(closing) = Closing::of(rocking.chain, transition) {
+        if let Some(closing) = Closing::of(self.rocking.chain, transition) {
             let (before, after) = closing.energies();
             self.energy_without_work -= before - if rests { 0.0 } else { after };
             self.impacts += 1;
@@ -400,6 +429,11 @@ impl<C: MechanismChain> Tally<C> {
             self.last_rest_s = Some(transition.time_s);
             // At rest the energy is zero: the remaining balance is the defect so far, carried on.
         }
+        let Some(sampler) = &mut self.sampler else {
+            return ControlFlow::Continue(());
+        };
+        sampler.phase += 1;
+        sampler.recorder.event(&event(self.rocking, transition))
     }
 }
 
@@ -425,39 +459,5 @@ fn event<'a, C: MechanismChain>(
         hinges: swing.map_or(Vec::new(), |swing| chain.hinges(swing.impacts, swing.sway)),
         impact: Closing::of(chain, transition).map(|closing| closing.impact(chain)),
         ..Event::new(transition.time_s, kind, state(transition.to))
-    }
-}
-
-/// Collects what a summary needs, and takes samples for a recorder.
-struct Watched<'r, C: MechanismChain> {
-    tally: Tally<C>,
-    sampler: Option<Sampler<'r>>,
-}
-
-impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Watched<'_, C> {
-    fn step(
-        &mut self,
-        rocking: &Rocking<'a, C>,
-        from: &Now<'a, C>,
-        step: &Step<3>,
-    ) -> ControlFlow<()> {
-        self.tally.step(rocking, from.mode, step);
-        match &mut self.sampler {
-            Some(sampler) => sampler.step(rocking, from, step),
-            None => ControlFlow::Continue(()),
-        }
-    }
-
-    fn transition(
-        &mut self,
-        rocking: &Rocking<'a, C>,
-        transition: &RockingTransition<'a, C>,
-    ) -> ControlFlow<()> {
-        self.tally.transition(rocking, transition);
-        let Some(sampler) = &mut self.sampler else {
-            return ControlFlow::Continue(());
-        };
-        sampler.phase += 1;
-        sampler.recorder.event(&event(rocking, transition))
     }
 }

@@ -2,9 +2,9 @@
 
 use std::mem;
 
-use super::clock::Settings;
 use super::error::RowMotionError;
-use crate::dynamics::ground::{GroundMotion, Piece};
+use super::task::Task;
+use crate::dynamics::ground::Piece;
 use crate::dynamics::history::{
     Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Outcome, RowSummary, Sample, State,
     Stress, Summary, TieSummary,
@@ -12,13 +12,10 @@ use crate::dynamics::history::{
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::until::SAFE;
-use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::chain::{Hinge, LEAST_LOAD};
-use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Tie, TieMemory};
-use nalgebra::Vector2;
 
 /// Sways below this fraction of the size do not count as a change of side.
 pub const SWAY_RATIO: f64 = 1e-9;
@@ -46,41 +43,6 @@ const SLIPPED_RATIO: f64 = 0.01;
 /// At these fractions of the energy error that refuses a motion the steps are halved, if none were given: the error then grows at least two
 /// times slower, four times with elastic joints.
 const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
-
-/// A motion to compute.
-#[derive(Clone, Copy)]
-pub struct Task<'a> {
-    pub row: &'a Row,
-    pub ground: &'a GroundMotion,
-    pub gravity_m_s2: f64,
-    pub settings: Settings,
-    /// Energy that the first mechanism has to gain to overturn, where that is known.
-    pub barrier_j: Option<f64>,
-    /// Energy barrier of the row as built, with rigid joints and without ties, in J; estimated where it is not known.
-    pub built_barrier_j: f64,
-    /// Energy beside which errors of the balance are small or not, if the motion has less.
-    pub energy_scale_j: f64,
-}
-
-impl<'a> Task<'a> {
-    /// A motion whose energies are known as far as the blocks alone tell.
-    pub fn new(
-        row: &'a Row,
-        ground: &'a GroundMotion,
-        gravity_m_s2: f64,
-        settings: Settings,
-    ) -> Self {
-        Self {
-            row,
-            ground,
-            gravity_m_s2,
-            settings,
-            barrier_j: None,
-            built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
-            energy_scale_j: 0.0,
-        }
-    }
-}
 
 /// The motion so far.
 pub struct Course<'a> {
@@ -316,6 +278,21 @@ impl<'a> Course<'a> {
     /// Normal force below which a joint does not count in the friction that is needed, in N.
     pub fn least_load_n(&self) -> f64 {
         LEAST_LOAD * self.energy_unit / self.task.row.size_m
+    }
+
+    /// Notes the least force at a joint, by tangential and normal impulses in a time; returns the friction that they need.
+    pub fn note_forces(&mut self, impulses: impl Iterator<Item = [f64; 2]>, lasts_s: f64) -> f64 {
+        let loaded = self.least_load_n() * lasts_s;
+        let (mut least, mut friction) = (f64::INFINITY, 0.0_f64);
+        for [tangential, normal] in impulses {
+            least = least.min(normal);
+            if normal >= loaded {
+                friction = friction.max(tangential.abs() / normal);
+            }
+        }
+        let least_n = &mut self.of_row.least_normal_n;
+        *least_n = least_n.min(least / lasts_s);
+        friction
     }
 
     /// Whether a row that has hardly moved since then rests.
@@ -667,10 +644,7 @@ impl<'a> Course<'a> {
         let ending = match outcome {
             Outcome::Rest => Some((EventKind::Rest, State::Rest)),
             Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
-            Outcome::NeverMoved
-            | Outcome::Vibrates
-            | Outcome::StillRocking
-            | Outcome::Incomplete => None,
+            _ => None,
         };
         if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
             // The history ends here anyway.
@@ -701,33 +675,4 @@ pub fn balanced(
         });
     }
     Ok(summary)
-}
-
-/// The energy barrier of an arch, if none is known, as a fraction of its weight times its size.
-const BARRIER_RATIO: f64 = 1e-3;
-
-/// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
-/// its joints overturns as one block, where that is least.
-fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
-    if row.supports == Supports::Both {
-        return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m;
-    }
-    let above = |(index, joint): (usize, &Joint)| {
-        let blocks = &row.blocks[index..];
-        let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
-        let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
-        let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
-        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
-    };
-    let joints = row.joints.iter().enumerate();
-    joints.map(above).fold(f64::INFINITY, f64::min)
-}
-
-/// How far a centre of gravity rises, in m, until it is above the nearer edge of the joint about which its block turns.
-pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
-    let rise = |edge: Edge| {
-        let arm_m = centre_m - joint.corner_m(edge);
-        arm_m.norm() - arm_m.y
-    };
-    rise(Edge::Intrados).min(rise(Edge::Extrados))
 }

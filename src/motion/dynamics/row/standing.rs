@@ -1,8 +1,8 @@
 //! A row of rigid blocks before it moves: the push that starts it, and its first mechanism.
 
 use super::clock::Settings;
-use super::course::{Task, rise_to_overturn_m};
 use super::error::RowModelError;
+use super::task::{Task, rise_to_overturn_m};
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::recording::Shape;
@@ -13,6 +13,7 @@ use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
+use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
@@ -25,32 +26,11 @@ pub struct RigidRow {
     /// Its stance: undeformed, or on supports that have moved.
     pub standing: Stance,
     /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
-    incipient_g: [Option<f64>; 2],
+    incipient_g: Sides<Option<f64>>,
     /// The push that starts it to either side where joints slip, in units of gravity.
-    with_friction_g: Option<[Option<f64>; 2]>,
-    /// Its first mechanism, if that has one known degree of freedom: four links, or one block.
-    first: Option<FirstMechanism>,
-}
-
-/// How the motion of the first mechanism is known.
-#[derive(Clone, Debug)]
-enum FirstMechanism {
-    /// Four links.
-    FourLinks(FourLinks),
-    /// A stack turns about an edge of its base.
-    Base,
-}
-
-impl FirstMechanism {
-    fn of(row: &Row) -> Option<Self> {
-        match row.supports {
-            Supports::Left => Some(Self::Base),
-            // The impact model is required, but not used: the first mechanism comes before any impact.
-            Supports::Both => FourLinks::of_row(row, ImpactModel::MaxRestitution)
-                .ok()
-                .map(Self::FourLinks),
-        }
-    }
+    with_friction_g: Option<Sides<Option<f64>>>,
+    /// Its first mechanism, if that is one of four links. A stack turns about an edge of its base.
+    first: Option<FourLinks>,
 }
 
 impl RigidRow {
@@ -59,13 +39,14 @@ impl RigidRow {
     /// # Errors
     /// When the row cannot carry its own weight.
     pub fn new(row: Row) -> Result<Self, StabilityError> {
-        let incipient_g = [
-            onset(&row, Sway::Right)?.map(|onset| onset.acceleration_g),
-            onset(&row, Sway::Left)?.map(|onset| onset.acceleration_g),
-        ];
+        let push_g = |sway| onset(&row, sway).map(|onset| Some(onset?.acceleration_g));
+        let incipient_g = Sides::try_of(push_g)?;
+        // No motion is released from the first mechanism of a row with ties, whose barrier is known only without them. The impact model is
+        // required, but not used: the first mechanism comes before any impact.
+        let four_links =
+            || FourLinks::of_row(&row.clone().without_ties(), ImpactModel::MaxRestitution).ok();
         Ok(Self {
-            // No motion is released from the first mechanism of a row with ties, whose barrier is known only without them.
-            first: FirstMechanism::of(&row.clone().without_ties()),
+            first: (row.supports == Supports::Both).then(four_links).flatten(),
             standing: Stance::undeformed(&row),
             row,
             incipient_g,
@@ -94,11 +75,7 @@ impl RigidRow {
 
     /// The push that starts it to that side, in units of gravity; `None` if no push starts it.
     pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        let [right, left] = self.with_friction_g.unwrap_or(self.incipient_g);
-        match sway {
-            Sway::Right => right,
-            Sway::Left => left,
-        }
+        *self.with_friction_g.unwrap_or(self.incipient_g).to(sway)
     }
 
     /// This row with joints that slip; the push that starts it to either side follows by limit analysis.
@@ -114,10 +91,10 @@ impl RigidRow {
             return Err(FrictionError::CannotStand(coefficient));
         }
         let push_g = |sway| {
-            let onset = friction::onset_of_standing(&self.row, &self.standing, coefficient, sway)?;
-            Ok(onset.map(|onset| onset.acceleration_g))
+            friction::onset_of_standing(&self.row, &self.standing, coefficient, sway)
+                .map(|onset| Some(onset?.acceleration_g))
         };
-        self.with_friction_g = Some([push_g(Sway::Right)?, push_g(Sway::Left)?]);
+        self.with_friction_g = Some(Sides::try_of(push_g)?);
         Ok(self)
     }
 
@@ -136,9 +113,8 @@ impl RigidRow {
             return Err(RowModelError::TieBreaks(tie));
         }
         let first_g = |sway| follower.first_motion_g(sway).map_err(SettlingError::from);
-        let incipient_g = [first_g(Sway::Right)?, first_g(Sway::Left)?];
         Ok(Self {
-            incipient_g,
+            incipient_g: Sides::try_of(first_g)?,
             with_friction_g: None,
             standing: follower.stance.clone(),
             // That of the blocks alone: energies are judged beside it.
@@ -184,44 +160,34 @@ impl RigidRow {
     }
 
     fn built_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        match &self.first {
-            Some(FirstMechanism::FourLinks(row)) => {
+        match (&self.first, &self.row.blocks[..], &self.row.joints[..]) {
+            (Some(row), ..) => {
                 let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));
                 let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
                 Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
-            Some(FirstMechanism::Base) | None => match (&self.row.blocks[..], &self.row.joints[..])
-            {
-                ([block], [base]) => {
-                    let rise_m = rise_to_overturn_m(block.centre_m, base);
-                    Some(block.mass_kg * gravity_m_s2 * rise_m)
-                }
-                _ => None,
-            },
+            (None, [block], [base]) => {
+                let rise_m = rise_to_overturn_m(block.centre_m, base);
+                Some(block.mass_kg * gravity_m_s2 * rise_m)
+            }
+            _ => None,
         }
     }
 
     /// Rotations of the blocks when the first mechanism is open this far.
     pub fn released(&self, initial: Initial) -> Result<Vec<f64>, ArgumentError> {
-        let refused = |allowed: String| ArgumentError {
-            argument: "rotation_rad",
-            value: initial.rotation_rad,
-            allowed,
-        };
+        let refused = |allowed| ArgumentError::new("rotation_rad", initial.rotation_rad, allowed);
         let blocks = self.row.blocks.len();
         // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
-        let side = match initial.sway {
-            Sway::Right => 1.0,
-            Sway::Left => -1.0,
-        };
+        let side = initial.sway.sign();
         let row = match &self.first {
-            Some(FirstMechanism::FourLinks(row)) if !self.is_on_hinges() => row,
-            Some(FirstMechanism::Base) => return Ok(vec![-side * initial.rotation_rad; blocks]),
+            Some(row) if !self.is_on_hinges() => row,
+            None if self.row.supports == Supports::Left => {
+                return Ok(vec![-side * initial.rotation_rad; blocks]);
+            }
             _ => {
-                return Err(refused(
-                    "left out: this row does not start as a mechanism from which it could be released"
-                        .to_owned(),
-                ));
+                let allowed = "left out: this row does not start as a mechanism from which it could be released";
+                return Err(refused(allowed.to_owned()));
             }
         };
         let link = row
@@ -238,13 +204,10 @@ impl RigidRow {
             bodies_rad.reverse();
         }
         let hinges = row.hinges(0, initial.sway);
-        let hinges_before = |block: usize| {
+        let rotation_rad = |block: usize| {
             let before =
                 |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
-            hinges.iter().filter(before).count()
-        };
-        let rotation_rad = |block: usize| {
-            let body = hinges_before(block).checked_sub(1);
+            let body = hinges.iter().filter(before).count().checked_sub(1);
             side * body.and_then(|body| bodies_rad.get(body)).unwrap_or(&0.0)
         };
         Ok((0..blocks).map(rotation_rad).collect())

@@ -114,9 +114,9 @@ pub trait Stepper<'a>: Sized {
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
-        let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
+        let event = self.event(EventKind::Impact, moves);
         // A row that lands where it stood came from the other side.
-        let stood = self.lies_where_it_stood(&rotations_rad);
+        let stood = self.lies_where_it_stood(&event.rotations_rad);
         let sway = if moves { self.heading() } else { Sway::Right };
         let restitution = energy_after_j / energy_before_j;
         let impact = Impact {
@@ -130,42 +130,44 @@ pub trait Stepper<'a>: Sized {
             energy_after_j,
             friction_j,
             rates_before_rad_s: Vec::new(),
-            rates_after_rad_s: rates_rad_s.clone(),
+            rates_after_rad_s: event.rates_rad_s.clone(),
             closed: course.shut.clone(),
             opened: course.opened.clone(),
             impulses_n_s: Vec::new(),
         };
-        let state = if moves { self.moving() } else { State::Rest };
         let event = Event {
             energy_j: energy_after_j + course.potential,
             hinges: hinges.collect(),
             impact: Some(impact),
-            rotations_rad,
-            rates_rad_s,
-            ..Event::new(course.time, EventKind::Impact, state)
+            ..event
         };
         self.course_mut().report(&event);
     }
 
-    /// Reports an event of a tie in the last step.
-    fn report_tie(&mut self, tie: usize, kind: EventKind) {
-        let course = self.course();
-        if !course.is_followed() {
-            return;
+    /// Reports events of ties in the last step.
+    fn report_ties(&mut self, happened: Vec<(usize, EventKind)>) {
+        for (tie, kind) in happened {
+            if self.course().is_followed() {
+                let tie = Some(tie);
+                let event = self.event(kind, self.course().moved);
+                self.course_mut().report(&Event { tie, ..event });
+            }
         }
-        let (rotations_rad, rates_rad_s): (Vec<f64>, Vec<f64>) = self.turns().unzip();
+    }
+
+    /// An event that happens now to a row that moves on, or rests.
+    fn event(&self, kind: EventKind, moves: bool) -> Event {
+        let course = self.course();
+        let (rotations_rad, rates_rad_s) = self.turns().unzip();
         let joints = 0..course.task.row.joints.len();
-        let moves = course.moved;
         let state = if moves { self.moving() } else { State::Rest };
-        let event = Event {
+        Event {
             rotations_rad,
             rates_rad_s,
             energy_j: course.kinetic + course.potential,
             hinges: joints.filter_map(|joint| self.hinge(joint)).collect(),
-            tie: Some(tie),
             ..Event::new(course.time, kind, state)
-        };
-        self.course_mut().report(&event);
+        }
     }
 
     /// Makes a sample.

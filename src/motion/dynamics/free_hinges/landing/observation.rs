@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
 use crate::dynamics::history::Sample;
-use crate::dynamics::row::course::{Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
+use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO};
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, only, open_hinge};
 use crate::mechanics::chain::Hinge;
@@ -32,7 +32,7 @@ const LEAST_SWING_RATIO: f64 = 1e-18;
 
 impl LandingStepper<'_> {
     pub fn height_energy(&self) -> f64 {
-        self.gravity * self.rest.rise_kg_m(&self.placement.centres_m)
+        self.gravity * self.rest.moved_kg_m(&self.placement.centres_m).y
     }
 
     /// Potential energy of the blocks.
@@ -92,17 +92,10 @@ impl LandingStepper<'_> {
     fn observe_hinges(&mut self) {
         let height = (!self.right.moves()).then_some(self.course.potential);
         self.course.note_height(height);
-        let far_m = OVERTURNED_RATIO * self.row.size_m;
-        let stood = &self.rest.placement;
-        let moved_m = self.placement.centres_m.iter().zip(&stood.centres_m);
-        let gone_m = [Vector2::zeros(), self.right.gone_m];
-        self.course.overturned |= moved_m.into_iter().any(|(now, stood)| {
-            gone_m
-                .iter()
-                .all(|gone_m| (now - stood - gone_m).norm() >= far_m)
-        }) || self
-            .turns()
-            .any(|(rotation_rad, _)| rotation_rad.abs() >= OVERTURNED_RAD);
+        let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
+        let blocks = self.placement.centres_m.iter().copied().zip(rotations);
+        let feet_m = [Vector2::zeros(), self.right.gone_m];
+        self.course.overturned |= self.rest.is_left_by(blocks, feet_m);
     }
 
     /// True if the row lies at its initial position.
@@ -112,12 +105,12 @@ impl LandingStepper<'_> {
 
     /// True if the right support has moved relative to the left one.
     pub fn right_support_is_gone(&self) -> bool {
-        self.right.is_gone(SHUT_RATIO * self.thinnest)
+        self.right.gone_m.norm() > SHUT_RATIO * self.thinnest
     }
 
     /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass.
     pub fn sway_kg_m(&self) -> f64 {
-        let sway = self.rest.sway_kg_m(&self.placement.centres_m);
+        let sway = self.rest.moved_kg_m(&self.placement.centres_m).x;
         sway - 0.5 * self.row.mass_kg() * self.right.gone_m.x
     }
 
@@ -188,12 +181,14 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let taken_before = self.course.of_row.energy_taken_j;
         self.landing.fill([0.0; 2]);
         if self.has_just_landed() {
-            self.press_again();
+            // Most of the corners that pressed before the impact do so again under gravity.
+            self.press(|stepper, joint, edge| stepper.pressed[joint][edge]);
         }
         let step = self.solve_to_landing(longest)?;
         self.account(&step);
         self.drift(&step)?;
-        let landed = self.has_landed();
+        let mut joints = 0..self.touching.len();
+        let landed = joints.any(|joint| (0..2).any(|edge| self.has_landed(joint, edge)));
         if landed {
             self.impact()?;
         }
@@ -206,9 +201,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         }
         let scale_j = self.course.task.energy_scale_j;
         self.course.mind_balance(scale_j, || scale_j);
-        for (tie, kind) in happened {
-            self.report_tie(tie, kind);
-        }
+        self.report_ties(happened);
         self.course.cost.steps += 1;
         let of_row = &mut self.course.of_row;
         of_row.merged += u64::from(step.merged);
