@@ -65,6 +65,29 @@ pub(crate) fn several<'a, R>(
     }
 }
 
+/// Several columns of a list, one for each name.
+pub(crate) fn list<'a, R, N: Into<Cow<'a, str>>, C: Into<Cell<'static>>, L>(
+    names: impl IntoIterator<Item = N>,
+    list: impl Fn(&R) -> L + 'a,
+) -> Column<'a, R>
+where
+    L: IntoIterator<Item = C>,
+{
+    Column {
+        names: names.into_iter().map(Into::into).collect(),
+        cells: Box::new(move |row, _, cells| {
+            for cell in list(row) {
+                cells.push(cell.into());
+            }
+        }),
+    }
+}
+
+/// Numbers side by side that a row may lack.
+pub(crate) fn each<const N: usize>(numbers: Option<[f64; N]>) -> [Option<f64>; N] {
+    numbers.map_or([None; N], |numbers| numbers.map(Some))
+}
+
 /// Columns for numbers that a row holds side by side.
 pub(crate) fn numbers<'a, R>(
     names: impl IntoIterator<Item = String>,

@@ -8,13 +8,13 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::results::Results;
-use super::statistics::fractile;
+use super::statistics::{ascending, fractile, shares_up_to};
 use crate::output::Figure;
 use crate::output::OutputError;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark};
 use crate::output::svg::CURVES;
-use crate::output::table::{Column, column, csv};
+use crate::output::table::{column, csv};
 
 /// The largest rotation of a body in each case of a model, in radians, infinite if the case overturned; and the name of the model in
 /// words.
@@ -46,11 +46,8 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
         at_rotation_rad: 0.0,
         shares_there: [0.0; 2],
     };
-    let sorted = both.map(|(_, peaks)| ascending(peaks));
-    for at_rad in ascending(&sorted.concat())
-        .into_iter()
-        .filter(|peak| peak.is_finite())
-    {
+    let sorted = both.map(|(_, peaks)| ascending(peaks.iter().copied()));
+    for (at_rad, _) in shares_up_to(sorted.concat()) {
         let shares = sorted
             .each_ref()
             .map(|peaks| peaks.partition_point(|peak| *peak <= at_rad) as f64 / peaks.len() as f64);
@@ -62,31 +59,6 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
         }
     }
     Some(found)
-}
-
-fn ascending(peaks: &[f64]) -> Vec<f64> {
-    let mut all = peaks.to_vec();
-    all.sort_by(f64::total_cmp);
-    all
-}
-
-/// The share of the cases of a model up to this rotation.
-struct ShareUpTo<'a> {
-    model: &'a str,
-    rotation_rad: f64,
-    share: f64,
-}
-
-/// The distribution of the rotations of a model, ascending. Overturned cases are beyond all others.
-fn distribution<'a>((model, peaks): ModelPeaks<'a>) -> Vec<ShareUpTo<'a>> {
-    let finite = ascending(peaks).into_iter().filter(|peak| peak.is_finite());
-    let shares = (1..).map(|count: u32| f64::from(count) / peaks.len() as f64);
-    let at = |(rotation_rad, share)| ShareUpTo {
-        model,
-        rotation_rad,
-        share,
-    };
-    finite.zip(shares).map(at).collect()
 }
 
 /// Names of the files, the seal last.
@@ -101,14 +73,17 @@ pub fn results(
     models: &[ModelPeaks<'_>],
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let distributions: Vec<_> = models.iter().map(|model| distribution(*model)).collect();
+    let distributions = models.iter();
+    let distributions: Vec<Distribution<'_>> = distributions
+        .map(|(name, peaks)| (*name, shares_up_to(peaks.to_vec())))
+        .collect();
     let pairs = models.iter().enumerate().flat_map(|(index, one)| {
         let others = models[index + 1..].iter();
         others.filter_map(|other| distance(*one, *other))
     });
     let pairs: Vec<Distance> = pairs.collect();
     let of_model = |(name, peaks): &ModelPeaks<'_>| {
-        let all = ascending(peaks);
+        let all = ascending(peaks.iter().copied());
         let at = |part| fractile(&all, part).filter(|peak| peak.is_finite());
         json!({
             "model": name,
@@ -121,13 +96,16 @@ pub fn results(
     };
     let of_models: Vec<_> = models.iter().map(of_model).collect();
     let summary = json!({ "models": of_models, "pairs": pairs });
-    let columns: [Column<'_, ShareUpTo<'_>>; 3] = [
-        column("model", |at: &ShareUpTo<'_>| at.model.to_owned()),
-        column("peak_rotation_rad", |at: &ShareUpTo<'_>| at.rotation_rad),
-        column("share", |at: &ShareUpTo<'_>| at.share),
+    type Row<'a> = (&'a str, (f64, f64));
+    let columns = [
+        column("model", |(model, _): &Row<'_>| (*model).to_owned()),
+        column("peak_rotation_rad", |(_, at): &Row<'_>| at.0),
+        column("share", |(_, at): &Row<'_>| at.1),
     ];
-    let picture = draw(figure, title, models, &distributions);
-    let table = csv(columns, distributions.iter().flatten())?;
+    let rows = distributions.iter();
+    let rows = rows.flat_map(|(model, all)| all.iter().map(|at| (*model, *at)));
+    let table = csv(columns, &rows.collect::<Vec<Row<'_>>>())?;
+    let picture = draw(figure, title, &distributions);
     let words: Vec<String> = pairs.iter().map(in_words).collect();
     let others = [picture.into_bytes(), table];
     Results::new(&FILES, &summary, words.join("\n  "), others)
@@ -145,19 +123,16 @@ fn in_words(found: &Distance) -> String {
     )
 }
 
-fn draw(
-    figure: Figure,
-    title: &str,
-    models: &[ModelPeaks<'_>],
-    distributions: &[Vec<ShareUpTo<'_>>],
-) -> String {
-    let peaks = distributions.iter().flatten().map(|at| at.rotation_rad);
-    let x = Scale::exactly(0.0, 1.05 * peaks.fold(1e-3, f64::max), figure.ticks(8));
-    let curves = models.iter().zip(distributions).zip(CURVES);
-    let curves = curves.map(|(((name, _), distribution), stroke)| {
-        let rises = distribution.iter().map(|at| (at.rotation_rad, at.share));
-        Mark::staircase(*name, stroke, (x, 0.0), rises)
-    });
+/// A model, and its rotations with the shares of its cases up to each. Overturned cases are beyond all others.
+type Distribution<'a> = (&'a str, Vec<(f64, f64)>);
+
+fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>]) -> String {
+    let peaks = distributions.iter().flat_map(|(_, all)| all);
+    let largest = peaks.map(|at| at.0).fold(1e-3, f64::max);
+    let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
+    let curves = distributions.iter().zip(CURVES);
+    let curves = curves
+        .map(|((name, all), stroke)| Mark::staircase(*name, stroke, (x, 0.0), all.iter().copied()));
     let label = "largest rotation (rad); overturned cases are beyond";
     let y = Scale::exactly(0.0, 1.0, 5);
     let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));

@@ -50,6 +50,27 @@ impl Share {
             },
         })
     }
+
+    /// The share and the ends of its interval.
+    pub(super) const fn numbers(&self) -> [f64; 3] {
+        [self.share, self.low, self.high]
+    }
+}
+
+/// These values, the smallest first.
+pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let mut values: Vec<f64> = values.into_iter().collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The finite values, ascending, each with the share of all values up to it.
+pub(super) fn shares_up_to(values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
+    let values = ascending(values);
+    let all = values.len() as f64;
+    let shares = (1..).map(|count: u32| f64::from(count) / all);
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.zip(shares).collect()
 }
 
 /// Quantile of ascending values for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n` (Hazen);
@@ -100,8 +121,8 @@ pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// The ends and the median of the band, for values in any order, by [`quantile`] or [`fractile`].
 #[must_use]
-pub fn band(mut values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Option<[f64; 3]> {
-    values.sort_by(f64::total_cmp);
+pub fn band(values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Option<[f64; 3]> {
+    let values = ascending(values);
     let [low, median, high] = BAND.map(|part| quantile(&values, part));
     Some([low?, median?, high?])
 }
@@ -171,8 +192,8 @@ pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
 
 /// The ends of the 95 % interval of bootstrapped values.
 #[must_use]
-pub fn interval(mut values: Vec<f64>) -> Option<[f64; 2]> {
-    values.sort_by(f64::total_cmp);
+pub fn interval(values: Vec<f64>) -> Option<[f64; 2]> {
+    let values = ascending(values);
     Some([quantile(&values, 0.025)?, quantile(&values, 0.975)?])
 }
 

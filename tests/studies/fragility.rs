@@ -534,41 +534,24 @@ fn cases_that_make_no_curve_say_why() {
     assert_eq!(refusal(&[]), NoFit::NoObservations);
     assert_eq!(
         refusal(&[(0.2, 3, 0), (0.4, 5, 0)]),
-        NoFit::NoneOverturned {
-            cases: 8,
-            highest: 0.4
-        }
+        NoFit::NoneOverturned(8, 0.4)
     );
     assert_eq!(
         refusal(&[(0.2, 3, 3), (0.4, 5, 5)]),
-        NoFit::AllOverturned {
-            cases: 8,
-            lowest: 0.2
-        }
+        NoFit::AllOverturned(8, 0.2)
     );
-    assert_eq!(
-        refusal(&[(0.3, 5, 2)]),
-        NoFit::OneIntensity {
-            intensity: 0.3,
-            cases: 5,
-            overturned: 2
-        }
-    );
+    assert_eq!(refusal(&[(0.3, 5, 2)]), NoFit::OneIntensity(0.3, 5, 2));
     // Two numbers with the same logarithm.
     let next = 1000_f64.next_up();
     assert_eq!(
         refusal(&[(1000.0, 5, 2), (next, 5, 3)]),
-        NoFit::OneIntensity {
-            intensity: 1000.0,
-            cases: 10,
-            overturned: 5
-        }
+        NoFit::OneIntensity(1000.0, 10, 5)
     );
     for intensity in [0.0, -0.3, f64::INFINITY, f64::NEG_INFINITY] {
         let error = refusal(&[(0.2, 2, 1), (intensity, 2, 1)]);
-        assert_eq!(error, NoFit::Intensity { intensity });
+        assert_eq!(error, NoFit::Intensity(intensity));
     }
-    let NoFit::Intensity { intensity } = refusal(&[(0.2, 2, 1), (f64::NAN, 2, 1)]) else {
+    let NoFit::Intensity(intensity) = refusal(&[(0.2, 2, 1), (f64::NAN, 2, 1)]) else {
         panic!("a fit to NaN");
     };
     assert!(intensity.is_nan());
@@ -577,10 +560,7 @@ fn cases_that_make_no_curve_say_why() {
 #[test]
 fn separated_cases_are_told_exactly() {
     let refusal = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err();
-    let separated = |survived_up_to, overturned_from| NoFit::Separated {
-        survived_up_to,
-        overturned_from,
-    };
+    let separated = NoFit::Separated;
     assert_eq!(
         refusal(&[(0.1, 3, 0), (0.2, 3, 0), (0.4, 5, 5), (0.5, 1, 1)]),
         separated(0.2, 0.4)
@@ -613,22 +593,14 @@ fn a_fraction_that_does_not_grow_is_no_fragility() {
         [(0.2, 4, 3), (0.4, 4, 0), (0.8, 4, 3)],
     ] {
         let error = fit(&counts(&levels)).unwrap_err();
-        let NoFit::NotIncreasing {
-            survived,
-            overturned,
-        } = error
-        else {
+        let NoFit::NotIncreasing(survived, overturned) = error else {
             panic!("{levels:?} {error:?}");
         };
         assert!(overturned <= survived * (1.0 + 1e-12));
     }
     // Geometric means by hand: (0.2^2 0.8)^(1/3) and (0.2 0.8^2)^(1/3).
     let error = fit(&counts(&[(0.2, 3, 2), (0.8, 3, 1)])).unwrap_err();
-    let NoFit::NotIncreasing {
-        survived,
-        overturned,
-    } = error
-    else {
+    let NoFit::NotIncreasing(survived, overturned) = error else {
         panic!("{error:?}");
     };
     assert_close(overturned, 0.032_f64.cbrt(), 1e-14);

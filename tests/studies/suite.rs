@@ -646,8 +646,8 @@ fn uncertain_cases_are_taken_both_ways() {
     }
     assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
     let survivals = doubtful.survivals();
-    assert_eq!(survivals[0].survival.overturns_from, Some(4.0));
-    assert_eq!(survivals[0].survival.uncertain, [[3.0, 3.0]]);
+    assert_eq!(survivals[0].1.overturns_from, Some(4.0));
+    assert_eq!(survivals[0].1.uncertain, [[3.0, 3.0]]);
 
     let told = told(&free_heading(), &doubtful);
     let Table { header, rows } = Table::parse(&told["fragility.csv"]);

@@ -8,10 +8,10 @@ use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
-use crate::output::table::{csv, fields};
+use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
-use crate::studies::statistics::{BAND, Share, fractile};
+use crate::studies::statistics::{BAND, Share, ascending, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
 
@@ -37,11 +37,7 @@ impl FirstStrength {
         edges: impl Iterator<Item = &'e FirstEdge> + Clone,
         part: f64,
     ) -> Option<Self> {
-        let sorted = |strength: fn(&FirstEdge) -> f64| {
-            let mut strengths: Vec<f64> = edges.clone().map(strength).collect();
-            strengths.sort_by(f64::total_cmp);
-            strengths
-        };
+        let sorted = |strength: fn(&FirstEdge) -> f64| ascending(edges.clone().map(strength));
         // A bound counts as 0, so that every fractile that depends on it is 0.
         let lowest = sorted(|edge| if edge.at_most { 0.0 } else { edge.strength() });
         Some(Self {
@@ -92,7 +88,7 @@ impl Question for FirstEdges {
     ) -> Result<Findings<'a, FirstEdge, impl Serialize>, OutputError> {
         // A sample that never overturns counts with the largest factor tried.
         let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
-        let names = ["first_factor", "the first factor that overturns"];
+        let answer = ["first_factor", "the first factor that overturns"];
         let [low, median, high] = BAND.map(|part| FirstStrength::of(samples.answers(), part));
         let band = low.zip(median).zip(high);
         let band = band.map(|((low, median), high)| [low, median, high]);
@@ -101,16 +97,18 @@ impl Question for FirstEdges {
             samples.answers().filter(|edge| condition(edge)).count()
         };
         let probabilities = probabilities(samples);
-        let shares = fields!(
-            |at: &ProbabilityAt| at => factor, probability, probability_low, probability_high
-        );
+        let names = ["probability", "probability_low", "probability_high"];
+        let shares = [
+            column("factor", |at: &ProbabilityAt| at.0),
+            list(names, |at: &ProbabilityAt| at.1.numbers()),
+        ];
         let columns = FirstEdge::columns("first_factor", |line: &Line<'a, FirstEdge>| {
             line.answer.as_ref().ok()
         });
         Ok(Findings {
             first: band.map(|band| first_words(samples, band, at_one)),
             lines: Vec::new(),
-            influences: vec![samples.influence(names, false, strength)],
+            influences: vec![samples.influence(answer, false, strength)],
             no_verdict: samples.no_verdict(),
             details: Details {
                 first_factor: band.map(|band| band.map(|one| one.strength)).into(),
@@ -155,32 +153,14 @@ struct Details {
     overturned_up_to_factor_1: Option<Share>,
 }
 
-/// The probability of overturning up to a factor.
-struct ProbabilityAt {
-    /// The factor at which a sample first overturns.
-    factor: f64,
-    /// The share of samples that overturn up to this factor.
-    probability: f64,
-    /// Lower end of its interval.
-    probability_low: f64,
-    /// Upper end of its interval.
-    probability_high: f64,
-}
+/// A factor at which a sample first overturns, and the share of samples that overturn up to it.
+type ProbabilityAt = (f64, Share);
 
 /// The distribution of the factors at which samples overturn, ascending.
 fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
-    let mut factors: Vec<f64> = samples.answers().filter_map(|edge| edge.factor).collect();
-    factors.sort_by(f64::total_cmp);
+    let factors = ascending(samples.answers().filter_map(|edge| edge.factor));
     let all = samples.answers().count();
-    let at = |(count, factor)| {
-        let share = Share::of(count, all)?;
-        Some(ProbabilityAt {
-            factor,
-            probability: share.share,
-            probability_low: share.low,
-            probability_high: share.high,
-        })
-    };
+    let at = |(count, factor)| Some((factor, Share::of(count, all)?));
     (1..).zip(factors).filter_map(at).collect()
 }
 
@@ -226,24 +206,21 @@ fn draw(
     probabilities: &[ProbabilityAt],
 ) -> String {
     let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
-    let factors = probabilities.iter().map(|at| at.factor).chain(own);
+    let factors = probabilities.iter().map(|at| at.0).chain(own);
     let ends = factors
         .chain([1.0])
         .flat_map(|factor| [0.97 * factor, 1.03 * factor]);
     let x = Scale::around(ends, figure.ticks(8));
     let y = Scale::exactly(0.0, 1.0, 5);
     // The share rises at each factor at which a sample overturns.
-    let steps = |name, of: fn(&ProbabilityAt) -> f64, first: f64| {
-        let rises = probabilities.iter().map(|at| (at.factor, of(at)));
+    let steps = |name, of: fn(&Share) -> f64, first: f64| {
+        let rises = probabilities.iter().map(|at| (at.0, of(&at.1)));
         Mark::staircase(name, SHARE, (x, first), rises)
     };
     let none = Share::of(0, samples.answers().count()).map_or(1.0, |none| none.high);
-    let ends = [
-        steps("", |at| at.probability_low, 0.0),
-        steps("", |at| at.probability_high, none),
-    ];
+    let ends = [steps("", |at| at.low, 0.0), steps("", |at| at.high, none)];
     let [low, high] = ends.each_ref().map(|curve| curve.points().iter().copied());
-    let mut marks = vec![steps("probability", |at| at.probability, 0.0)];
+    let mut marks = vec![steps("probability", |at| at.share, 0.0)];
     marks.extend(own.map(|own| Mark::upright("own", OWN, own, y)));
     let x_axis = ("factor on the ground motion", x);
     let chart = Chart {

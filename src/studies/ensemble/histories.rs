@@ -15,7 +15,7 @@ use crate::output::chart::Mark;
 use crate::output::panels::{MAIN, Panels, Subject, around};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv};
+use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
@@ -286,17 +286,12 @@ struct BandAt {
 }
 
 fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
-    let quantile = |name: &'static str, which: usize| {
-        column(name, move |at: &BandAt| {
-            Some(at.band_rad[which]).filter(|rad| rad.is_finite())
-        })
-    };
+    let quantiles = ["quantile_05_rad", "median_rad", "quantile_95_rad"];
+    let finite = |rad: f64| Some(rad).filter(|rad| rad.is_finite());
     let columns = [
         column("time_s", |at: &BandAt| at.time_s),
         column("own_rad", |at: &BandAt| at.own_rad),
-        quantile("quantile_05_rad", 0),
-        quantile("median_rad", 1),
-        quantile("quantile_95_rad", 2),
+        list(quantiles, |at: &BandAt| at.band_rad.map(finite)),
         column("overturned", |at: &BandAt| at.overturned),
     ];
     csv(columns, bands)

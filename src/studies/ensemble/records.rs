@@ -13,7 +13,7 @@ use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Suite, shown};
 use crate::studies::ending::Ending;
-use crate::studies::statistics::{bootstrap, fractile, interval};
+use crate::studies::statistics::{ascending, bootstrap, fractile, interval, shares_up_to};
 use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{rounded, rounded_range};
@@ -199,8 +199,8 @@ fn rounded_or_unknown(number: Option<f64>) -> String {
 /// Median and dispersion of the intensities that overturn, from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of
 /// the ratio of the outer two, which for a lognormal distribution is the standard deviation of the logarithm. Infinite intensities mean
 /// that nothing overturned.
-fn distribution(mut intensities: Vec<f64>) -> [Option<f64>; 2] {
-    intensities.sort_by(f64::total_cmp);
+fn distribution(intensities: Vec<f64>) -> [Option<f64>; 2] {
+    let intensities = ascending(intensities);
     let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
     let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
     [
@@ -281,11 +281,7 @@ impl<'a> Counted<'a> {
             let edges = records.iter().filter_map(|record| of.get(*record).copied());
             edges.flatten().map(FirstEdge::strength).collect()
         };
-        let median = |of: &Vec<&[FirstEdge]>| {
-            let mut intensities = chosen(of);
-            intensities.sort_by(f64::total_cmp);
-            fractile(&intensities, 0.5)
-        };
+        let median = |of: &Vec<&[FirstEdge]>| fractile(&ascending(chosen(of)), 0.5);
         [
             distribution(chosen(&self.own)),
             distribution(self.samples.iter().filter_map(median).collect()),
@@ -364,13 +360,7 @@ impl Capacities {
         let ends = ends.map(|level| level.copied().unwrap_or(1.0));
         let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
         let steps = |name, stroke, edges: Vec<&FirstEdge>| {
-            let mut strengths: Vec<f64> = edges.into_iter().map(FirstEdge::strength).collect();
-            strengths.sort_by(f64::total_cmp);
-            let all = strengths.len().max(1) as f64;
-            let rises = strengths
-                .into_iter()
-                .zip((1..).map(|count| f64::from(count) / all));
-            let rises = rises.filter(|(strength, _)| strength.is_finite());
+            let rises = shares_up_to(edges.into_iter().map(FirstEdge::strength));
             Mark::staircase(name, stroke, (x, 0.0), rises)
         };
         let single = samples.answers().take(MOST_FAINT);

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::influence::{self, Influence, percent};
 use super::{NoAnswer, Samples};
-use crate::output::table::{Cell, Column, column, csv, several};
+use crate::output::table::{Cell, Column, column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Uncertain;
 use crate::studies::remarks::warnings;
@@ -61,9 +61,7 @@ fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A
     let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
     vec![
         column("sample", |line: &Line<'_, A>| line.number),
-        several(names, |line: &Line<'_, A>, cells: &mut Vec<Cell<'_>>| {
-            cells.extend(line.values.iter().map(|value| Cell::from(*value)));
-        }),
+        list(names, |line: &Line<'_, A>| line.values.clone()),
     ]
 }
 
@@ -215,7 +213,7 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
 
 /// A share with its interval.
 pub(super) fn share_in_words(share: &Share) -> String {
-    let [part, low, high] = [share.share, share.low, share.high].map(percent);
+    let [part, low, high] = share.numbers().map(percent);
     let Share { count, of, .. } = share;
     format!("{part} (95 %: {low} to {high}), {count} of {of} samples")
 }

@@ -107,7 +107,7 @@ pub struct OverturningMap<'a> {
     pub(super) repeat: bool,
     /// The structures and pulses that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
-    pulses: Shared<ScalablePulse>,
+    pulses: Shared<PulseShape>,
     /// The scenario, or a sample of it, and its variants with other values for keys of other tables.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
@@ -192,23 +192,6 @@ impl<T: Clone> Shared<T> {
             Some(index) => self.values[index].get_or_init(make).clone(),
             None => make(),
         }
-    }
-}
-
-/// A pulse of variable horizontal amplitude.
-#[derive(Clone, Debug)]
-struct ScalablePulse {
-    shape: PulseShape,
-    vertical_g: f64,
-    gravity_m_s2: f64,
-}
-
-impl ScalablePulse {
-    /// The ground motion for an amplitude, positive to the right.
-    fn motion(&self, amplitude_g: f64) -> GroundMotion {
-        let amplitude_g = Vector2::new(amplitude_g, self.vertical_g);
-        let motion = self.shape.inclined_m_s2(amplitude_g * self.gravity_m_s2);
-        motion.expect("the amplitudes of a scenario are those of a ground motion")
     }
 }
 
@@ -389,49 +372,40 @@ impl<'a> OverturningMap<'a> {
         motion
     }
 
-    /// The pulse of a cell, of any amplitude; `None` for a record, or if the cell has no valid scenario.
-    fn pulse(&self, index: usize) -> Option<ScalablePulse> {
-        let scenario = self.variant(index).ok()?;
-        let Some(Ground::Pulse(pulse)) = scenario.ground() else {
-            return None;
-        };
-        Some(self.pulses.get(self.place(index), || {
-            let duration_s = match self.value(index, Quantity::Frequency) {
-                Some(frequency_hz) => 1.0 / frequency_hz,
-                None => {
-                    let value = self.value(index, Quantity::Duration);
-                    value.unwrap_or(pulse.duration_s)
-                }
-            };
-            let pulse = PulseGround {
-                duration_s,
-                ..pulse.clone()
-            };
-            ScalablePulse {
-                shape: pulse.shape(),
-                vertical_g: pulse.vertical_amplitude_g,
-                gravity_m_s2: scenario.gravity_m_s2(),
-            }
-        }))
-    }
-
     /// The ground motion of a cell, or why it has none.
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
-        if let (Some(Ground::Pulse(pulse)), Some(scalable)) = (scenario.ground(), self.pulse(index))
-        {
-            let amplitude_g = self.value(index, Quantity::Amplitude);
-            let motion = scalable.motion(amplitude_g.unwrap_or(pulse.amplitude_g));
-            return Ok(scenario.under_both_feet(motion));
-        }
-        let factor = self.value(index, Quantity::Scale).map(Scaling::Factor);
-        let scaling = factor.or(self.value(index, Quantity::PeakG).map(Scaling::PeakG));
-        match (scenario.ground(), scaling) {
-            (Some(Ground::Record(record)), Some(scaling)) => {
-                let motion = record.rescaled(scaling, scenario.gravity_m_s2())?;
-                Ok(scenario.under_both_feet(motion))
+        let gravity_m_s2 = scenario.gravity_m_s2();
+        let value = |quantity| self.value(index, quantity);
+        let motion = match scenario.ground() {
+            Some(Ground::Pulse(pulse)) => {
+                let shape = self.pulses.get(self.place(index), || {
+                    let of_frequency = value(Quantity::Frequency).map(f64::recip);
+                    let duration_s = of_frequency.or(value(Quantity::Duration));
+                    let duration_s = duration_s.unwrap_or(pulse.duration_s);
+                    let pulse = pulse.clone();
+                    PulseGround {
+                        duration_s,
+                        ..pulse
+                    }
+                    .shape()
+                });
+                let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
+                let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
+                let motion = shape.inclined_m_s2(amplitude_g * gravity_m_s2);
+                Some(motion.expect("the amplitudes of a scenario are those of a ground motion"))
             }
-            _ => Ok(scenario.ground_motion().clone()),
-        }
+            Some(Ground::Record(record)) => {
+                let factor = value(Quantity::Scale).map(Scaling::Factor);
+                let scaling = factor.or(value(Quantity::PeakG).map(Scaling::PeakG));
+                let rescaled = scaling.map(|scaling| record.rescaled(scaling, gravity_m_s2));
+                rescaled.transpose()?
+            }
+            None => None,
+        };
+        Ok(match motion {
+            Some(motion) => scenario.under_both_feet(motion),
+            None => scenario.ground_motion().clone(),
+        })
     }
 
     /// The model of a cell, with its ground motion and request.
@@ -448,42 +422,26 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// The endings of cells with the same structure, and the number of outcomes of each with its repetitions, if requested.
-    fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Ended> {
-        if self.repeat {
-            let ended = all_outcomes(model, cases).into_iter();
-            return ended
-                .map(|ended| ended.map(|(ending, all)| (ending, Some(all))))
-                .collect();
-        }
-        let ended = Ending::until_safe(model, cases).into_iter();
-        ended
-            .map(|ended| ended.map(|ending| (ending, None)))
-            .collect()
-    }
-
-    fn cell(&self, index: usize, ended: Result<(Ending, Option<Outcomes>), CellResult>) -> CellRow {
-        let [x, y] = self.coordinates(index);
-        let (result, outcomes) = match ended {
-            Ok((ending, outcomes)) => (CellResult::Ended(ending), outcomes),
-            Err(other) => (other, None),
+    fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, CellResult>> {
+        let ended = match self.repeat {
+            true => all_outcomes(model, cases),
+            false => {
+                let ended = Ending::until_safe(model, cases).into_iter();
+                ended.map(|ending| Ok((ending?, None))).collect()
+            }
         };
-        CellRow {
-            x,
-            y,
-            result,
-            outcomes,
-        }
+        let ended = ended.into_iter();
+        ended
+            .map(|ended| ended.map_err(CellResult::Failed))
+            .collect()
     }
 }
 
-/// The ending of the history of a cell, and its number of outcomes if requested; or why it has no history.
-type Ended = Result<(Ending, Option<Outcomes>), String>;
-
-/// The number of outcomes of a cell with its repetitions, or why that is unknown.
-type Outcomes = Result<usize, String>;
+/// The ending of the history of a cell; and, if requested, its number of outcomes with its repetitions, or why that is unknown.
+type Ended = (Ending, Option<Result<usize, String>>);
 
 /// The endings of histories, and the number of outcomes of each with all its repetitions, every one followed to its end.
-fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcomes), String>> {
+fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, String>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
     let repeated: Vec<(_, Vec<_>)> = repeated.collect();
@@ -501,7 +459,7 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<(Ending, Outcom
         names.sort_unstable();
         names.dedup();
         let outcomes = failed.map_or(Ok(names.len()), Err);
-        Ok((Ending::from_summary(&own, None, doubt)?, outcomes))
+        Ok((Ending::from_summary(&own, None, doubt)?, Some(outcomes)))
     };
     let own = model.simulate_all(cases).into_iter();
     own.enumerate().map(outcomes).collect()
@@ -538,17 +496,22 @@ impl Study for OverturningMap<'_> {
             Ok(case)
         });
         let ended = answered(cases, |cases| {
-            let ended = standing
-                .get()
-                .map(|standing| self.endings(standing.model(), cases));
-            let ended = ended.unwrap_or_default().into_iter();
-            ended
-                .map(|ended| ended.map_err(CellResult::Failed))
-                .collect()
+            let standing = standing.get();
+            standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
         });
-        let cells = indices.iter().zip(ended);
-        cells
-            .map(|(index, ended)| self.cell(*index, ended))
-            .collect()
+        let row = |(index, ended): (&usize, Result<Ended, CellResult>)| {
+            let [x, y] = self.coordinates(*index);
+            let (result, outcomes) = match ended {
+                Ok((ending, outcomes)) => (CellResult::Ended(ending), outcomes),
+                Err(other) => (other, None),
+            };
+            CellRow {
+                x,
+                y,
+                result,
+                outcomes,
+            }
+        };
+        indices.iter().zip(ended).map(row).collect()
     }
 }

@@ -91,74 +91,45 @@ pub struct Fragility {
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoFit {
     /// An intensity has no finite logarithm.
-    #[error("intensity {intensity}: must be positive and finite")]
-    Intensity {
-        /// The intensity.
-        intensity: f64,
-    },
+    #[error("intensity {0}: must be positive and finite")]
+    Intensity(f64),
     /// There are no cases.
     #[error("no cases to fit a fragility curve to: run records at several intensities")]
     NoObservations,
-    /// Every case survives.
+    /// Every case survives: their number, and the highest intensity.
     #[error(
-        "none of {cases} cases overturns up to the intensity {}: add higher intensities", plain(*.highest)
+        "none of {0} cases overturns up to the intensity {highest}: add higher intensities",
+        highest = plain(*.1)
     )]
-    NoneOverturned {
-        /// Number of cases.
-        cases: usize,
-        /// Highest intensity.
-        highest: f64,
-    },
-    /// No case survives.
-    #[error("all {cases} cases overturn down to the intensity {}: add lower intensities", plain(*.lowest))]
-    AllOverturned {
-        /// Number of cases.
-        cases: usize,
-        /// Lowest intensity.
-        lowest: f64,
-    },
-    /// One intensity does not show how the fraction grows.
+    NoneOverturned(usize, f64),
+    /// No case survives: their number, and the lowest intensity.
     #[error(
-        "{overturned} of {cases} cases overturn, but all at the intensity {}: add lower and higher \
-         ones",
-        plain(*.intensity)
+        "all {0} cases overturn down to the intensity {lowest}: add lower intensities",
+        lowest = plain(*.1)
     )]
-    OneIntensity {
-        /// The intensity.
-        intensity: f64,
-        /// Number of cases.
-        cases: usize,
-        /// Number of those that overturned.
-        overturned: usize,
-    },
+    AllOverturned(usize, f64),
+    /// One intensity, the first number, does not show how the fraction grows: the number of cases, and of those that overturned.
+    #[error(
+        "{2} of {1} cases overturn, but all at the intensity {intensity}: add lower and higher ones",
+        intensity = plain(*.0)
+    )]
+    OneIntensity(f64, usize, usize),
     /// The fraction that overturns jumps from none to all, between two levels or at one level: whatever the
-    /// dispersion, a smaller one is likelier.
+    /// dispersion, a smaller one is likelier. The highest intensity of a case that survived, and the lowest of a case that overturned.
     #[error(
-        "no case overturns below an intensity of {} and none survives above {}: the median is about there, and the \
+        "no case overturns below an intensity of {overturned} and none survives above {survived}: the median is about there, and the \
          dispersion is too small for these levels; add closer ones there",
-        plain(*.overturned_from),
-        plain(*.survived_up_to)
+        overturned = plain(*.1), survived = plain(*.0)
     )]
-    Separated {
-        /// Highest intensity of a case that survived.
-        survived_up_to: f64,
-        /// Lowest intensity of a case that overturned; at least the other intensity.
-        overturned_from: f64,
-    },
-    /// The likeliest curve is horizontal or falls.
+    Separated(f64, f64),
+    /// The likeliest curve is horizontal or falls. The geometric mean intensities of the cases that survived, and of those that overturned.
     #[error(
         "the fraction that overturns does not increase with the intensity: the geometric mean intensity of \
-         cases that overturn is {}, of those that survive {}; add intensities at which few and at which most cases \
+         cases that overturn is {overturned}, of those that survive {survived}; add intensities at which few and at which most cases \
          overturn, or more records",
-        plain(*.overturned),
-        plain(*.survived)
+        overturned = plain(*.1), survived = plain(*.0)
     )]
-    NotIncreasing {
-        /// Geometric mean intensity of the cases that survived.
-        survived: f64,
-        /// Geometric mean intensity of the cases that overturned.
-        overturned: f64,
-    },
+    NotIncreasing(f64, f64),
     /// The fraction grows so little, or within so narrow a range, that the parameters or their errors
     /// exceed the range of numbers.
     #[error(
@@ -244,35 +215,22 @@ pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
 
 /// Fails unless there are cases of both kinds, at two or more intensities, all valid.
 fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
-    let valid = |intensity: f64| intensity > 0.0 && intensity.is_finite();
-    if let Some(level) = levels.iter().find(|level| !valid(level.intensity)) {
-        return Err(NoFit::Intensity {
-            intensity: level.intensity,
-        });
+    let mut intensities = levels.iter().map(|level| level.intensity);
+    if let Some(wrong) = intensities.find(|at| !(*at > 0.0 && at.is_finite())) {
+        return Err(NoFit::Intensity(wrong));
     }
     let (Some(lowest), Some(highest)) = (levels.first(), levels.last()) else {
         return Err(NoFit::NoObservations);
     };
+    let (lowest, highest) = (lowest.intensity, highest.intensity);
     let cases = levels.iter().map(|level| level.cases).sum();
-    let overturned = levels.iter().map(|level| level.overturned).sum();
-    if overturned == 0 {
-        Err(NoFit::NoneOverturned {
-            cases,
-            highest: highest.intensity,
-        })
-    } else if overturned == cases {
-        Err(NoFit::AllOverturned {
-            cases,
-            lowest: lowest.intensity,
-        })
-    } else if highest.intensity.ln() == lowest.intensity.ln() {
-        Err(NoFit::OneIntensity {
-            intensity: lowest.intensity,
-            cases,
-            overturned,
-        })
-    } else {
-        Ok(())
+    match levels.iter().map(|level| level.overturned).sum() {
+        0 => Err(NoFit::NoneOverturned(cases, highest)),
+        overturned if overturned == cases => Err(NoFit::AllOverturned(cases, lowest)),
+        overturned if highest.ln() == lowest.ln() => {
+            Err(NoFit::OneIntensity(lowest, cases, overturned))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -324,10 +282,7 @@ fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
         return Ok(());
     };
     if survival.log <= fall.log {
-        return Err(NoFit::Separated {
-            survived_up_to: survival.intensity,
-            overturned_from: fall.intensity,
-        });
+        return Err(NoFit::Separated(survival.intensity, fall.intensity));
     }
     let mean_log = |count: fn(&LogLevel) -> f64| {
         let sum: f64 = levels.iter().map(|level| count(level) * level.log).sum();
@@ -337,10 +292,7 @@ fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
     let overturned = mean_log(|level| level.overturned);
     let range = levels[levels.len() - 1].log - levels[0].log;
     if overturned - survived <= ROUNDING * range {
-        return Err(NoFit::NotIncreasing {
-            survived: survived.exp(),
-            overturned: overturned.exp(),
-        });
+        return Err(NoFit::NotIncreasing(survived.exp(), overturned.exp()));
     }
     Ok(())
 }

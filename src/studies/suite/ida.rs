@@ -8,7 +8,7 @@ use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
-use crate::studies::statistics;
+use crate::studies::statistics::{self, ascending, shares_up_to};
 
 /// Number of records whose curves have strokes and names of their own.
 const NAMED: usize = CURVES.len();
@@ -163,12 +163,7 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
     let levels = by_intensity(results.evidence(), |case| case.level(results.measure)).into_iter();
     levels
         .map(|(intensity, cases)| {
-            let beyond = |case: &&CaseRow| match case.overturned_itself() {
-                true => Some(f64::INFINITY),
-                false => peak(case),
-            };
-            let mut peaks: Vec<f64> = cases.iter().filter_map(beyond).collect();
-            peaks.sort_by(f64::total_cmp);
+            let peaks = ascending(cases.into_iter().filter_map(beyond));
             let fractile =
                 |part| statistics::fractile(&peaks, part).filter(|peak| peak.is_finite());
             Fractiles {
@@ -200,47 +195,38 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
         .collect()
 }
 
-/// The share of cases whose peak is at most this.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PeakUpTo {
-    /// The peak, as in [`Fractiles`].
-    pub peak: f64,
-    /// The share of all cases with a history.
-    pub share: f64,
+/// The distribution of the peaks of all cases that count: ascending peaks, as in [`Fractiles`], with the share of all cases with a
+/// history up to each. Overturned cases are beyond all others, so the share ends below 1.
+#[must_use]
+pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
+    shares_up_to(results.evidence().into_iter().filter_map(beyond))
 }
 
-/// The distribution of the peaks of all cases that count, ascending. Overturned cases are beyond all others, so the share ends below 1.
-#[must_use]
-pub fn peaks(results: &SuiteFragility) -> Vec<PeakUpTo> {
-    let mut cases = results.evidence();
-    cases.retain(|case| case.known_verdict().is_some());
-    let survived = cases.iter().filter(|case| !case.overturned_itself());
-    let mut peaks: Vec<f64> = survived.filter_map(|case| peak(case)).collect();
-    peaks.sort_by(f64::total_cmp);
-    let share = |(index, peak): (usize, f64)| PeakUpTo {
-        peak,
-        share: (index + 1) as f64 / cases.len() as f64,
-    };
-    peaks.into_iter().enumerate().map(share).collect()
+/// The peak of a case with a complete history, infinite if it overturned.
+fn beyond(case: &CaseRow) -> Option<f64> {
+    case.known_verdict()?;
+    match case.overturned_itself() {
+        true => Some(f64::INFINITY),
+        false => peak(case),
+    }
 }
 
 /// Draws the distribution of the peaks.
 #[must_use]
 pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let peaks = peaks(results);
-    let largest = peaks.last().map_or(1.0, |at| at.peak).max(1e-3);
+    let largest = peaks.last().map_or(1.0, |(peak, _)| *peak).max(1e-3);
     let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
     let label = if over_critical(results) {
         "peak / critical rotation"
     } else {
         "peak rotation (rad)"
     };
-    let rises = peaks.iter().map(|at| (at.peak, at.share));
     let y_axis = ("share with at most this peak", Scale::exactly(0.0, 1.0, 5));
     let words = "share of all records and levels; overturned cases are beyond";
     let chart = Chart {
         keys: vec![Key::line(words, PEAKS)],
-        marks: vec![Mark::staircase("peaks", PEAKS, (x, 0.0), rises)],
+        marks: vec![Mark::staircase("peaks", PEAKS, (x, 0.0), peaks)],
         ..Chart::new(405.0, (label, x), y_axis)
     };
     chart.draw(figure, heading.title())

@@ -307,10 +307,10 @@ pub struct FragilityRow {
     pub intensity: f64,
     /// The number of cases with each outcome.
     pub counts: Counts,
-    /// The curve at this intensity, if there is one.
-    pub curve: Option<CurvePoint>,
+    /// The probability by the curve at this intensity, and the ends of its 95 % band, if there is a curve.
+    pub curve: Option<[f64; 3]>,
     /// The curve with uncertain cases counted as overturned.
-    pub curve_with_uncertain: Option<CurvePoint>,
+    pub curve_with_uncertain: Option<[f64; 3]>,
 }
 
 /// The number of cases with each outcome.
@@ -351,29 +351,6 @@ impl Counts {
     }
 }
 
-/// The values of a fragility curve at an intensity.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurvePoint {
-    /// The probability of overturning.
-    pub probability: f64,
-    /// Lower end of its 95 % confidence band.
-    pub low: f64,
-    /// Upper end of that band.
-    pub high: f64,
-}
-
-impl CurvePoint {
-    fn of(fit: &Result<Fragility, NoFit>, intensity: f64) -> Option<Self> {
-        let fit = fit.as_ref().ok()?;
-        let (low, high) = fit.band(intensity);
-        Some(Self {
-            probability: fit.probability(intensity),
-            low,
-            high,
-        })
-    }
-}
-
 impl FragilityRow {
     /// The fraction of the cases that certainly overturned.
     #[must_use]
@@ -391,15 +368,6 @@ impl FragilityRow {
         let cases = self.counts.cases;
         (cases > 0).then(|| count as f64 / cases as f64)
     }
-}
-
-/// The response to a record as it gets stronger.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RecordSurvival<'a> {
-    /// The first case of the record.
-    case: &'a CaseRow,
-    /// The strengths that the structure survives.
-    pub survival: Survival,
 }
 
 /// The results of all cases together. Cases that are still rocking have not overturned; failed cases do not
@@ -429,10 +397,7 @@ impl SuiteFragility {
     #[must_use]
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
         let mirrored_count = !mirrored_are_images(&cases);
-        let evidence: Vec<&CaseRow> = cases
-            .iter()
-            .filter(|case| mirrored_count || !case.mirrored)
-            .collect();
+        let evidence = counting(&cases, mirrored_count);
         let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
         let fit_from = |least: Verdict| {
             let known = evidence.iter().filter_map(|case| {
@@ -446,12 +411,17 @@ impl SuiteFragility {
         };
         let fit = fit_from(Verdict::Overturns);
         let fit_with_uncertain = fit_from(Verdict::Uncertain);
+        let curve = |fit: &Result<Fragility, NoFit>, intensity: f64| {
+            let fit = fit.as_ref().ok()?;
+            let (low, high) = fit.band(intensity);
+            Some([fit.probability(intensity), low, high])
+        };
         let levels = by_intensity(evidence, |case| case.level(measure));
         let levels = levels.into_iter().map(|(intensity, cases)| FragilityRow {
             intensity,
             counts: Counts::of(&cases),
-            curve: CurvePoint::of(&fit, intensity),
-            curve_with_uncertain: CurvePoint::of(&fit_with_uncertain, intensity),
+            curve: curve(&fit, intensity),
+            curve_with_uncertain: curve(&fit_with_uncertain, intensity),
         });
         Self {
             measure,
@@ -469,11 +439,11 @@ impl SuiteFragility {
         self.levels.iter().any(|level| level.counts.uncertain > 0)
     }
 
-    /// The intensities from which each record overturns, and at which it is survived again; mirrored records only if their results
+    /// The first case of each record, and the intensities that the structure survives under it; mirrored records only if their results
     /// differ. The first intensity that overturns is found by bisection, the others are levels of the suite.
     #[must_use]
-    pub fn survivals(&self) -> Vec<RecordSurvival<'_>> {
-        let mut survivals: Vec<RecordSurvival<'_>> = Vec::new();
+    pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
+        let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
         for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
             let levels = cases
                 .iter()
@@ -486,11 +456,10 @@ impl SuiteFragility {
                 survival.at_most = cases[first].edge_at_most || !is_known_below;
             }
             let case = &cases[0];
-            let same = |other: &RecordSurvival<'_>| {
-                other.case.record == case.record && other.survival == survival
-            };
-            if !(case.mirrored && survivals.last().is_some_and(same)) {
-                survivals.push(RecordSurvival { case, survival });
+            let last = survivals.last();
+            let last = last.filter(|(other, _)| case.mirrored && other.record == case.record);
+            if last.is_none_or(|(_, other)| *other != survival) {
+                survivals.push((case, survival));
             }
         }
         survivals
@@ -498,10 +467,7 @@ impl SuiteFragility {
 
     /// The cases that count.
     fn evidence(&self) -> Vec<&CaseRow> {
-        let cases = self.cases.iter();
-        cases
-            .filter(|case| self.mirrored_count || !case.mirrored)
-            .collect()
+        counting(&self.cases, self.mirrored_count)
     }
 
     /// The cases of each record that count, weakest first.
@@ -529,6 +495,14 @@ impl SuiteFragility {
         let alike = alike.into_iter().filter(|(_, alike)| *alike);
         alike.map(|(record, _)| record).collect()
     }
+}
+
+/// The cases that count: all, or those whose record is not mirrored.
+fn counting(cases: &[CaseRow], mirrored_count: bool) -> Vec<&CaseRow> {
+    let cases = cases.iter();
+    cases
+        .filter(|case| mirrored_count || !case.mirrored)
+        .collect()
 }
 
 /// Whether every mirrored case has the result of the original, to the other side.

@@ -4,10 +4,10 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::fragility::{Errors, Fragility, NoFit};
-use super::ida::{Fractiles, PeakUpTo};
+use super::ida::Fractiles;
 use super::strength::{Capacity, Efficiency, MEASURES, efficiencies};
-use super::{CaseRow, Counts, CurvePoint, FragilityRow, Heading, SuiteFragility, ida, picture};
-use crate::output::table::{Cell, Column, column, csv, fields, several};
+use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
+use crate::output::table::{Column, column, csv, each, fields, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Measure, shown};
 use crate::studies::ending::Verdict;
@@ -144,13 +144,16 @@ impl Heading {
                 Err(reason) => format!("no curve: {reason}{taken}"),
             });
         let caption = captions.collect::<Vec<_>>().join("; ");
+        let mut fractiles = vec![column(self.measure.column(), |at: &Fractiles| at.intensity)];
+        fractiles
+            .extend(fields!(|at: &Fractiles| at => cases, overturned, peak_16, peak_50, peak_84));
         let others = [
             picture::draw(figure, self, &results, &caption).into_bytes(),
             ida::draw(figure, self, &results).into_bytes(),
             ida::draw_peaks(figure, self, &results).into_bytes(),
-            csv(self.ida_columns(), &ida::fractiles(&results))?,
+            csv(fractiles, &ida::fractiles(&results))?,
             csv(
-                fields!(|at: &PeakUpTo| at => peak, share),
+                [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])],
                 &ida::peaks(&results),
             )?,
             csv(capacity_columns(), &capacities)?,
@@ -200,9 +203,9 @@ impl Heading {
                 }),
         );
         lines.extend(self.measures_in_words(capacities, measures));
-        for record in results.survivals() {
-            let words = survival::in_words(&record.survival, unit(self.measure));
-            lines.push(format!("{}: {words}", record.case.record_in_words()));
+        for (case, survival) in results.survivals() {
+            let words = survival::in_words(&survival, unit(self.measure));
+            lines.push(format!("{}: {words}", case.record_in_words()));
         }
         lines.push(searched(results));
         lines.extend(rough_guide_of(&self.warnings).map(str::to_owned));
@@ -257,10 +260,7 @@ impl Heading {
     fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
         let mut all = vec![
             column("record", |case: &CaseRow| shown(&case.record)),
-            column(
-                "sign",
-                |case: &CaseRow| if case.mirrored { "-1" } else { "1" },
-            ),
+            column("sign", |case: &CaseRow| sign(case.mirrored)),
             column("scale", |case: &CaseRow| number(case.scale)),
             column("peak_g", |case: &CaseRow| number(case.peak_g)),
         ];
@@ -272,15 +272,9 @@ impl Heading {
 
     /// The columns for one row per level. Missing values are empty.
     fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
-        type Curve = fn(&FragilityRow) -> Option<CurvePoint>;
-        let probability = |[probability, low, high]: [&'static str; 3], curve: Curve| {
-            [
-                column(probability, move |level| {
-                    curve(level).map(|point| point.probability)
-                }),
-                column(low, move |level| curve(level).map(|point| point.low)),
-                column(high, move |level| curve(level).map(|point| point.high)),
-            ]
+        let curve = |name: &str, curve: fn(&FragilityRow) -> Option<[f64; 3]>| {
+            let names = ["", "_low", "_high"].map(|end| format!("{name}{end}"));
+            list(names, move |level: &FragilityRow| each(curve(level)))
         };
         let mut all = vec![column(self.measure.column(), |level: &FragilityRow| {
             level.intensity
@@ -289,8 +283,7 @@ impl Heading {
             |level: &FragilityRow| level.counts => cases, overturned, still_rocking, incomplete, failed
         ));
         all.push(column("fraction", FragilityRow::fraction));
-        let names = ["probability", "probability_low", "probability_high"];
-        all.extend(probability(names, |level| level.curve));
+        all.push(curve("probability", |level| level.curve));
         if self.has_joints() {
             // The number of uncertain cases, and the columns that count them as overturned.
             all.extend([
@@ -299,63 +292,41 @@ impl Heading {
                     "fraction_with_uncertain",
                     FragilityRow::fraction_with_uncertain,
                 ),
+                curve("probability_with_uncertain", |level| {
+                    level.curve_with_uncertain
+                }),
             ]);
-            let names = [
-                "probability_with_uncertain",
-                "probability_with_uncertain_low",
-                "probability_with_uncertain_high",
-            ];
-            all.extend(probability(names, |level| level.curve_with_uncertain));
         }
-        all
-    }
-
-    /// The columns for one row per level of the incremental dynamic analysis.
-    fn ida_columns(&self) -> Vec<Column<'static, Fractiles>> {
-        let mut all = vec![column(self.measure.column(), |level: &Fractiles| {
-            level.intensity
-        })];
-        all.extend(
-            fields!(|level: &Fractiles| level => cases, overturned, peak_16, peak_50, peak_84),
-        );
         all
     }
 }
 
+/// The sign of a record.
+const fn sign(mirrored: bool) -> &'static str {
+    if mirrored { "-1" } else { "1" }
+}
+
 /// The columns for one row per record. Missing values are empty.
-fn capacity_columns<'r>() -> Vec<Column<'r, Capacity<'r>>> {
-    let measures = MEASURES.map(|(name, _, _)| name.to_owned()).to_vec();
-    vec![
-        column("record", |capacity: &Capacity<'_>| shown(capacity.record)),
-        column(
-            "sign",
-            |capacity: &Capacity<'_>| if capacity.mirrored { "-1" } else { "1" },
-        ),
-        column("scale", |capacity: &Capacity<'_>| capacity.scale),
-        several(
-            measures,
-            |capacity: &Capacity<'_>, cells: &mut Vec<Cell<'_>>| {
-                cells.extend(capacity.in_measures.map(Cell::from));
-            },
-        ),
-        column("at_most", |capacity: &Capacity<'_>| yes(capacity.at_most)),
+fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 5] {
+    let measures = MEASURES.map(|(name, _, _)| name);
+    [
+        column("record", |one: &Capacity<'_>| shown(one.record)),
+        column("sign", |one: &Capacity<'_>| sign(one.mirrored)),
+        column("scale", |one: &Capacity<'_>| one.scale),
+        list(measures, |one: &Capacity<'_>| one.in_measures),
+        column("at_most", |one: &Capacity<'_>| yes(one.at_most)),
     ]
 }
 
 /// A row per measure of intensity, the most efficient first.
 fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
-    let end = |name: &'static str, end: usize| {
-        column(name, move |of: &Efficiency| {
-            Some(of.dispersion_of_factor_interval?[end])
-        })
-    };
     let mut all = Vec::from(fields!(
         |of: &Efficiency| of => measure, capacities, median, dispersion, dispersion_of_factor
     ));
-    all.extend([
-        end("dispersion_of_factor_low", 0),
-        end("dispersion_of_factor_high", 1),
-    ]);
+    let ends = ["dispersion_of_factor_low", "dispersion_of_factor_high"];
+    all.push(list(ends, |of: &Efficiency| {
+        each(of.dispersion_of_factor_interval)
+    }));
     all.extend(fields!(|of: &Efficiency| of => best_share));
     all
 }

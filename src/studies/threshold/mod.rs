@@ -48,8 +48,6 @@ pub struct FactorSample {
     pub factor: f64,
     /// How it ended, or why there is no history.
     pub result: Result<Ending, NoHistory>,
-    /// Largest magnitude of the rotation of any body; `None` if there is no history.
-    pub peak_rotation_rad: Option<f64>,
 }
 
 /// Why there is no history at a factor.
@@ -85,7 +83,6 @@ impl FactorSample {
     }
 
     fn of(factor: f64, summary: Result<(Summary, Option<String>), SimulationError>) -> Self {
-        let peak_rotation_rad = summary.as_ref().ok().map(|(s, _)| s.largest_rotation_rad());
         let result = match summary {
             Ok((summary, doubt)) => {
                 Ending::from_summary(&summary, None, doubt).map_err(NoHistory::Failed)
@@ -95,11 +92,7 @@ impl FactorSample {
             }
             Err(error) => Err(NoHistory::Failed(error.to_string())),
         };
-        Self {
-            factor,
-            result,
-            peak_rotation_rad,
-        }
+        Self { factor, result }
     }
 
     /// The outcome, or its replacement if there is no history.
@@ -239,14 +232,17 @@ pub fn thresholds(
         shaking.samples(model_of(indices[0]), &of_them.collect::<Vec<_>>())
     };
     let samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
-    let samples: Vec<&[FactorSample]> = samples.chunks(factors.len()).collect();
-
-    let mut changes: Vec<Change<'_>> = Vec::new();
-    for (index, samples) in samples.iter().enumerate() {
-        let pairs = samples.windows(2);
-        let pairs = pairs.filter(|pair| changes_verdict(&pair[0], &pair[1]));
-        changes.extend(pairs.map(|pair| (index, &pair[0], &pair[1])));
-    }
+    let changes = samples.chunks(factors.len()).enumerate();
+    let changes = changes.flat_map(|(model, samples)| {
+        let pairs = samples
+            .windows(2)
+            .map(move |pair| (model, &pair[0], &pair[1]));
+        pairs.filter(|(_, below, above)| {
+            let both = below.verdict().zip(above.verdict());
+            both.is_some_and(|(below, above)| below != above)
+        })
+    });
+    let changes: Vec<Change<'_>> = changes.collect();
     let search = |index: usize| shaking.search(changes[index]);
     let found = runner.each(changes.len(), search, |progress| {
         watch(Progress {
@@ -254,26 +250,23 @@ pub fn thresholds(
             all: sampled + progress.all,
         })
     })?;
-
-    let mut results: Vec<Found> = samples
-        .into_iter()
-        .map(|samples| Found {
-            samples: samples.to_vec(),
-            edges: Vec::new(),
-        })
-        .collect();
-    for ((index, ..), found) in changes.iter().zip(found) {
-        results[*index].samples.extend(found.samples);
-        results[*index].edges.extend(found.edges);
-    }
-    let results = models.iter().zip(results);
-    Ok(results
-        .map(|((name, _), mut found)| {
-            let samples = &mut found.samples;
-            samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-            Threshold::new((*name).to_owned(), found)
-        })
-        .collect())
+    let threshold = |(model, samples): (usize, &[FactorSample])| {
+        let (mut samples, mut edges) = (samples.to_vec(), Vec::new());
+        let own = changes
+            .iter()
+            .zip(&found)
+            .filter(|((of, ..), _)| *of == model);
+        for found in own.flat_map(|(_, found)| found) {
+            match found {
+                Ok(edge) => edges.push(*edge),
+                Err(sample) => samples.push(sample.clone()),
+            }
+        }
+        samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        Threshold::new(models[model].0.to_owned(), samples, &edges)
+    };
+    let of_models = samples.chunks(factors.len()).enumerate();
+    Ok(of_models.map(threshold).collect())
 }
 
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
@@ -349,9 +342,9 @@ impl Shaking<'_> {
         FactorSample::all_of(self.models[model].1, self.ground, self.request, factors)
     }
 
-    /// The edge between neighbours with different verdicts. If the search meets a history with the third verdict, the two edges
-    /// on either side of it; if a history fails, that history.
-    fn search(&self, (model, below, above): Change<'_>) -> Found {
+    /// The edge between neighbours with different verdicts. If the search meets a history with the third verdict, that history and
+    /// the two edges on either side of it; if a history fails, that history.
+    fn search(&self, (model, below, above): Change<'_>) -> Vec<Found> {
         let width = Width::Relative(EDGE_WIDTH);
         let together = self.models[model].1.is_faster_together();
         let steps = if together { STEPS_AHEAD } else { 1 };
@@ -377,23 +370,15 @@ impl Shaking<'_> {
             }
         });
         let met = match edge {
-            Ok(edge) => {
-                return Found {
-                    samples: Vec::new(),
-                    edges: vec![edge],
-                };
-            }
+            Ok(edge) => return vec![Ok(edge)],
             Err(met) => *met,
         };
-        let mut found = Found::default();
+        let mut found = Vec::new();
         if met.verdict().is_some() {
-            for sides in [(model, below, &met), (model, &met, above)] {
-                let side = self.search(sides);
-                found.samples.extend(side.samples);
-                found.edges.extend(side.edges);
-            }
+            found.extend(self.search((model, below, &met)));
+            found.extend(self.search((model, &met, above)));
         }
-        found.samples.push(met);
+        found.push(Err(met));
         found
     }
 }
@@ -401,17 +386,8 @@ impl Shaking<'_> {
 /// Neighbouring samples of a model, given by its index, with different verdicts.
 type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
 
-/// Samples, and pairs of close factors with different verdicts.
-#[derive(Default)]
-struct Found {
-    samples: Vec<FactorSample>,
-    edges: Vec<(f64, f64)>,
-}
-
-fn changes_verdict(below: &FactorSample, above: &FactorSample) -> bool {
-    let both = below.verdict().zip(above.verdict());
-    both.is_some_and(|(below, above)| below != above)
-}
+/// Two close factors with different verdicts, or a history between such factors.
+type Found = Result<(f64, f64), FactorSample>;
 
 impl Threshold {
     /// Refuses a threshold if not a single history could be computed.
@@ -426,10 +402,16 @@ impl Threshold {
         }
     }
 
-    fn new(model: String, Found { samples, edges }: Found) -> Self {
-        let between = |below: &FactorSample, above: &FactorSample| {
+    fn new(model: String, samples: Vec<FactorSample>, edges: &[(f64, f64)]) -> Self {
+        // The edge at an end of a range, if there is one, and why the range ends there.
+        let end = |below: Option<&FactorSample>, above: Option<&FactorSample>| {
+            let Some((below, above)) = below.zip(above) else {
+                return (None, RangeEnd::Sampled);
+            };
             let mut edges = edges.iter();
-            edges.find(|(low, high)| below.factor <= *low && *high <= above.factor)
+            let edge = edges.find(|(low, high)| below.factor <= *low && *high <= above.factor);
+            let why = edge.map_or(RangeEnd::Unknown, |_| RangeEnd::Edge);
+            (edge, why)
         };
         let mut ranges = Vec::new();
         let mut start = 0_usize;
@@ -437,20 +419,13 @@ impl Threshold {
             let (first, last) = (&run[0], &run[run.len() - 1]);
             let before = start.checked_sub(1).map(|index| &samples[index]);
             start += run.len();
-            let after = samples.get(start);
             let Some(verdict) = first.verdict() else {
                 continue;
             };
-            let (from, from_end) = match before.map(|before| between(before, first)) {
-                None => (first.factor, RangeEnd::Sampled),
-                Some(None) => (first.factor, RangeEnd::Unknown),
-                Some(Some((_, high))) => (*high, RangeEnd::Edge),
-            };
-            let (to, to_end) = match after.map(|after| between(last, after)) {
-                None => (last.factor, RangeEnd::Sampled),
-                Some(None) => (last.factor, RangeEnd::Unknown),
-                Some(Some((low, _))) => (*low, RangeEnd::Edge),
-            };
+            let (edge, from_end) = end(before, Some(first));
+            let from = edge.map_or(first.factor, |(_, high)| *high);
+            let (edge, to_end) = end(Some(last), samples.get(start));
+            let to = edge.map_or(last.factor, |(low, _)| *low);
             let range = FactorRange {
                 from,
                 to,

@@ -43,7 +43,7 @@ pub fn draw(
     let over_critical = are_over_critical(thresholds);
     let peak = |sample: &FactorSample| match over_critical {
         true => sample.result.as_ref().ok()?.peak.over_critical(),
-        false => sample.peak_rotation_rad,
+        false => Some(sample.result.as_ref().ok()?.peak_rotation_rad),
     };
     let (least, y_label) = match over_critical {
         true => (1.0, "peak rotation / critical rotation"),

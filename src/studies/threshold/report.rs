@@ -10,7 +10,7 @@ use crate::dynamics::history::Outcome;
 use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Scenario};
-use crate::studies::ending::{Ending, Verdict};
+use crate::studies::ending::Verdict;
 use crate::studies::remarks::{self, Remarks};
 use crate::studies::results::Results;
 
@@ -114,7 +114,7 @@ struct SampleSummary<'a> {
 }
 
 /// The numbers of a history.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Serialize)]
 struct HistorySummary {
     /// The side to which it overturned; null unless that is certain.
     overturning_sway: Option<&'static str>,
@@ -154,42 +154,31 @@ pub fn report(
             .collect(),
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
-    let others = [picture.into_bytes(), table(thresholds)?];
+    let others = [picture.into_bytes(), table(&summary.models)?];
     Results::new(&FILES, &summary, words(scenarios, thresholds), others)
 }
 
 /// The samples, model by model, with ascending factors.
-fn table(thresholds: &[Threshold]) -> Result<Vec<u8>, OutputError> {
-    type Row<'a> = (&'a str, &'a FactorSample);
-    let rows: Vec<Row<'_>> = thresholds
-        .iter()
-        .flat_map(|threshold| {
-            let samples = threshold.samples.iter();
-            samples.map(|sample| (&*threshold.model, sample))
-        })
-        .collect();
-    fn ending<'a>(row: &Row<'a>) -> Option<&'a Ending> {
-        row.1.result.as_ref().ok()
-    }
+fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
+    type Row<'a> = (&'a str, &'a SampleSummary<'a>);
+    let rows = models.iter().flat_map(|model| {
+        let samples = model.samples.iter();
+        samples.map(|sample| (model.model, sample))
+    });
+    let history = |row: &Row<'_>| row.1.history;
     let columns = [
         column("model", |row: &Row<'_>| row.0.to_owned()),
         column("factor", |row: &Row<'_>| row.1.factor),
-        column("outcome", |row: &Row<'_>| row.1.outcome_name()),
-        column("overturning_sway", |row| {
-            ending(row).and_then(Ending::overturning_sway)
-        }),
-        column("impacts", |row| {
-            ending(row).and_then(|ending| ending.impacts)
-        }),
-        column("outcome_time_s", |row| {
-            ending(row).map(|ending| ending.outcome_time_s)
-        }),
+        column("outcome", |row: &Row<'_>| row.1.outcome),
+        column("overturning_sway", |row| history(row)?.overturning_sway),
+        column("impacts", |row| history(row)?.impacts),
+        column("outcome_time_s", |row| Some(history(row)?.outcome_time_s)),
         column("peak_rotation_over_critical", |row| {
-            ending(row).and_then(|ending| ending.peak.over_critical())
+            history(row)?.peak_rotation_over_critical
         }),
-        column("peak_rotation_rad", |row: &Row<'_>| row.1.peak_rotation_rad),
+        column("peak_rotation_rad", |row| history(row)?.peak_rotation_rad),
     ];
-    csv(columns, &rows)
+    csv(columns, &rows.collect::<Vec<_>>())
 }
 
 /// Warnings of all models, each once, and histories without a verdict.
@@ -277,7 +266,7 @@ impl<'a> SampleSummary<'a> {
                 impacts: ending.impacts,
                 outcome_time_s: ending.outcome_time_s,
                 peak_rotation_over_critical: ending.peak.over_critical(),
-                peak_rotation_rad: sample.peak_rotation_rad,
+                peak_rotation_rad: Some(ending.peak_rotation_rad),
             }),
             reason: match ending {
                 Ok(ending) => ending.uncertain.as_deref(),

@@ -7,7 +7,7 @@ use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples};
 use crate::output::chart::Mark;
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv};
+use crate::output::table::{column, csv, each, list};
 use crate::output::{Figure, OutputError};
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;
@@ -83,14 +83,8 @@ pub(super) fn report(
     let counts = study.counts(rows);
     let crossings = study.crossings(&counts);
     let without = rows.iter().filter_map(|row| row.as_ref().err());
-    let counted = |name| {
-        (
-            name,
-            without.clone().filter(|why| why.name() == name).count(),
-        )
-    };
-    let reasons = ["invalid", "failed", "incomplete"].map(counted);
-    let [.., (_, incomplete)] = reasons;
+    let count = |name| without.clone().filter(|why| why.name() == name).count();
+    let reasons = WITHOUT.map(|name| (name, count(name)));
     let mut lines = at_columns(study, &crossings);
     lines.extend(without.clone().next().map(|first| {
         format!(
@@ -111,7 +105,7 @@ pub(super) fn report(
         first: Some(first_words(samples, &counts, own)),
         lines,
         influences: vec![samples.influence(names, false, |share: &Share| share.share)],
-        no_verdict: no_verdict(incomplete, rows.len(), "histories"),
+        no_verdict: no_verdict(count("incomplete"), rows.len(), "histories"),
         details: Details {
             cells,
             histories_without_outcome: reasons.into_iter().collect(),
@@ -131,35 +125,28 @@ pub(super) fn report(
 
 /// A row per cell, as `map.csv` of the map itself: x varies slowly, y fast.
 fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, OutputError> {
-    let [x, y] = study.map.axes.map(|axis| axis.key.as_str());
-    let mut columns = vec![
-        column(x, |cell: &CellCounts| cell.at[0]),
-        column(y, |cell: &CellCounts| cell.at[1]),
+    let axes = study.map.axes.map(|axis| axis.key.as_str());
+    let columns = [
+        list(axes, |cell: &CellCounts| cell.at),
         column("samples", |cell: &CellCounts| cell.samples),
+        list(SHARE, |cell: &CellCounts| {
+            each(cell.overturned.map(|share| share.numbers()))
+        }),
+        list(OUTCOMES.into_iter().skip(1), |cell: &CellCounts| {
+            (1..OUTCOMES.len())
+                .map(|which| cell.part(which))
+                .collect::<Vec<_>>()
+        }),
+        list(WITHOUT, |cell: &CellCounts| cell.without),
     ];
-    let numbers = NUMBERS
-        .map(|(name, of)| column(name, move |cell: &CellCounts| Some(of(&cell.overturned?))));
-    columns.extend(numbers);
-    let others = OUTCOMES.into_iter().enumerate().skip(1);
-    columns.extend(
-        others.map(|(which, name)| column(name, move |cell: &CellCounts| cell.part(which))),
-    );
-    let without = ["invalid", "failed", "incomplete"].into_iter().enumerate();
-    columns.extend(
-        without.map(|(which, name)| column(name, move |cell: &CellCounts| cell.without[which])),
-    );
     csv(columns, counts)
 }
 
-/// A number of a share.
-type NumberOf = fn(&Share) -> f64;
+/// The reasons why histories have no outcome.
+const WITHOUT: [&str; 3] = ["invalid", "failed", "incomplete"];
 
 /// The share of overturned samples, as in the table and on the page.
-const NUMBERS: [(&str, NumberOf); 3] = [
-    ("overturned", |share| share.share),
-    ("overturned_low", |share| share.low),
-    ("overturned_high", |share| share.high),
-];
+const SHARE: [&str; 3] = ["overturned", "overturned_low", "overturned_high"];
 
 /// A row per column of the map.
 fn crossing_table(
@@ -167,22 +154,18 @@ fn crossing_table(
     crossings: &[Crossing],
 ) -> Result<Vec<u8>, OutputError> {
     let [x, _] = study.map.axes.map(|axis| axis.key.as_str());
-    let mut columns = vec![column(x, |crossing: &Crossing| crossing.x)];
-    let names = ["overturned_05", "overturned_50", "overturned_95"]
-        .into_iter()
-        .enumerate();
-    columns.extend(
-        names.map(|(level, name)| column(name, move |crossing: &Crossing| crossing.y[level])),
-    );
-    let names = ["at_most_05", "at_most_50", "at_most_95"]
-        .into_iter()
-        .enumerate();
-    columns.extend(names.map(|(level, name)| {
-        column(
-            name,
-            move |crossing: &Crossing| yes(crossing.at_most[level]),
-        )
-    }));
+    let levels = ["05", "50", "95"];
+    let columns = [
+        column(x, |crossing: &Crossing| crossing.x),
+        list(
+            levels.map(|level| format!("overturned_{level}")),
+            |crossing: &Crossing| crossing.y,
+        ),
+        list(
+            levels.map(|level| format!("at_most_{level}")),
+            |crossing: &Crossing| crossing.at_most.map(yes),
+        ),
+    ];
     csv(columns, crossings)
 }
 
@@ -218,9 +201,9 @@ fn draw(
 
 /// The cells of the page.
 fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
-    let numbers = NUMBERS.map(|(name, of)| {
-        let values = counts.iter().map(|cell| Some(of(&cell.overturned?)));
-        (name, values.collect())
+    let numbers = SHARE.into_iter().enumerate().map(|(which, name)| {
+        let of = |cell: &CellCounts| Some(cell.overturned?.numbers()[which]);
+        (name, counts.iter().map(of).collect())
     });
     let others = OUTCOMES.into_iter().enumerate().skip(1);
     let others = others.map(|(which, name)| {
@@ -231,7 +214,7 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
         palette: &PALETTE,
         kinds: counts.iter().map(kind_of).collect(),
         doubts: Vec::new(),
-        columns: numbers.into_iter().chain(others).collect(),
+        columns: numbers.chain(others).collect(),
     }
 }
 
