@@ -1,12 +1,10 @@
 //! The command `check`: prints the contents of a scenario or a record file.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::ground::intensity::Intensity;
 use archrock::dynamics::model::Request;
-use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
 use archrock::scenario::{Format, Layout, Recorded, Scenario, Series};
@@ -14,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::figure::FigureOption;
 use super::scenario_file::{Input, SetOption};
-use super::{Failure, Format as Printed, commands, print, print_all};
+use super::{Failure, Format as Printed, commands, noted, print, print_all, refused};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -38,19 +36,13 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plot.is_some() && arguments.files.len() > 1 {
-        let message = "--plot is of one file: check them one by one";
-        return Err(Failure::Input(message.to_owned()));
+        return Err("--plot is of one file: check them one by one".into());
     }
-    let (mut texts, mut contents) = (Vec::new(), Vec::new());
-    let mut wrong = Vec::new();
+    let (mut texts, mut contents, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for file in &arguments.files {
-        match check_file(file, arguments) {
-            Ok((text, json)) => {
-                texts.push(text);
-                contents.push(json);
-            }
-            Err(Failure::Input(message)) => wrong.push(message),
-            Err(failure) => return Err(failure),
+        if let Some((text, json)) = noted(check_file(file, arguments), &mut wrong)? {
+            texts.push(text);
+            contents.push(json);
         }
     }
     match arguments.format {
@@ -58,11 +50,7 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
         Printed::Json if contents.is_empty() => {}
         Printed::Json => print_all(contents)?,
     }
-    if wrong.is_empty() {
-        Ok(())
-    } else {
-        Err(Failure::Input(wrong.join("\n")))
-    }
+    refused(&wrong)
 }
 
 /// The contents of a file, as text and as JSON.
@@ -201,41 +189,40 @@ fn record_json(series: &Series, intensity: &Intensity) -> Value {
 }
 
 fn record_text(series: &Series, intensity: &Intensity) -> String {
-    let mut text = format!("{}: {}\n", series.name(), kind(series));
-    let _ = writeln!(text, "  {}", series.sampling());
-    let Peak { value, time_s } = intensity.acceleration_m_s2;
-    let _ = writeln!(
-        text,
-        "  peak acceleration {:.4} g = {value:.4} m/s2 at {time_s:.3} s",
-        value / GRAVITY_M_S2
-    );
-    let mean_g = series.mean_g(GRAVITY_M_S2);
-    let _ = match series.layout.remove_mean {
-        true => writeln!(text, "  mean acceleration removed"),
-        false => writeln!(text, "  mean acceleration {mean_g:.3e} g"),
+    let [acceleration, velocity, displacement] = [
+        intensity.acceleration_m_s2,
+        intensity.velocity_m_s,
+        intensity.displacement_m,
+    ];
+    let mean = match series.layout.remove_mean {
+        true => "removed".to_owned(),
+        false => format!("{:.3e} g", series.mean_g(GRAVITY_M_S2)),
     };
-    for (what, peak, unit) in [
-        ("velocity", intensity.velocity_m_s, "m/s"),
-        ("displacement", intensity.displacement_m, "m"),
-    ] {
-        let _ = writeln!(
-            text,
-            "  peak {what} {:.4} {unit} at {:.3} s",
-            peak.value, peak.time_s
-        );
-    }
     let [from_s, to_s] = intensity.significant_s;
-    let _ = writeln!(text, "  Arias intensity {:.4} m/s", intensity.arias_m_s);
-    let _ = writeln!(
-        text,
-        "  significant duration (5 to 95 %) {:.3} s, from {from_s:.3} to {to_s:.3} s",
+    format!(
+        "{}: {}
+  {}
+  peak acceleration {:.4} g = {:.4} m/s2 at {:.3} s
+  mean acceleration {mean}
+  peak velocity {:.4} m/s at {:.3} s
+  peak displacement {:.4} m at {:.3} s
+  Arias intensity {:.4} m/s
+  significant duration (5 to 95 %) {:.3} s, from {from_s:.3} to {to_s:.3} s
+  velocity and displacement are integrated from zero, without baseline correction; g = {GRAVITY_M_S2} m/s2
+",
+        series.name(),
+        kind(series),
+        series.sampling(),
+        acceleration.value / GRAVITY_M_S2,
+        acceleration.value,
+        acceleration.time_s,
+        velocity.value,
+        velocity.time_s,
+        displacement.value,
+        displacement.time_s,
+        intensity.arias_m_s,
         intensity.significant_duration_s()
-    );
-    let _ = writeln!(
-        text,
-        "  velocity and displacement are integrated from zero, without baseline correction; g = {GRAVITY_M_S2} m/s2"
-    );
-    text
+    )
 }
 
 /// The format and the unit of a record.

@@ -2,13 +2,12 @@
 
 use std::fs::File;
 use std::io::{self, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use archrock::FourLinkError;
 use archrock::FourLinks;
 use archrock::dynamics::model::MechanismModel;
 use archrock::mechanics::friction::FrictionError;
-use archrock::mechanics::sway::Sway;
 use archrock::output::pretty;
 use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
@@ -18,6 +17,7 @@ use archrock::studies::pictures;
 use archrock::studies::results::Answer;
 
 use super::figure::FigureOption;
+use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print, warn};
 
@@ -27,31 +27,37 @@ pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
     model.map_err(|error| Failure::Input(error.to_string()))
 }
 
-pub fn limit(
-    file: &ScenarioFile,
+#[derive(clap::Args)]
+pub struct LimitArguments {
+    #[command(flatten)]
+    scenario: ScenarioFile,
+    /// Output format.
+    #[arg(long, value_enum, default_value_t)]
     format: Format,
-    plot: Option<(&Path, FigureOption, Sway)>,
-) -> Result<(), Failure> {
-    let input = file.open()?;
-    let scenario = if plot.is_some() {
-        input.as_built(input.read_statics()?)?
-    } else {
-        input.read_statics()?
-    };
-    warn(&scenario.unlikely());
-    if let Some((plot, figure, first)) = plot {
-        let model = four_links(&scenario, "--plot is")?;
-        write_picture(
-            plot,
-            &pictures::limit(
-                figure.get()?,
-                &model,
-                first,
-                &Scene::new(scenario.structure()),
-            ),
-        )?;
+    /// Also draw the mechanism and the thrust line to this SVG file.
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    #[command(flatten)]
+    first: FirstOption,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
+    let input = arguments.scenario.open()?;
+    let mut scenario = input.read_statics()?;
+    if arguments.plot.is_some() {
+        scenario = input.as_built(scenario)?;
     }
-    answer(&limit::limit(&scenario)?, format)
+    warn(&scenario.unlikely());
+    if let Some(plot) = &arguments.plot {
+        let first = arguments.first.get();
+        let model = four_links(&scenario, "--plot is")?;
+        let (figure, scene) = (arguments.figure.get()?, Scene::new(scenario.structure()));
+        let picture = pictures::limit(figure, &model, first, &scene);
+        write_picture(plot, &picture)?;
+    }
+    answer(&limit::limit(&scenario)?, arguments.format)
 }
 
 /// Prints an answer.
@@ -92,12 +98,8 @@ pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
     let format = PictureFormat::of_file(path).map_err(input)?;
     let picture = format.of_picture(picture).map_err(input)?;
     let cannot = |error: io::Error| format!("cannot write {}: {error}", path.display());
-    let mut file = File::create(path).map_err(|error| {
-        Failure::Input(format!(
-            "{}; choose another file with --plot",
-            cannot(error)
-        ))
-    })?;
-    file.write_all(&picture)
-        .map_err(|error| Failure::Work(cannot(error)))
+    let remedy = "choose another file with --plot";
+    let file = File::create(path).map_err(|error| format!("{}; {remedy}", cannot(error)));
+    let written = file?.write_all(&picture);
+    written.map_err(|error| Failure::Work(cannot(error)))
 }

@@ -63,49 +63,44 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         return commands::answer(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
-    let model = commands::four_links(&scenario, options)?;
-    let model = &model;
     let impact = LinkImpact {
-        model,
+        model: &commands::four_links(&scenario, options)?,
         first,
         index: arguments.link.into(),
     };
-    let chosen = || choose(&impact);
-    if let Some(path) = &arguments.line {
-        let others = arguments.models || arguments.certificate || arguments.plot.is_some();
-        if path == Path::new("-") && others {
-            return Err(Failure::Input(
-                "--line - prints the impulse line only: drop --models, --certificate and --plot, or give \
-                 --line a file"
-                    .to_owned(),
-            ));
-        }
-        chosen()?;
+    let index = impact.index;
+    let line = arguments.line.as_deref();
+    let (alone, others) = (
+        line == Some(Path::new("-")),
+        arguments.models || arguments.certificate || arguments.plot.is_some(),
+    );
+    if alone && others {
+        let message = "--line - prints the impulse line only: drop --models, --certificate and --plot, or give \
+                       --line a file";
+        return Err(message.into());
+    }
+    if (others || line.is_some()) && impact.before().is_none() {
+        let message = "an earlier impact stops the arch; give a smaller number";
+        return Err(format!("--link {index}: {message}").into());
+    }
+    if let Some(path) = line {
         write_line(path, &impact)?;
-        if path == Path::new("-") {
+        if alone {
             return Ok(());
         }
     }
     if let Some(plot) = &arguments.plot {
-        chosen()?;
         let scene = Scene::new(scenario.structure());
         let picture = pictures::impact(arguments.figure.get()?, &impact, &scene);
         let picture = picture.ok_or_else(|| {
-            Failure::Input(format!(
-                "--plot: impact {} stops the arch; there is no mechanism after it to draw",
-                arguments.link
-            ))
+            format!("--plot: impact {index} stops the arch; there is no mechanism after it to draw")
         })?;
         commands::write_picture(plot, &picture)?;
     }
-    if arguments.models || arguments.certificate {
-        chosen()?;
-    }
     let sites = impact.chain().sites;
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, arguments.joints) {
-        return Err(Failure::Input(format!(
-            "--joints: the arch has {count} voussoirs, whose joints are used; leave it out"
-        )));
+        let message = "voussoirs, whose joints are used; leave it out";
+        return Err(format!("--joints: the arch has {count} {message}").into());
     }
     let question = Question {
         count,
@@ -117,47 +112,28 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     commands::answer(&answer, arguments.format)
 }
 
-/// Refuses an impact that never happens because an earlier one stops the arch.
-fn choose(impact: &LinkImpact<'_>) -> Result<(), Failure> {
-    if impact.before().is_some() {
-        return Ok(());
-    }
-    Err(Failure::Input(format!(
-        "--link {}: an earlier impact stops the arch; give a smaller number",
-        impact.index
-    )))
-}
-
 fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
     if impact.after().is_none() {
-        return Err(Failure::Input(format!(
-            "--line: no mechanism can follow impact {}, so it has no impulse line",
-            impact.index
-        )));
+        let message = format!("no mechanism can follow impact {}", impact.index);
+        return Err(format!("--line: {message}, so it has no impulse line").into());
     }
-    let table = impact.line_table().ok_or_else(|| {
-        Failure::Input(
-            "--line: a prescribed restitution coefficient has no impulse line; \
-             choose another impact model in the scenario"
-                .to_owned(),
-        )
-    })??;
+    let table = impact.line_table().ok_or(
+        "--line: a prescribed restitution coefficient has no impulse line; \
+         choose another impact model in the scenario",
+    )??;
     if path == Path::new("-") {
         return print(&String::from_utf8_lossy(&table));
     }
     let name = path.file_name().and_then(|name| name.to_str());
     let (Some(name), false) = (name, path.exists() && !path.is_file()) else {
-        return Err(Failure::Input(format!(
-            "--line {}: not a regular file; use - for standard output",
-            path.display()
-        )));
+        let message = "not a regular file; use - for standard output";
+        return Err(format!("--line {}: {message}", path.display()).into());
     };
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut folder = Folder::open(parent, &[name])
-        .map_err(|error| Failure::Input(format!("{error}; choose another file with --line")))?;
+    let parent = path
+        .parent()
+        .filter(|parent| !parent.as_os_str().is_empty());
+    let mut folder = Folder::open(parent.unwrap_or(Path::new(".")), &[name])
+        .map_err(|error| format!("{error}; choose another file with --line"))?;
     folder.write(name, &table)?;
     Ok(folder.complete()?)
 }

@@ -23,7 +23,6 @@ mod study;
 mod threshold;
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use archrock::dynamics::model::SimulationError;
@@ -38,8 +37,6 @@ use serde_json::Value;
 
 use at_once::at_once;
 use figure::FigureOption;
-use first::FirstOption;
-use scenario_file::ScenarioFile;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
 #[derive(Parser)]
@@ -62,20 +59,7 @@ enum Command {
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     #[command(after_help = examples::LIMIT)]
-    Limit {
-        #[command(flatten)]
-        scenario: ScenarioFile,
-        /// Output format.
-        #[arg(long, value_enum, default_value_t)]
-        format: Format,
-        /// Also draw the mechanism and the thrust line to this SVG file.
-        #[arg(long, value_name = "FILE")]
-        plot: Option<PathBuf>,
-        #[command(flatten)]
-        first: FirstOption,
-        #[command(flatten)]
-        figure: FigureOption,
-    },
+    Limit(commands::LimitArguments),
     /// Print the mechanisms after successive impacts, their restitution and impulses.
     #[command(after_help = examples::IMPACT)]
     Impact(impact::Arguments),
@@ -175,6 +159,25 @@ impl From<OutputError> for Failure {
     }
 }
 
+/// The result, or `None` if the input is wrong, which is noted.
+fn noted<T>(result: Result<T, Failure>, wrong: &mut Vec<String>) -> Result<Option<T>, Failure> {
+    match result {
+        Err(Failure::Input(message)) => {
+            wrong.push(message);
+            Ok(None)
+        }
+        result => result.map(Some),
+    }
+}
+
+/// Fails if anything is wrong.
+fn refused(wrong: &[String]) -> Result<(), Failure> {
+    match wrong {
+        [] => Ok(()),
+        _ => Err(wrong.join("\n").into()),
+    }
+}
+
 /// Runs the program.
 pub fn main() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| likely(error).exit());
@@ -182,17 +185,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),
         Command::Run(run) => run::run(&run, arguments.quiet),
-        Command::Limit {
-            scenario,
-            format,
-            plot,
-            first,
-            figure,
-        } => {
-            let plot = plot.as_deref();
-            let plot = plot.map(|path| (path, figure, first.get()));
-            commands::limit(&scenario, format, plot)
-        }
+        Command::Limit(limit) => commands::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity::capacity(&capacity),
         Command::Spread(spread) => spread::spread(&spread),

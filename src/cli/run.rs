@@ -23,7 +23,7 @@ use super::number::{number, point_m};
 use super::progress::{Display, left};
 use super::scenario_file::{Destination, Input, SetOption, SuiteOption};
 use super::study::{ITSELF, Session, Work};
-use super::{Failure, Format, print, print_all};
+use super::{Failure, Format, noted, print, print_all, refused};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -138,28 +138,19 @@ struct Job {
 impl Job {
     /// All jobs, or all errors in them.
     fn all(arguments: &Arguments) -> Result<Vec<Self>, Failure> {
-        let mut jobs: Vec<Self> = Vec::new();
-        let mut wrong = Vec::new();
+        let (mut jobs, mut wrong) = (Vec::<Self>::new(), Vec::new());
         for path in &arguments.scenarios {
-            match Self::read(path, arguments) {
-                Ok(read) => jobs.extend(read),
-                Err(Failure::Input(message)) => wrong.push(message),
-                Err(failure) => return Err(failure),
-            }
+            let read = noted(Self::read(path, arguments), &mut wrong)?;
+            jobs.extend(read.into_iter().flatten());
         }
         if jobs.len() > 1 && arguments.to_stdout() {
             return Err("--rotations - is for one scenario: run them one by one".into());
         }
-        let places = jobs
-            .iter()
-            .filter_map(|job| Some((&*job.name, job.place.as_ref()?)));
-        if let Err(Failure::Input(message)) = Destination::check_distinct(places) {
-            wrong.push(message);
-        }
-        match wrong.is_empty() {
-            true => Ok(jobs),
-            false => Err(wrong.join("\n").into()),
-        }
+        let places = jobs.iter();
+        let places = places.filter_map(|job| Some((&*job.name, job.place.as_ref()?)));
+        noted(Destination::check_distinct(places), &mut wrong)?;
+        refused(&wrong)?;
+        Ok(jobs)
     }
 
     /// The scenario of a file, or one for each record of its suite.

@@ -11,7 +11,7 @@ use archrock::output::{Batch, Folder, OutputError};
 use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
-use super::Failure;
+use super::{Failure, refused};
 use archrock::studies::kept::{ORIGIN, Origin, Writer};
 
 /// The scenario of a command.
@@ -201,7 +201,7 @@ fn origin(path: &Path) -> String {
 }
 
 /// The folder for results.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub struct Destination {
     path: PathBuf,
     /// The scenario file that names the folder; `None` with `--out`.
@@ -217,9 +217,7 @@ impl Destination {
     pub fn of(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            origin: None,
-            pictures: None,
-            locked: None,
+            ..Self::default()
         }
     }
 
@@ -314,11 +312,7 @@ impl Destination {
                 ));
             }
         }
-        if wrong.is_empty() {
-            Ok(())
-        } else {
-            Err(wrong.join("\n").into())
-        }
+        refused(&wrong)
     }
 
     /// The folder inside this one for the results of one record of the suite.
@@ -336,17 +330,14 @@ impl Destination {
             && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(known))
             && ours != theirs.trim_end()
         {
-            return Err(Failure::Input(format!(
-                "{} holds the results of {}: choose another folder with --out, or remove that one",
-                path.display(),
-                shown(theirs.trim_end())
-            )));
+            let (path, theirs) = (path.display(), shown(theirs.trim_end()));
+            let remedy = "choose another folder with --out, or remove that one";
+            return Err(format!("{path} holds the results of {theirs}: {remedy}").into());
         }
         Ok(Self {
             path,
             origin,
-            pictures: None,
-            locked: None,
+            ..Self::default()
         })
     }
 

@@ -15,7 +15,7 @@ use super::ensemble::records::Capacities;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::results::{Reported, Results, StudyError, Style};
-use super::runner::{Computed, Progress, Runner, Task};
+use super::runner::{Progress, Runner, Task};
 use super::spread::{self, Way};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
@@ -243,8 +243,8 @@ fn run<S: Reported>(
         Rows::Merge(parts) => (part::merge(parts)?.1, None),
         Rows::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
         Rows::Compute(runner, Some(task), watch) => match runner.rows_in(&study, task, watch)? {
-            Computed::Whole(rows, part) => (rows, Some(part)),
-            Computed::Shard(part) => {
+            (Some(rows), part) => (rows, Some(part)),
+            (None, part) => {
                 let all = study.count();
                 let cases = task.shard.cases(all).count();
                 return Ok(Done::Part { part, cases, all });

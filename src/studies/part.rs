@@ -274,71 +274,74 @@ fn check_file(path: &Path) -> Result<(), PartError> {
     }
 }
 
-/// The complete lines of a file, and their length in bytes.
-fn complete_lines(path: &Path) -> Result<(String, u64), PartError> {
-    check_file(path)?;
-    let mut bytes =
-        fs::read(path).map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
-    // An incomplete last line was being written when the program was killed.
-    let complete = bytes
-        .iter()
-        .rposition(|byte| *byte == b'\n')
-        .map_or(0, |last| last + 1);
-    bytes.truncate(complete);
-    let text = String::from_utf8(bytes)
-        .map_err(|_| unusable(path, "is not a part of a study (a .part file of archrock)"))?;
-    Ok((text, complete as u64))
+/// The complete lines of a file.
+struct Lines<'p> {
+    path: &'p Path,
+    text: String,
 }
 
-/// The header, and the other lines; `None` if the program was killed before it wrote the header.
-fn header_of<'t>(
-    path: &Path,
-    text: &'t str,
-) -> Result<Option<(Header, std::str::Lines<'t>)>, PartError> {
-    let mut lines = text.lines();
-    let Some(first) = lines.next() else {
-        return Ok(None);
-    };
-    match serde_json::from_str::<Header>(first) {
-        Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(Some((header, lines))),
-        _ => Err(unusable(
-            path,
-            "is not a part of a study (a .part file of archrock)",
-        )),
+impl<'p> Lines<'p> {
+    fn of(path: &'p Path) -> Result<Self, PartError> {
+        check_file(path)?;
+        let bytes = fs::read(path);
+        let mut bytes =
+            bytes.map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+        // An incomplete last line was being written when the program was killed.
+        let last = bytes.iter().rposition(|byte| *byte == b'\n');
+        bytes.truncate(last.map_or(0, |last| last + 1));
+        let text = String::from_utf8(bytes).map_err(|_| unusable(path, NO_PART))?;
+        Ok(Self { path, text })
+    }
+
+    /// The header; `None` if the program was killed before it wrote the header.
+    fn header(&self) -> Result<Option<Header>, PartError> {
+        let first = self.text.lines().next();
+        let header = first.map(|first| match serde_json::from_str::<Header>(first) {
+            Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(header),
+            _ => Err(unusable(self.path, NO_PART)),
+        });
+        header.transpose()
+    }
+
+    /// The header of a file that must have one.
+    fn known_header(&self) -> Result<Header, PartError> {
+        self.header()?
+            .ok_or_else(|| unusable(self.path, "is empty"))
+    }
+
+    /// The number of lines after the header.
+    fn count(&self) -> usize {
+        self.text.lines().skip(1).count()
+    }
+
+    /// The rows of all lines after the header.
+    fn rows<R: DeserializeOwned>(&self, header: &Header) -> Result<Rows<R>, PartError> {
+        let mut rows = Rows::new();
+        for (number, line) in (1..).zip(self.text.lines()).skip(1) {
+            let damaged = |what: &str| {
+                let what = format!("line {number}: {what}; compute this part again");
+                unusable(self.path, what)
+            };
+            let (index, row) = from_line(line).ok_or_else(|| damaged("damaged"))?;
+            if !header.shard.has(index) || index >= header.cases {
+                return Err(damaged("a case of another part"));
+            }
+            if rows.insert(index, row).is_some() {
+                return Err(damaged("a case that appears twice"));
+            }
+        }
+        Ok(rows)
     }
 }
 
-/// The rows of all lines after the header.
-fn rows_of<R: DeserializeOwned>(
-    path: &Path,
-    header: &Header,
-    lines: std::str::Lines<'_>,
-) -> Result<Rows<R>, PartError> {
-    let mut rows = Rows::new();
-    for (number, line) in lines.enumerate() {
-        let damaged = |what: &str| {
-            let what = format!("line {}: {what}; compute this part again", number + 2);
-            unusable(path, what)
-        };
-        let (index, row) = from_line(line).ok_or_else(|| damaged("damaged"))?;
-        if !header.shard.has(index) || index >= header.cases {
-            return Err(damaged("a case of another part"));
-        }
-        if rows.insert(index, row).is_some() {
-            return Err(damaged("a case that appears twice"));
-        }
-    }
-    Ok(rows)
-}
+const NO_PART: &str = "is not a part of a study (a .part file of archrock)";
 
 /// The header of a part file, complete or not.
 ///
 /// # Errors
 /// When the file cannot be read or is not a part.
 pub fn read_header(path: &Path) -> Result<Header, PartError> {
-    let (text, _) = complete_lines(path)?;
-    let (header, _) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
-    Ok(header)
+    Lines::of(path)?.known_header()
 }
 
 /// The number of complete rows in a file; `None` if it is not a part.
@@ -347,11 +350,9 @@ pub fn rows_in(path: &Path) -> Option<usize> {
     if !path.is_file() {
         return None;
     }
-    let (text, _) = complete_lines(path).ok()?;
-    match header_of(path, &text).ok()? {
-        Some((_, lines)) => Some(lines.count()),
-        None => Some(0),
-    }
+    let lines = Lines::of(path).ok()?;
+    lines.header().ok()?;
+    Some(lines.count())
 }
 
 /// The file of a shard that is being computed. It stays locked as long as this value lives.
@@ -396,17 +397,17 @@ impl PartFile {
             path: path.to_owned(),
             file,
         };
-        let (text, length) = complete_lines(path)?;
-        let rows = match header_of(path, &text)? {
+        let lines = Lines::of(path)?;
+        let rows = match lines.header()? {
             None => Rows::new(),
-            Some((found, lines)) => {
+            Some(found) => {
                 // Rows are never discarded without a request; a header without rows may be.
-                let begun = resume || lines.clone().next().is_some();
+                let begun = resume || lines.count() > 0;
                 if begun && let Some(difference) = header.other(&found) {
                     let path = path.to_owned();
                     return Err(PartError::Other { path, difference });
                 }
-                rows_of(path, header, lines)?
+                lines.rows(header)?
             }
         };
         let done = rows.len();
@@ -414,7 +415,10 @@ impl PartFile {
             let path = path.to_owned();
             return Err(PartError::Interrupted { path, done });
         }
-        let length = if rows.is_empty() { 0 } else { length };
+        let length = match rows.is_empty() {
+            true => 0,
+            false => lines.text.len() as u64,
+        };
         part.file.set_len(length).map_err(part.cannot("shorten"))?;
         if length == 0 {
             let mut line = serde_json::to_string(header).map_err(part.cannot_write())?;
@@ -492,8 +496,8 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
     let mut whole: Option<(Header, Rows<R>)> = None;
     let mut places: BTreeMap<usize, &Path> = BTreeMap::new();
     for path in paths {
-        let (text, _) = complete_lines(path)?;
-        let (header, lines) = header_of(path, &text)?.ok_or_else(|| unusable(path, "is empty"))?;
+        let lines = Lines::of(path)?;
+        let header = lines.known_header()?;
         let shard = header.shard;
         if let Some((first, _)) = &whole {
             let difference = first.difference(&header).or_else(|| {
@@ -505,7 +509,7 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
                 return Err(unusable(path, what));
             }
         }
-        let rows = rows_of(path, &header, lines)?;
+        let rows = lines.rows(&header)?;
         let (done, all) = (rows.len(), header.shard_cases());
         if done < all {
             let path = path.clone();

@@ -90,8 +90,10 @@ pub trait Study: Sync {
     /// Number of cases.
     fn count(&self) -> usize;
 
-    /// Computes the row of a case; `index` is below [`Study::count`].
-    fn row(&self, index: usize) -> Self::Row;
+    /// Computes the row of a case; `index` is below [`Study::count`]. A study implements this method or [`Study::rows`].
+    fn row(&self, index: usize) -> Self::Row {
+        self.rows(&[index]).remove(0)
+    }
 
     /// The family of a case: cases of one family are computed faster together. `None`: the case is computed alone.
     fn family(&self, _index: usize) -> Option<usize> {
@@ -164,15 +166,6 @@ pub struct Task<'p> {
     pub resume: bool,
 }
 
-/// The result of a computation in a folder.
-#[derive(Debug)]
-pub enum Computed<R> {
-    /// The rows of all cases, and the file that keeps them until there are results.
-    Whole(Vec<R>, PartFile),
-    /// The file of a shard, to be merged with the others.
-    Shard(PartFile),
-}
-
 /// Computes the rows of studies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Runner {
@@ -236,7 +229,7 @@ impl Runner {
     }
 
     /// The rows of the cases of a shard, which are saved in a part file as they are computed: see [`super::part`]. However
-    /// the program ends, the file can be resumed.
+    /// the program ends, the file can be resumed. Returns the rows, unless they are those of a part of the cases, and the file.
     ///
     /// `watch` is as in [`Runner::rows`]. Whenever it is called, all rows that it counts are in the file.
     ///
@@ -247,30 +240,25 @@ impl Runner {
         study: &S,
         task: Task<'_>,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Computed<S::Row>, RunnerError> {
-        let Task {
-            folder,
-            shard,
-            resume,
-        } = task;
+    ) -> Result<(Option<Vec<S::Row>>, PartFile), RunnerError> {
+        let (folder, shard) = (task.folder, task.shard);
         fs::create_dir_all(folder).map_err(|source| {
             let path = folder.to_owned();
             RunnerError::Folder { path, source }
         })?;
         let path = folder.join(shard.file_name(S::NAME));
         let header = Header::new(study, shard);
-        let (mut part, mut rows) = PartFile::open(&path, &header, resume)?;
+        let (mut part, mut rows) = PartFile::open(&path, &header, task.resume)?;
         let keep = |new: &[_]| part.append(new);
         let cases = shard.cases(study.count());
         let family = |index| study.family(index);
         let rows_of = |indices: &[usize]| study.rows(indices);
         self.complete(cases, family, rows_of, &mut rows, keep, watch)?;
-        Ok(if shard.is_whole() {
-            Computed::Whole(rows.into_values().collect(), part)
-        } else {
+        if !shard.is_whole() {
             part.check_there()?;
-            Computed::Shard(part)
-        })
+        }
+        let rows = shard.is_whole().then(|| rows.into_values().collect());
+        Ok((rows, part))
     }
 
     fn pool(&self) -> Result<ThreadPool, RunnerError> {

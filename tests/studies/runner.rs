@@ -12,7 +12,7 @@ use crate::common::parsed;
 use crate::common::program::{archrock, stderr};
 use archrock::studies::map::{CellResult, CellRow, OverturningMap};
 use archrock::studies::part::{self, Header, PartError, PartFile, Shard};
-use archrock::studies::runner::{Computed, Progress, Runner, RunnerError, Study, Task};
+use archrock::studies::runner::{Progress, Runner, RunnerError, Study, Task};
 
 /// Cases of a few milliseconds whose rows are hard to write exactly; some of them fail.
 #[derive(Default)]
@@ -142,7 +142,7 @@ fn cancelled_work_stops_soon_and_is_resumed() {
         first.get_or_insert(progress.done);
         ControlFlow::Continue(())
     });
-    let Ok(Computed::Whole(rows, file)) = resumed else {
+    let Ok((Some(rows), file)) = resumed else {
         panic!("{resumed:?}");
     };
     assert_eq!(first, Some(done));
@@ -160,7 +160,7 @@ fn shards_are_merged_to_the_whole() {
         .map(|shard| {
             let task = task(folder.path(), shard, false);
             match threads(3).rows_in(&Slow::default(), task, go_on) {
-                Ok(Computed::Shard(file)) => file.path().to_owned(),
+                Ok((None, file)) => file.path().to_owned(),
                 other => panic!("{other:?}"),
             }
         })

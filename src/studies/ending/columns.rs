@@ -43,35 +43,33 @@ type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 /// The columns of the ending of a row. Sway and number of impacts before overturning are given only if overturning is certain.
 /// The numbers of an uncertain case are those of the history itself, not of its repetitions.
 pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
-    let number = |name: &'static str, of: fn(&Ending) -> Option<f64>| {
-        column(name, move |row| ended(row).ok().and_then(of).map(number))
-    };
     let mut columns = vec![
         column("outcome", move |row| {
             ended(row).map_or_else(|reason| reason, Ending::outcome_name)
         }),
         column("overturning_sway", move |row| {
-            ended(row).ok().and_then(Ending::overturning_sway)
+            ended(row).ok()?.overturning_sway()
         }),
-        column("impacts", move |row| {
-            ended(row).ok().and_then(Ending::known_impacts)
-        }),
+        column("impacts", move |row| ended(row).ok()?.known_impacts()),
         column("impacts_before_overturning", move |row| {
             let overturned = ended(row)
                 .ok()
                 .filter(|one| one.overturning_sway().is_some());
-            overturned.and_then(|ending| ending.impacts)
+            overturned?.impacts
         }),
-        number("outcome_time_s", Ending::known_time_s),
-        number("peak_rotation_over_critical", |ending| {
-            ending.peak.over_critical()
+        column("outcome_time_s", move |row| {
+            ended(row).ok()?.known_time_s().map(number)
         }),
-        number("energy_defect_ratio", |ending| {
-            Some(ending.energy_defect_ratio)
+        column("peak_rotation_over_critical", move |row| {
+            ended(row).ok()?.peak.over_critical().map(number)
+        }),
+        column("energy_defect_ratio", move |row| {
+            Some(number(ended(row).ok()?.energy_defect_ratio))
         }),
     ];
     if free_hinges {
-        columns.push(number("peak_rotation_rad", |ending| ending.peak.rad()));
+        let peak_rad = move |row: &R| ended(row).ok()?.peak.rad().map(number);
+        columns.push(column("peak_rotation_rad", peak_rad));
     }
     columns
 }

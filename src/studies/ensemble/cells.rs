@@ -144,10 +144,6 @@ impl Study for CellsOfSamples<'_> {
         self.map.count() * (1 + self.uncertain.cases())
     }
 
-    fn row(&self, index: usize) -> CellRow {
-        self.rows(&[index]).remove(0)
-    }
-
     /// Cells of one sample with one structure.
     fn family(&self, index: usize) -> Option<usize> {
         let [sample, cell] = self.place(index);

@@ -478,10 +478,6 @@ impl Study for OverturningMap<'_> {
         self.values[0].len() * self.values[1].len()
     }
 
-    fn row(&self, index: usize) -> CellRow {
-        self.rows(&[index]).remove(0)
-    }
-
     /// Cells with the same structure, if its model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion().is_faster_together();

@@ -454,25 +454,19 @@ fn clustered_covariance(
     });
     let mut records = 0;
     let mut squares = Matrix2::zeros();
+    // Derivatives by level and slope of the log-probability of the outcome of a case.
+    let score = |case: &Observation| {
+        let case = LogLevel::from(&fractions(&[*case])[0]);
+        let slope = case.log_probability(line.at(case.log)).slope;
+        Vector2::new(slope, slope * (case.log - line.pivot))
+    };
     for record in sorted.chunk_by(|a, b| a.record == b.record) {
-        let score: Vector2<f64> = record.iter().map(|case| score(line, case)).sum();
+        let score: Vector2<f64> = record.iter().map(score).sum();
         records += 1;
         squares += score * score.transpose();
     }
     let factor = f64::from(records) / f64::from(records - 1);
     (records > 1).then(|| covariance * squares * covariance * factor)
-}
-
-/// Derivatives by level and slope of the log-probability of the outcome of one case.
-fn score(line: &Line, case: &Observation) -> Vector2<f64> {
-    let log = case.intensity.ln();
-    let eta = line.at(log);
-    let slope = if case.overturned {
-        LogProbability::at(eta).slope
-    } else {
-        -LogProbability::at(-eta).slope
-    };
-    Vector2::new(slope, slope * (log - line.pivot))
 }
 
 /// `Phi(eta)`.

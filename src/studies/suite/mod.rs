@@ -179,10 +179,6 @@ impl Study for RecordSuite<'_> {
         self.suite.records.len() * self.signs() * self.levels.len()
     }
 
-    fn row(&self, index: usize) -> CaseRow {
-        self.rows(&[index]).remove(0)
-    }
-
     /// The levels of a record: whether a level has an edge below it is then known from its neighbour.
     fn family(&self, index: usize) -> Option<usize> {
         Some(index / self.levels.len())
