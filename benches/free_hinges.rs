@@ -121,7 +121,7 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     );
     let scenario = Scenario::parse(&text, "map.toml").expect("a scenario");
     bencher.counter(ItemsCount::new(36_usize)).bench(|| {
-        let map = OverturningMap::new(&scenario).expect("a map");
+        let map = OverturningMap::of(&scenario).expect("a map");
         (0..map.count())
             .map(|cell| map.row(cell))
             .collect::<Vec<_>>()

@@ -28,7 +28,7 @@ amplitude_g = { from = 0.15, to = 2.4, count = 18, spacing = "logarithmic" }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let scenario = Scenario::parse(SCENARIO, "the scenario of the example")?;
-    let map = OverturningMap::new(&scenario).ok_or("the scenario has no map")?;
+    let map = OverturningMap::of(&scenario)?;
     // Uses all processors; a break would end the work.
     let cells = Runner::default().rows(&map, |progress| {
         eprintln!("{} of {} cells", progress.done, progress.all);

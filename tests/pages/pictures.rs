@@ -595,7 +595,7 @@ fn the_map_shows_every_cell() {
                 [simulation]\nduration_s = 60\n[map]\nduration_s = [0.2, 0.3, 0.6]\n\
                 amplitude_g = { from = 0.1, to = 1.6, count = 5, spacing = 'logarithmic' }";
     let scenario = Scenario::parse(text, "s.toml").unwrap();
-    let cells = OverturningMap::new(&scenario).unwrap();
+    let cells = OverturningMap::of(&scenario).unwrap();
     let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
     let picture = picture::draw("a < b", &cells, &rows, Style::of(Figure::SCREEN));
     let document = Document::parse(&picture).unwrap();

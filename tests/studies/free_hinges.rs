@@ -62,7 +62,7 @@ fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {
 #[test]
 fn a_cell_is_the_history_of_its_row_under_its_pulse() {
     let scenario = parsed(&map_text());
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     let row = FreeHinges::of_arch(&arch(10.0, 0.15, 157.5)).unwrap();
     let mut outcomes = Vec::new();
     for index in 0..map.count() {
@@ -84,7 +84,7 @@ fn sizes_and_shapes_make_other_rows() {
         AXES,
         "[map]\nmean_radius_m = [5.0, 10.0]\namplitude_g = [0.6]",
     ));
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     for (index, mean_radius_m) in [5.0, 10.0].into_iter().enumerate() {
         let row = FreeHinges::of_arch(&arch(mean_radius_m, 0.15, 157.5)).unwrap();
         assert_eq!(ended(&map, index), single(&row, &map, 0.6, 0.2));
@@ -93,7 +93,7 @@ fn sizes_and_shapes_make_other_rows() {
 
     let shapes = "[map]\nthickness_ratio = [0.05, 0.15, 0.4]\nembrace_deg = [120.0, 179.0]";
     let scenario = parsed(&map_text().replace(AXES, shapes));
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     for index in 0..map.count() {
         let [thickness_ratio, embrace_deg] = map.coordinates(index);
         match FreeHinges::of_arch(&arch(10.0, thickness_ratio, embrace_deg)) {
@@ -112,7 +112,7 @@ fn a_cell_of_drums_is_the_history_of_their_column() {
         "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n[free_hinges]\nlongest_step_s = 2e-3\n{PULSE}\
          [simulation]\nduration_s = 3.0\n{AXES}"
     ));
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     let column = Column::new(4.0, 0.8).unwrap().with_drums(3).unwrap();
     let steps = RowOptions {
         longest_step_s: Some(2e-3),
@@ -144,7 +144,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
         )
     };
     let scenario = parsed(&text("repeat = true"));
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     let request = scenario.request_from_rest();
     let row = scenario
         .motion()
@@ -191,7 +191,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
 
     // Without it less is repeated: cells that overturn at once are not, though steps this long blur their edge too.
     let plain = parsed(&text(""));
-    let map = OverturningMap::new(&plain).unwrap();
+    let map = OverturningMap::of(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
         let without = map.row(index);
         let (CellResult::Ended(less), CellResult::Ended(more)) = (&without.result, &with.result)
@@ -215,7 +215,7 @@ fn cells_with_the_steps_of_runs_have_their_bits() {
         )
     };
     let scenario = parsed(&map_text());
-    let map = OverturningMap::new(&scenario).unwrap();
+    let map = OverturningMap::of(&scenario).unwrap();
     let mut moved = 0;
     for index in [0, 2, 4, 5] {
         let [duration_s, amplitude_g] = map.coordinates(index);
@@ -345,7 +345,7 @@ fn a_cell_that_fails_keeps_its_reason_to_the_end() {
              [map]\nduration_s = [0.2, 0.3]\namplitude_g = [0.1, 0.5, 0.6, 0.8]\n"
         );
         let scenario = parsed(&text);
-        let map = OverturningMap::new(&scenario).unwrap();
+        let map = OverturningMap::of(&scenario).unwrap();
         let cells = (0..map.count()).map(|index| map.row(index).result);
         let reasons: Vec<_> = cells
             .filter_map(|cell| match cell {

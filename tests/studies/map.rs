@@ -32,7 +32,7 @@ fn a_cell_is_the_history_of_its_scenario() {
          [ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.4\n\
          [map]\nmean_radius_m = [2.0, 10.0]\namplitude_g = [-0.8, 0.2, 1.5]",
     );
-    let cells = OverturningMap::new(&scenario).unwrap();
+    let cells = OverturningMap::of(&scenario).unwrap();
     assert_eq!(cells.count(), 6);
     for index in 0..6 {
         let [mean_radius_m, amplitude_g] = cells.coordinates(index);
@@ -54,8 +54,8 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     let by_duration = parsed(&text("duration_s = [0.25, 0.5]\namplitude_g = [0.4, 0.9]"));
     let by_frequency = parsed(&text("frequency_hz = [2.0, 4.0]\namplitude_g = [0.4, 0.9]"));
     let (by_duration, by_frequency) = (
-        OverturningMap::new(&by_duration).unwrap(),
-        OverturningMap::new(&by_frequency).unwrap(),
+        OverturningMap::of(&by_duration).unwrap(),
+        OverturningMap::of(&by_frequency).unwrap(),
     );
     for (index, other) in [(0, 2), (1, 3), (2, 0), (3, 1)] {
         assert_eq!(ending(&by_duration, index), ending(&by_frequency, other));
@@ -75,7 +75,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
     let mirrored = parsed(&text(
         "duration_s = [0.6, 0.8, 1.2]\namplitude_g = [-2.0, -0.5, -0.2, 0.2, 0.5, 2.0]",
     ));
-    let cells = OverturningMap::new(&mirrored).unwrap();
+    let cells = OverturningMap::of(&mirrored).unwrap();
     for (column, row) in (0..3).flat_map(|column| (0..3).map(move |row| (column, row))) {
         let left = ending(&cells, column * 6 + row);
         let right = ending(&cells, column * 6 + 5 - row);
@@ -86,7 +86,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
         assert_eq!(Ending { outcome, ..left }, right);
     }
     let scaled = parsed(&text("mean_radius_m = [2.0, 8.0]\nduration_s = [0.4, 0.8]"));
-    let cells = OverturningMap::new(&scaled).unwrap();
+    let cells = OverturningMap::of(&scaled).unwrap();
     assert_eq!(
         cells.axes.map(|axis| axis.quantity.name()),
         ["duration_s", "mean_radius_m"]
@@ -109,7 +109,7 @@ fn shapes_that_are_no_four_link_arches_have_no_history() {
         "{ARCH}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
          [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
     ));
-    let cells = OverturningMap::new(&scenario).unwrap();
+    let cells = OverturningMap::of(&scenario).unwrap();
     let found: Vec<_> = (0..6).map(|index| cells.row(index).result).collect();
     assert!(
         matches!(found[1], CellResult::CannotStand),
@@ -158,7 +158,7 @@ fn safe_islands_above_the_first_overturning_amplitude_survive() {
              [map]\nduration_s = [0.8]\n\
              amplitude_g = {{ from = 0.2, to = 2.0, count = 37 }}"
         ));
-        let cells = OverturningMap::new(&scenario).unwrap();
+        let cells = OverturningMap::of(&scenario).unwrap();
         let found: Vec<_> = (0..cells.count())
             .map(|index| {
                 let verdict = ending(&cells, index);
@@ -645,7 +645,7 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
         panic!("a map without a ground motion");
     };
     assert!(error.contains("[map] needs a ground motion"), "{error}");
-    assert!(OverturningMap::new(&still).is_none());
+    assert!(OverturningMap::of(&still).is_err());
 
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
@@ -672,7 +672,7 @@ fn a_map_reads_back_as_it_is_written() {
              [impact]\nmodel = 'prescribed'\nrestitution = 0.5\n[map]\n{map}"
         ));
         assert_eq!(parsed(&scenario.to_toml()), scenario);
-        for axis in OverturningMap::new(&scenario).unwrap().values {
+        for axis in OverturningMap::of(&scenario).unwrap().values {
             assert!(axis.is_sorted_by(|earlier, later| earlier < later));
         }
     }

@@ -193,7 +193,7 @@ fn failed_cells_keep_their_reason() {
         "[column]\nheight_m = 4\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 1\nduration_s = 1\n\
          [simulation]\nduration_s = 60\n[map]\nduration_s = [0.3, 0.6]\namplitude_g = [0.1, 0.4, 1.6]",
     );
-    let study = OverturningMap::new(&scenario).unwrap();
+    let study = OverturningMap::of(&scenario).unwrap();
     let mut rows = Runner::default().rows(&study, go_on).unwrap();
     for (index, reason) in [(1, "the first reason"), (4, "another")] {
         rows[index].result = CellResult::Failed(reason.to_owned());

@@ -91,13 +91,12 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
 
 /// The uncertain numbers of a scenario, or an explanation that it has none.
 fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
-    scenario.uncertain().ok_or_else(|| {
+    Ok(scenario.uncertain().ok_or(
         "the scenario has no [uncertain]: give it a table such as\n\n\
          [uncertain]\n\
          samples = 100\n\
-         \"arch.thickness_ratio\" = { deviation = 0.003 }"
-            .to_owned()
-    })
+         \"arch.thickness_ratio\" = { deviation = 0.003 }",
+    )?)
 }
 
 impl<Q: Question> Study for Ensemble<'_, Q> {

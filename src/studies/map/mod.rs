@@ -205,27 +205,18 @@ impl<'a> OverturningMap<'a> {
         if let Some(map) = &scenario.map {
             map.check(scenario.ground(), &scenario.simulation)?;
         }
-        let map = Self::new(scenario).ok_or_else(|| {
+        let map = Self::of_sample(scenario, scenario.clone()).ok_or(
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
              [map]\n\
              duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
-             amplitude_g = { from = 0.1, to = 1.5, count = 40 }"
-                .to_owned()
-        })?;
-        match map.fault() {
-            None => Ok(map),
-            Some(fault) => Err(format!("no cell of [map] makes a valid scenario: {fault}")),
+             amplitude_g = { from = 0.1, to = 1.5, count = 40 }",
+        )?;
+        // Keys of other tables may not exist, or not allow any of the values.
+        let faults = (0..map.count()).map(|index| map.variant(index).err());
+        match faults.collect::<Option<Vec<String>>>().as_deref() {
+            Some([fault, ..]) => Err(format!("no cell of [map] makes a valid scenario: {fault}")),
+            _ => Ok(map),
         }
-    }
-
-    /// The cells of a scenario's map; `None` if it has no map or no ground motion.
-    #[must_use]
-    pub fn new(scenario: &'a Scenario) -> Option<Self> {
-        let (ground, simulation) = (scenario.ground(), &scenario.simulation);
-        let suits = scenario.map.as_ref()?.check(ground, simulation);
-        suits
-            .ok()
-            .and_then(|()| Self::of_sample(scenario, scenario.clone()))
     }
 
     /// The cells of the map of a scenario. All values that its axes do not vary are those of `sample`.
@@ -279,18 +270,6 @@ impl<'a> OverturningMap<'a> {
                 .collect();
             self.base.with_values(&values).map(Arc::new)
         })
-    }
-
-    /// The reason if no cell has a valid scenario: keys of other tables that do not exist, or values that they do not
-    /// allow.
-    #[must_use]
-    pub fn fault(&self) -> Option<String> {
-        let mut first = None;
-        for index in 0..self.count() {
-            let fault = self.variant(index).err()?;
-            first.get_or_insert(fault);
-        }
-        first
     }
 
     /// Indices along x and y.

@@ -23,7 +23,7 @@ use crate::bisection::{Width, bisect};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::model::{Case, Model};
 use crate::output::OutputError;
-use crate::scenario::{Measure, ModelError, Scenario, Suite};
+use crate::scenario::{Measure, Scenario, Suite};
 
 /// A record that shakes the structure, and how its history ended.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -129,31 +129,20 @@ impl<'a> RecordSuite<'a> {
     /// Explains what to change.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
-        let suite = scenario.suite.as_ref().ok_or_else(|| {
+        let suite = scenario.suite.as_ref().ok_or(
             "the scenario has no [suite]: give it a table with records and levels, such as\n\n\
              [suite]\n\
              records = \"records/*.at2\"\n\
-             peaks_g = { from = 0.1, to = 2.0, count = 20, spacing = \"logarithmic\" }"
-                .to_owned()
-        })?;
-        Self::new(scenario, suite).map_err(|error| error.to_string())
-    }
-
-    /// The cases of a scenario's suite.
-    ///
-    /// # Errors
-    /// As [`Scenario::model`].
-    pub fn new(scenario: &'a Scenario, suite: &'a Suite) -> Result<Self, ModelError> {
+             peaks_g = { from = 0.1, to = 2.0, count = 20, spacing = \"logarithmic\" }",
+        )?;
+        let (records, gravity_m_s2) = (suite.records.iter(), scenario.gravity_m_s2());
+        let strengths = records.map(|series| Strength::of(series, suite.spectral, gravity_m_s2));
         Ok(Self {
             scenario,
             suite,
-            model: scenario.model()?,
+            model: scenario.model().map_err(|error| error.to_string())?,
             levels: suite.levels.values(),
-            strengths: suite
-                .records
-                .iter()
-                .map(|series| Strength::of(series, suite.spectral, scenario.gravity_m_s2()))
-                .collect(),
+            strengths: strengths.collect(),
         })
     }
 
@@ -504,11 +493,8 @@ fn counting(cases: &[CaseRow], mirrored_count: bool) -> Vec<&CaseRow> {
 /// Whether every mirrored case has the result of the original, to the other side.
 fn mirrored_are_images(cases: &[CaseRow]) -> bool {
     let key = |case: &CaseRow| (case.record.clone(), case.scale.to_bits());
-    let own: BTreeMap<_, &CaseRow> = cases
-        .iter()
-        .filter(|case| !case.mirrored)
-        .map(|case| (key(case), case))
-        .collect();
+    let own = cases.iter().filter(|case| !case.mirrored);
+    let own: BTreeMap<_, &CaseRow> = own.map(|case| (key(case), case)).collect();
     let mut mirrored = cases.iter().filter(|case| case.mirrored);
     mirrored.all(|case| {
         let own = own.get(&key(case));

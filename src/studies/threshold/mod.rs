@@ -275,16 +275,13 @@ pub fn thresholds(
 /// Explains what to change.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
-    if scenario.ground().is_some() {
-        return Ok(());
-    }
-    Err(
+    scenario.ground().ok_or(
         "a threshold needs a ground motion: give a table such as\n\n\
          [ground.one_cosine]\n\
          amplitude_g = 0.3\n\
-         duration_s = 0.5"
-            .to_owned(),
-    )
+         duration_s = 0.5",
+    )?;
+    Ok(())
 }
 
 /// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.

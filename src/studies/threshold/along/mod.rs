@@ -112,19 +112,15 @@ impl<'a> Along<'a> {
     pub fn of(scenario: &'a Scenario, options: AlongOptions) -> Result<Self, String> {
         check(scenario)?;
         if options.no_impact && scenario.motion().hinges().has_joints() {
-            return Err(
-                "--no-impact is for four links and columns, whose hinges close all at once: leave it out, or give --hinges four"
-                    .to_owned(),
-            );
+            return Err("--no-impact is for four links and columns, whose hinges close all at once: leave it out, or give --hinges four".into());
         }
         let study = Self {
             scenario,
             values: options.along.values(),
             options,
         };
-        let faults = study.values.iter();
-        let faults: Option<Vec<String>> = faults.map(|value| study.variant(*value).err()).collect();
-        match faults.as_deref() {
+        let faults = study.values.iter().map(|value| study.variant(*value).err());
+        match faults.collect::<Option<Vec<String>>>().as_deref() {
             Some([first, ..]) => Err(format!(
                 "no value of `{}` makes a valid scenario: {first}",
                 study.options.along.key
@@ -198,21 +194,20 @@ impl Study for Along<'_> {
 
     fn row(&self, index: usize) -> AlongRow {
         let value = self.values[index];
-        match self.variant(value) {
-            Err(reason) => AlongRow {
-                value,
-                peak_g: None,
-                no_impact: self.options.no_impact.then(|| Err(reason.clone())),
-                edge: Err(NoAnswer::Invalid(reason)),
-            },
-            Ok(scenario) => AlongRow {
-                value,
-                peak_g: Some(super::peak_g(&scenario)),
-                edge: FirstEdge::of(&scenario, &self.options.factors),
-                no_impact: self
-                    .options
-                    .no_impact
-                    .then(|| least_without_impact(&scenario, &self.options.factors)),
+        let (scenario, factors) = (self.variant(value), &self.options.factors);
+        let scenario = scenario.as_ref().map_err(String::clone);
+        let no_impact = || {
+            scenario
+                .clone()
+                .and_then(|one| least_without_impact(one, factors))
+        };
+        AlongRow {
+            value,
+            peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
+            no_impact: self.options.no_impact.then(no_impact),
+            edge: match scenario.clone() {
+                Ok(one) => FirstEdge::of(one, factors),
+                Err(reason) => Err(NoAnswer::Invalid(reason)),
             },
         }
     }
