@@ -166,6 +166,9 @@ pub struct Task<'p> {
     pub resume: bool,
 }
 
+/// The rows of all cases, `None` for a shard; and the file that keeps them until there are results.
+pub type RowsInFile<R> = (Option<Vec<R>>, PartFile);
+
 /// Computes the rows of studies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Runner {
@@ -240,7 +243,7 @@ impl Runner {
         study: &S,
         task: Task<'_>,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(Option<Vec<S::Row>>, PartFile), RunnerError> {
+    ) -> Result<RowsInFile<S::Row>, RunnerError> {
         let (folder, shard) = (task.folder, task.shard);
         fs::create_dir_all(folder).map_err(|source| {
             let path = folder.to_owned();
