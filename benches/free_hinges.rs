@@ -143,17 +143,14 @@ fn full_closure(bencher: Bencher, voussoirs: usize) {
         .map(|ends| at(0.5 * (ends[0] + ends[1])))
         .collect();
     let placement = Placement::new(&row);
-    let jumps = vec![Twist::ZERO; voussoirs + 1];
-    let touching = vec![[true; 2]; voussoirs + 1];
+    let load = Load {
+        free,
+        ..Load::none(&row)
+    };
     let mut program = Program::new(&row);
     bencher.bench_local(|| {
         program.place(&placement);
         program.reset();
-        let load = Load {
-            free: &free,
-            jumps: &jumps,
-            touching: &touching,
-        };
         program.solve(&load).map(|effort| effort.iterations)
     });
 }

@@ -1,5 +1,6 @@
 //! The error of an argument out of range.
 
+use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use thiserror::Error;
@@ -27,6 +28,19 @@ impl ArgumentError {
     }
 }
 
+/// The value, if this holds; else an error that names what is allowed.
+pub fn allow(
+    holds: bool,
+    argument: &'static str,
+    value: f64,
+    allowed: impl Display,
+) -> Result<f64, ArgumentError> {
+    if holds {
+        return Ok(value);
+    }
+    Err(ArgumentError::new(argument, value, allowed.to_string()))
+}
+
 /// The value, if it is in the range; NaN never is.
 pub fn within(
     argument: &'static str,
@@ -47,11 +61,9 @@ pub fn counted(
     count: usize,
     range: RangeInclusive<usize>,
 ) -> Result<usize, ArgumentError> {
-    if range.contains(&count) {
-        return Ok(count);
-    }
-    let allowed = format!("from {} to {}", range.start(), range.end());
-    Err(ArgumentError::new(argument, count as f64, allowed))
+    let allowed = format_args!("from {} to {}", range.start(), range.end());
+    allow(range.contains(&count), argument, count as f64, allowed)?;
+    Ok(count)
 }
 
 /// The value, if it is above the first bound and at most the second; NaN never is.
@@ -61,11 +73,8 @@ pub fn above(
     low: f64,
     high: f64,
 ) -> Result<f64, ArgumentError> {
-    if value > low && value <= high {
-        return Ok(value);
-    }
-    let allowed = format!("a number above {} and at most {}", short(low), short(high));
-    Err(ArgumentError::new(argument, value, allowed))
+    let allowed = format_args!("a number above {} and at most {}", short(low), short(high));
+    allow(value > low && value <= high, argument, value, allowed)
 }
 
 /// A number as people write it, with at most six digits: 0.12, not 0.12000000000000002.

@@ -16,6 +16,7 @@ use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, Material, Pier, Piers,
     PlacedLoad, Shape,
 };
+use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::falls;
 use archrock::{
     Arch, FourLinks, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Scenario,
@@ -427,4 +428,13 @@ pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, 
         noise(random, [2.0 * strength_g, 2.0 * vertical_g], length_s)
     };
     (row, ground)
+}
+
+/// The pushes to a side, in units of gravity, of the first motion of a row and at its fall.
+pub fn pushes_g(follower: &Follower, sway: Sway) -> [f64; 2] {
+    let first_g = follower.first_motion_g(sway).unwrap().unwrap();
+    [
+        first_g,
+        follower.capacity_g(sway, first_g).unwrap().unwrap(),
+    ]
 }

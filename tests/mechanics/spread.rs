@@ -20,10 +20,10 @@ use nalgebra::Vector2;
 use roxmltree::Document;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use crate::common::parsed;
 use crate::common::program::{printed, refused};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named, points};
+use crate::common::{parsed, pushes_g};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
@@ -466,7 +466,7 @@ fn both_pushes_are_those_of_programmes_in_moved_places() {
         let row = arch(embrace_deg, thickness, voussoirs);
         let mut follower = Follower::new(&row).unwrap();
         follower.move_supports(right(way), 0.0, at).unwrap();
-        let [first_g, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
+        let [first_g, capacity_g] = pushes_g(&follower, Sway::Right);
         let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
         for step in 1..=20 {
             blocks.support = way.map(|part| part * at * f64::from(step) / 20.0);
@@ -598,7 +598,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
             );
             let hinges = follower.hinges.as_ref().unwrap().hinges.len();
             most = most.max(hinges);
-            let [first_g, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
+            let [first_g, capacity_g] = pushes_g(&follower, Sway::Right);
             assert!(
                 capacity_g >= first_g && (hinges == 3 || first_g == 0.0),
                 "{what}"
@@ -642,7 +642,7 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
                 .flat_map(|tie| [tie.yielded_m.0[0], tie.force_n.0[0] / weight_n])
                 .collect();
             for sway in [Sway::Right, Sway::Left] {
-                numbers.extend(follower.pushes_g(sway).unwrap().unwrap());
+                numbers.extend(pushes_g(&follower, sway));
             }
             numbers
         });
@@ -731,7 +731,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     golden("limit-held-by-tie", &words);
     for sway in [Sway::Right, Sway::Left] {
         let side = sway.name();
-        let [first_g, falls_g] = follower.pushes_g(sway).unwrap().unwrap();
+        let [first_g, falls_g] = pushes_g(&follower, sway);
         assert_eq!(first_g, 0.0);
         assert_eq!(told["incipient_acceleration_g"][side], first_g);
         assert_eq!(told["capacity_g"][side], falls_g);
@@ -803,7 +803,7 @@ fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
         let (row, mut blocks) = tied(16, stiffness, prestress, f64::INFINITY, false);
         let mut follower = Follower::new(&row).unwrap();
         follower.move_supports(right(way), 0.0, at).unwrap();
-        let [_, capacity_g] = follower.pushes_g(Sway::Right).unwrap().unwrap();
+        let [_, capacity_g] = pushes_g(&follower, Sway::Right);
         for step in 1..=20 {
             blocks.support = way.map(|part| part * at * f64::from(step) / 20.0);
             assert!(blocks.settle());
@@ -1081,7 +1081,7 @@ fn paths_are_those_of_another_program() {
             .move_supports(right(OUT), 0.0, at * 0.111_646_18)
             .unwrap();
         for sway in [Sway::Right, Sway::Left] {
-            let [first, capacity] = follower.pushes_g(sway).unwrap().unwrap();
+            let [first, capacity] = pushes_g(&follower, sway);
             assert!((first - first_g).abs() < 2e-8, "{at}: {first}");
             assert!((capacity - capacity_g).abs() < 1e-6, "{at}: {capacity}");
         }
@@ -1526,7 +1526,7 @@ fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
     let model = ElasticJoints::new(row.clone(), elastic(10.0)).unwrap();
     let settled = model.clone().on_supports(movements).unwrap();
     for sway in [Sway::Right, Sway::Left] {
-        let [first_g, _] = follower.pushes_g(sway).unwrap().unwrap();
+        let [first_g, _] = pushes_g(&follower, sway);
         assert_eq!(settled.incipient_acceleration_g(sway), Some(first_g));
         assert!(first_g < 0.5 * model.incipient_acceleration_g(sway).unwrap());
     }

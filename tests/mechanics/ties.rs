@@ -3,7 +3,7 @@
 
 use crate::common::program::{printed, refused, scenarios};
 use crate::common::prose::{golden, shows};
-use crate::common::{Random, parsed, ring};
+use crate::common::{Random, parsed, pushes_g, ring};
 use archrock::Scenario;
 use archrock::mechanics::blocks::{Row, Supports};
 use archrock::mechanics::friction;
@@ -611,8 +611,7 @@ fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
         let ties: String = (0..count).map(tie).collect();
         let row = parsed(&format!("{arch}{ties}")).structure().row().unwrap();
         let follower = Follower::new(&row).unwrap();
-        let pushes_g = follower.pushes_g(Sway::Right).unwrap().unwrap();
-        pushes_g[1]
+        pushes_g(&follower, Sway::Right)[1]
     };
     let [many_g, fewer_g] = [200, 50].map(capacity_g);
     assert!(

@@ -56,19 +56,12 @@ fn closure_error_m(run: &Summary) -> f64 {
     run.row().unwrap().closure_error_m
 }
 
-fn still(row: &Row) -> (Vec<Twist>, Vec<[bool; 2]>) {
-    let joints = row.joints.len();
-    (vec![Twist::ZERO; joints], vec![[true; 2]; joints])
-}
-
 /// Velocities of the undeformed row after contact, from those before, and the fraction of the energy that is kept.
 fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
     let mut program = Program::new(row);
-    let (jumps, touching) = still(row);
     let load = Load {
-        free,
-        jumps: &jumps,
-        touching: &touching,
+        free: free.to_vec(),
+        ..Load::none(row)
     };
     program.solve(&load).unwrap();
     let energy = |twists: &[Twist]| -> f64 {

@@ -408,11 +408,7 @@ proptest! {
                 let mass = ring.moments_to(ring.embrace_rad).mass;
                 prop_assert!(mass.is_finite() && mass >= 0.0);
             }
-            Err(error) => {
-                let message = error.to_string();
-                let names = [format!("thickness ratio {t:?} "), format!("embrace angle {embrace_rad:?} ")];
-                prop_assert!(names.iter().any(|name| message.starts_with(name)), "{}", message);
-            }
+            Err(error) => check_named(&error, &[("thickness_ratio", t), ("embrace_rad", embrace_rad)])?,
         }
     }
 

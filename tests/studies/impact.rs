@@ -307,9 +307,8 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         let joints = blocks.joints.len();
         let mut program = Program::new(&blocks);
         let load = Load {
-            free: &free,
-            jumps: &vec![Twist::ZERO; joints],
-            touching: &vec![[true; 2]; joints],
+            free: free.clone(),
+            ..Load::none(&blocks)
         };
         program.solve(&load).unwrap();
         let energy = |twists: &[Twist]| -> f64 {

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
-use crate::argument::{ArgumentError, counted, within};
+use crate::argument::{ArgumentError, allow, counted, within};
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
@@ -103,17 +103,9 @@ pub struct Arch {
 /// Arches are equal if their shape, size and material are.
 impl PartialEq for Arch {
     fn eq(&self, other: &Self) -> bool {
-        let said = |arch: &Self| {
-            (
-                arch.mean_radius_m,
-                arch.thickness_ratio,
-                arch.embrace_deg,
-                arch.depth_m,
-                arch.density_kg_m3,
-                arch.voussoirs,
-            )
-        };
-        said(self) == said(other)
+        let shape = |arch: &Self| (arch.thickness_ratio, arch.embrace_deg, arch.voussoirs);
+        let other_numbers = |arch: &Self| (arch.mean_radius_m, arch.depth_m, arch.density_kg_m3);
+        shape(self) == shape(other) && other_numbers(self) == other_numbers(other)
     }
 }
 
@@ -145,91 +137,69 @@ impl Arch {
     }
 
     /// The arch with its new shape, checked.
-    fn reshaped(self) -> Result<Self, ArgumentError> {
-        let allowed = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
-        if !allowed.contains(&self.thickness_ratio) {
-            return Err(ArgumentError {
-                argument: "thickness_ratio",
-                value: self.thickness_ratio,
-                allowed: format!(
-                    "a number from {:?} to below {:?}",
-                    allowed.start, allowed.end
-                ),
-            });
-        }
-        Ok(Self {
-            incipient: Arc::default(),
-            ..self
-        })
+    fn reshaped(mut self) -> Result<Self, ArgumentError> {
+        let (ratio, range) = (
+            self.thickness_ratio,
+            MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND,
+        );
+        let allowed = format_args!("a number from {:?} to below {:?}", range.start, range.end);
+        allow(range.contains(&ratio), "thickness_ratio", ratio, allowed)?;
+        self.incipient = Arc::default();
+        Ok(self)
     }
 
     /// This arch with another mean radius, in metres: its thickness grows with it.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
-    pub fn with_mean_radius_m(self, mean_radius_m: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            mean_radius_m: within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
-            ..self
-        })
+    pub fn with_mean_radius_m(mut self, mean_radius_m: f64) -> Result<Self, ArgumentError> {
+        self.mean_radius_m = within("mean_radius_m", mean_radius_m, MAGNITUDE)?;
+        Ok(self)
     }
 
     /// This arch with another thickness, in mean radii.
     ///
     /// # Errors
     /// When it is not from 1e-6 to below 2.
-    pub fn with_thickness_ratio(self, thickness_ratio: f64) -> Result<Self, ArgumentError> {
-        Self {
-            thickness_ratio,
-            ..self
-        }
-        .reshaped()
+    pub fn with_thickness_ratio(mut self, thickness_ratio: f64) -> Result<Self, ArgumentError> {
+        self.thickness_ratio = thickness_ratio;
+        self.reshaped()
     }
 
     /// This arch with another embrace angle, in degrees.
     ///
     /// # Errors
     /// When it is outside 1 to 180.
-    pub fn with_embrace_deg(self, embrace_deg: f64) -> Result<Self, ArgumentError> {
-        Self {
-            embrace_deg: within("embrace_deg", embrace_deg, EMBRACE_DEG)?,
-            ..self
-        }
-        .reshaped()
+    pub fn with_embrace_deg(mut self, embrace_deg: f64) -> Result<Self, ArgumentError> {
+        self.embrace_deg = within("embrace_deg", embrace_deg, EMBRACE_DEG)?;
+        self.reshaped()
     }
 
     /// This arch cut into equal voussoirs, so that hinges open at their joints only.
     ///
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
-    pub fn with_voussoirs(self, voussoirs: usize) -> Result<Self, ArgumentError> {
-        Self {
-            voussoirs: Some(counted("voussoirs", voussoirs, VOUSSOIRS)?),
-            ..self
-        }
-        .reshaped()
+    pub fn with_voussoirs(mut self, voussoirs: usize) -> Result<Self, ArgumentError> {
+        self.voussoirs = Some(counted("voussoirs", voussoirs, VOUSSOIRS)?);
+        self.reshaped()
     }
 
     /// This arch with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
-    pub fn with_depth_m(self, depth_m: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            depth_m: within("depth_m", depth_m, MAGNITUDE)?,
-            ..self
-        })
+    pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
+        self.depth_m = within("depth_m", depth_m, MAGNITUDE)?;
+        Ok(self)
     }
 
     /// This arch with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
-    pub fn with_density_kg_m3(self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            density_kg_m3: within("density_kg_m3", density_kg_m3, MAGNITUDE)?,
-            ..self
-        })
+    pub fn with_density_kg_m3(mut self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
+        self.density_kg_m3 = within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
+        Ok(self)
     }
 
     /// Makes drawings and captions of the arch give span and rise of this line.
@@ -249,11 +219,8 @@ impl Arch {
     #[must_use]
     pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
         let radius_m = self.radius_at_m(line);
-        let half_rad = 0.5 * self.embrace_deg.to_radians();
-        [
-            2.0 * radius_m * half_rad.sin(),
-            radius_m * (1.0 - half_rad.cos()),
-        ]
+        let (sin, cos) = (0.5 * self.embrace_deg.to_radians()).sin_cos();
+        [2.0 * radius_m * sin, radius_m * (1.0 - cos)]
     }
 
     /// Its voussoirs as a row of blocks.
@@ -273,8 +240,7 @@ impl Arch {
     /// Sections at which hinges may open.
     #[must_use]
     pub fn sites(&self) -> HingeSites {
-        self.voussoirs
-            .map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
+        (self.voussoirs).map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
     /// Sections at which lines of thrust are reported, in radians from the left springing: the joints, or 61 sections
@@ -297,8 +263,9 @@ impl Arch {
     /// # Errors
     /// When the arch cannot stand, or does not start as a four-link mechanism.
     pub fn incipient(&self) -> Result<&Incipient, LimitError> {
+        let onset = || incipient(&self.ring(), self.sites());
         self.incipient
-            .get_or_init(|| incipient(&self.ring(), self.sites()))
+            .get_or_init(onset)
             .as_ref()
             .map_err(|error| *error)
     }

@@ -35,10 +35,8 @@ impl Block {
         depth_m: f64,
         density_kg_m3: f64,
     ) -> Self {
-        let moments = outline_m
-            .into_iter()
-            .map(|curve| curve.swept(pole_m))
-            .fold(MassMoments::default(), Add::add);
+        let swept = outline_m.into_iter().map(|curve| curve.swept(pole_m));
+        let moments = swept.fold(MassMoments::default(), Add::add);
         let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
         let centre = moments.first / moments.mass;
         Self {

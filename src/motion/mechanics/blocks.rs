@@ -229,11 +229,8 @@ impl Row {
     /// This row drawn with other outlines of its blocks: closed polygons, in metres.
     #[must_use]
     pub(crate) fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
-        if outlines_m.len() == self.blocks.len() {
-            Self { outlines_m, ..self }
-        } else {
-            self
-        }
+        debug_assert_eq!(outlines_m.len(), self.blocks.len());
+        Self { outlines_m, ..self }
     }
 
     /// This row with left and right supports that extend beyond their joints or not (a stack has only the left one, its base). A
@@ -378,19 +375,16 @@ impl Row {
         let total_m: f64 = heights_m.iter().sum();
         let width = |y: f64| base_width_m + (top_width_m - base_width_m) * (y / total_m);
         let mut y = 0.0;
-        let drums: Vec<Drum> = heights_m
-            .iter()
-            .map(|height_m| {
-                let bottom = y;
-                y += height_m;
-                Drum {
-                    height_m: *height_m,
-                    base_width_m: width(bottom),
-                    top_width_m: width(y),
-                }
-            })
-            .collect();
-        Self::stack(&drums, depth_m, density_kg_m3)
+        let drums = heights_m.iter().map(|height_m| {
+            let base_width_m = width(y);
+            y += height_m;
+            Drum {
+                height_m: *height_m,
+                base_width_m,
+                top_width_m: width(y),
+            }
+        });
+        Self::stack(&drums.collect::<Vec<_>>(), depth_m, density_kg_m3)
     }
 
     /// Middles of the joints on its left and its right support; a stack has one support.
@@ -411,11 +405,10 @@ impl Row {
 }
 
 fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
-    if value > 0.0 && value < f64::INFINITY {
-        Ok(())
-    } else {
-        Err(RowError::Dimension { name, value })
-    }
+    let holds = value > 0.0 && value < f64::INFINITY;
+    holds
+        .then_some(())
+        .ok_or(RowError::Dimension { name, value })
 }
 
 /// Mass per unit of area.
@@ -426,11 +419,8 @@ fn surface_density(depth_m: f64, density_kg_m3: f64) -> Result<f64, RowError> {
 }
 
 fn counted(blocks: usize) -> Result<(), RowError> {
-    if (1..=MAX_BLOCKS).contains(&blocks) {
-        Ok(())
-    } else {
-        Err(RowError::Count(blocks))
-    }
+    let holds = (1..=MAX_BLOCKS).contains(&blocks);
+    holds.then_some(()).ok_or(RowError::Count(blocks))
 }
 
 /// Refuses joints without a thickness, too large a row for its size, and joints that cross.
@@ -447,44 +437,29 @@ fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
             });
         }
     }
-    let corners = joints
-        .iter()
-        .flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
-    let extent_m = corners
-        .map(|corner| (corner - joints[0].intrados_m).norm())
-        .fold(0.0, f64::max);
+    let joints_m = joints.iter();
+    let corners = joints_m.flat_map(|joint| [joint.intrados_m, joint.extrados_m]);
+    let distances = corners.map(|corner| (corner - joints[0].intrados_m).norm());
+    let extent_m = distances.fold(0.0, f64::max);
     if size_m < LEAST_SIZE_RATIO * extent_m {
         return Err(RowError::Size { size_m, extent_m });
     }
-    match joints.windows(2).position(|pair| pair[0].meets(&pair[1])) {
-        Some(first) => Err(RowError::Crossing(first)),
-        None => Ok(()),
-    }
+    let crossing = joints.windows(2).position(|pair| pair[0].meets(&pair[1]));
+    crossing.map_or(Ok(()), |first| Err(RowError::Crossing(first)))
 }
 
 /// Refuses blocks without mass or inertia, or with a centre that is no number.
 fn check_blocks(blocks: &[Block]) -> Result<(), RowError> {
-    let positive = |number: f64| number > 0.0 && number < f64::INFINITY;
-    let allowed = ["it must be positive and finite", "it must be finite"];
+    let (positive, finite) = ("it must be positive and finite", "it must be finite");
     for (index, block) in blocks.iter().enumerate() {
         let [x, y] = block.centre_m.into();
-        for (name, value, holds, allowed) in [
-            (
-                "mass in kg",
-                block.mass_kg,
-                positive(block.mass_kg),
-                allowed[0],
-            ),
-            (
-                "inertia in kg m2",
-                block.inertia_kg_m2,
-                positive(block.inertia_kg_m2),
-                allowed[0],
-            ),
-            ("centre in m", x, x.is_finite(), allowed[1]),
-            ("centre in m", y, y.is_finite(), allowed[1]),
+        for (name, value, allowed) in [
+            ("mass in kg", block.mass_kg, positive),
+            ("inertia in kg m2", block.inertia_kg_m2, positive),
+            ("centre in m", x, finite),
+            ("centre in m", y, finite),
         ] {
-            if !holds {
+            if !value.is_finite() || (allowed == positive && value <= 0.0) {
                 return Err(RowError::Value {
                     name,
                     part: "block",

@@ -78,19 +78,17 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     // Every hinge adds a rotation about itself to the motion of the body before it.
     let mut twist = Twist::ZERO;
     let bodies = mechanism.moments().into_iter().zip(&hinges);
-    let mut moving: Vec<MovingBody> = bodies
-        .zip(rates.as_ref())
-        .map(|((moments, hinge), rate)| {
-            twist = twist + Twist::rotation(*hinge, rate - twist.rate);
-            let centre = moments.centroid();
-            MovingBody {
-                mass_kg: moments.mass * structure.mass_unit_kg(),
-                centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
-                displacement: twist.at(centre) * structure.length_m(),
-                rotation: -rate,
-            }
-        })
-        .collect();
+    let moving = bodies.zip(rates.as_ref()).map(|((moments, hinge), rate)| {
+        twist = twist + Twist::rotation(*hinge, rate - twist.rate);
+        let centre = moments.centroid();
+        MovingBody {
+            mass_kg: moments.mass * structure.mass_unit_kg(),
+            centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
+            displacement: twist.at(centre) * structure.length_m(),
+            rotation: -rate,
+        }
+    });
+    let mut moving: Vec<MovingBody> = moving.collect();
     if sway == Sway::Left {
         moving.reverse();
     }
@@ -147,9 +145,8 @@ impl Control {
     /// Its horizontal displacement in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let points = self.points.iter();
-        points
-            .map(|(part, point)| part * point.shift_m(poses))
-            .sum()
+        let shifts_m = points.map(|(part, point)| part * point.shift_m(poses));
+        shifts_m.sum()
     }
 }
 
@@ -254,19 +251,15 @@ impl Capacity {
         control: Control,
         gravity_m_s2: f64,
     ) -> Result<Self, CapacityError> {
-        let (before, after) = (displaced(-START), displaced(START));
-        let velocity = |before_m: f64, after_m: f64| {
-            sway.sign() * (after_m - before_m) / (after.q_rad - before.q_rad)
+        let near = [-START, START].map(&displaced);
+        let velocity = |shift_m: &dyn Fn(&[Pose]) -> f64| {
+            let [before_m, after_m] = [0, 1].map(|at| shift_m(&near[at].poses));
+            sway.sign() * (after_m - before_m) / (near[1].q_rad - near[0].q_rad)
         };
-        let control_velocity = velocity(
-            control.shift_m(&before.poses),
-            control.shift_m(&after.poses),
-        );
+        let control_velocity = velocity(&|poses| control.shift_m(poses));
         let moving = masses.iter().filter(|(_, point)| point.body.is_some());
-        let moving = moving.map(|(mass_kg, point)| {
-            let shifts_m = [&before, &after].map(|at| point.shift_m(&at.poses));
-            (*mass_kg, velocity(shifts_m[0], shifts_m[1]))
-        });
+        let moving =
+            moving.map(|(mass_kg, point)| (*mass_kg, velocity(&|poses| point.shift_m(poses))));
         let moving: Vec<(f64, f64)> = moving.collect();
         let speeds = moving.iter().map(|(_, velocity)| velocity.abs());
         let fastest = speeds.fold(0.0, f64::max);
@@ -274,13 +267,8 @@ impl Capacity {
             let at_m = control.at_m;
             return Err(CapacityError::Control { at_m, sway });
         }
-        let Participation {
-            participating_mass_kg,
-            mass_fraction,
-            oscillator_displacement,
-            ..
-        } = Participation::of(moving);
-        let to_oscillator = oscillator_displacement / control_velocity;
+        let participation = Participation::of(moving);
+        let to_oscillator = participation.oscillator_displacement / control_velocity;
         // At the end of the way the acceleration may be NaN.
         let [start_g, end_g] = [0.0, 1.0].map(|part| displaced(part).acceleration_g);
         if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
@@ -289,8 +277,8 @@ impl Capacity {
         let mut capacity = Self {
             sway,
             control,
-            participating_mass_kg,
-            mass_fraction,
+            participating_mass_kg: participation.participating_mass_kg,
+            mass_fraction: participation.mass_fraction,
             to_oscillator,
             curve: Vec::new(),
             ties: Vec::new(),
@@ -322,8 +310,7 @@ impl Capacity {
             let points = yields.into_iter().chain(breaks.into_iter().flatten());
             self.curve.extend(points);
         }
-        self.curve
-            .sort_by(|one, other| one.q_rad.total_cmp(&other.q_rad));
+        (self.curve).sort_by(|one, other| one.q_rad.total_cmp(&other.q_rad));
         self.curve.dedup_by(|one, other| one.q_rad == other.q_rad);
         self
     }
@@ -332,11 +319,8 @@ impl Capacity {
     fn point(&self, part: f64, here: &Displaced, gravity_m_s2: f64) -> CurvePoint {
         // Rounding may leave the first displacement and the last acceleration on either side of zero.
         let (first, last) = (part == 0.0, part == 1.0);
-        let displacement_m = if first {
-            0.0
-        } else {
-            self.sway.sign() * self.control.shift_m(&here.poses)
-        };
+        let shift_m = self.sway.sign() * self.control.shift_m(&here.poses);
+        let displacement_m = if first { 0.0 } else { shift_m };
         let acceleration_g = if last { 0.0 } else { here.acceleration_g };
         let oscillator_displacement_m = displacement_m * self.to_oscillator;
         let oscillator_acceleration_g = acceleration_g / self.mass_fraction;

@@ -24,7 +24,7 @@ use super::arch::{DENSITY_KG_M3, DEPTH_M};
 use super::blocks::{MAX_BLOCKS, Row, RowError};
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use super::tie::{Tie, TieError};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::four_link::thrust::Load;
@@ -157,14 +157,11 @@ impl Column {
     ///
     /// # Errors
     /// When there is none, or more than a row of blocks may have.
-    pub fn with_drums(self, drums: usize) -> Result<Self, ArgumentError> {
+    pub fn with_drums(mut self, drums: usize) -> Result<Self, ArgumentError> {
         let count = drums as f64;
         within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
-        let heights_m = vec![self.height_m / count; drums];
-        Ok(Self {
-            drum_heights_m: Some(heights_m),
-            ..self
-        })
+        self.drum_heights_m = Some(vec![self.height_m / count; drums]);
+        Ok(self)
     }
 
     /// This column cut into drums of these heights in metres, from the base up.
@@ -172,34 +169,26 @@ impl Column {
     /// # Errors
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
     /// there are none or too many.
-    pub fn with_drum_heights_m(self, heights_m: Vec<f64>) -> Result<Self, ArgumentError> {
+    pub fn with_drum_heights_m(mut self, heights_m: Vec<f64>) -> Result<Self, ArgumentError> {
         within("drums", heights_m.len() as f64, 1.0..=MAX_BLOCKS as f64)?;
         for height_m in &heights_m {
             within("drum_heights_m", *height_m, MAGNITUDE)?;
         }
         let sum_m: f64 = heights_m.iter().sum();
-        if (sum_m - self.height_m).abs() > 1e-6 * self.height_m {
-            return Err(ArgumentError {
-                argument: "sum of drum_heights_m",
-                value: sum_m,
-                allowed: format!("the height of the column, {:?}", self.height_m),
-            });
-        }
-        Ok(Self {
-            drum_heights_m: Some(heights_m),
-            ..self
-        })
+        let fits = (sum_m - self.height_m).abs() <= 1e-6 * self.height_m;
+        let allowed = format_args!("the height of the column, {:?}", self.height_m);
+        allow(fits, "sum of drum_heights_m", sum_m, allowed)?;
+        self.drum_heights_m = Some(heights_m);
+        Ok(self)
     }
 
     /// This column with another width at the top, in metres: it changes in a straight line.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
-    pub fn with_top_width_m(self, top_width_m: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            top_width_m: Some(within("top_width_m", top_width_m, MAGNITUDE)?),
-            ..self
-        })
+    pub fn with_top_width_m(mut self, top_width_m: f64) -> Result<Self, ArgumentError> {
+        self.top_width_m = Some(within("top_width_m", top_width_m, MAGNITUDE)?);
+        Ok(self)
     }
 
     /// This column on a pedestal as wide as its base, off which it falls if it slips too far; if `false`, on ground that
@@ -248,20 +237,18 @@ impl Column {
             self.density_kg_m3,
         )?;
         let row = row.with_supports_that_extend([!self.pedestal, false]);
-        Ok(match &self.ties {
-            Some((ties, gravity_m_s2)) => row
-                .with_ties(ties.clone(), *gravity_m_s2)
-                .expect("they were checked with the same blocks"),
-            None => row,
-        })
+        let Some((ties, gravity_m_s2)) = &self.ties else {
+            return Ok(row);
+        };
+        let tied = row.with_ties(ties.clone(), *gravity_m_s2);
+        Ok(tied.expect("they were checked with the same blocks"))
     }
 
     /// Heights of its drums from the base up, in metres; its own height where it is one block.
     #[must_use]
     pub fn drum_heights_m(&self) -> Vec<f64> {
-        self.drum_heights_m
-            .clone()
-            .unwrap_or_else(|| vec![self.height_m])
+        let drums = self.drum_heights_m.clone();
+        drums.unwrap_or_else(|| vec![self.height_m])
     }
 
     /// Whether it is one block with upright sides, which nothing but the ground holds, as in Housner's model.
@@ -281,22 +268,18 @@ impl Column {
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
-    pub fn with_depth_m(self, depth_m: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            depth_m: within("depth_m", depth_m, MAGNITUDE)?,
-            ..self
-        })
+    pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
+        self.depth_m = within("depth_m", depth_m, MAGNITUDE)?;
+        Ok(self)
     }
 
     /// This column with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
-    pub fn with_density_kg_m3(self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            density_kg_m3: within("density_kg_m3", density_kg_m3, MAGNITUDE)?,
-            ..self
-        })
+    pub fn with_density_kg_m3(mut self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
+        self.density_kg_m3 = within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
+        Ok(self)
     }
 
     /// Sections at which the line of thrust of a single block is reported, in metres above the base: 21, from the base to the
@@ -333,22 +316,16 @@ impl RockingColumn {
     pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
         let law = law.into();
         law.check()?;
-        let model = law.model;
-        let drums = column.drum_heights_m().len();
-        if drums > 1 {
-            return Err(ArgumentError {
-                argument: "drums",
-                value: drums as f64,
-                allowed: "1 in Housner's model: a column of drums needs free hinges".to_owned(),
-            });
-        }
-        if column.top_width_m() != column.width_m {
-            return Err(ArgumentError {
-                argument: "top_width_m",
-                value: column.top_width_m(),
-                allowed: "the width in Housner's model: a taper needs free hinges".to_owned(),
-            });
-        }
+        let (drums, top_width_m) = (column.drum_heights_m().len(), column.top_width_m());
+        let one = "1 in Housner's model: a column of drums needs free hinges";
+        allow(drums <= 1, "drums", drums as f64, one)?;
+        let width = "the width in Housner's model: a taper needs free hinges";
+        allow(
+            top_width_m == column.width_m,
+            "top_width_m",
+            top_width_m,
+            width,
+        )?;
         let diagonal_m = column.height_m.hypot(column.width_m);
         let half_diagonal_m = 0.5 * diagonal_m;
         let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);
@@ -361,15 +338,12 @@ impl RockingColumn {
         let link = |rate_ratio, restitution| {
             Link::new(tilting, slenderness_rad, FRAC_PI_2, rate_ratio, restitution)
         };
-        let rate_ratio = match model {
-            ImpactModel::Prescribed { restitution } => restitution.sqrt(),
+        let (rate_ratio, restitution) = match law.model {
+            ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
             ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
-                rate_ratio(sin, cos)
+                let rate_ratio = rate_ratio(sin, cos);
+                (rate_ratio, rate_ratio * rate_ratio)
             }
-        };
-        let restitution = match model {
-            ImpactModel::Prescribed { restitution } => restitution,
-            _ => rate_ratio * rate_ratio,
         };
         let (rate_ratio, restitution) = law.measured(rate_ratio, restitution);
         Ok(Self {
@@ -496,16 +470,15 @@ impl MechanismChain for RockingColumn {
     }
 
     fn link_from(&self, _: Sway, impacts: usize) -> Option<&Link<Tilting>> {
-        if impacts == 0 {
-            Some(&self.first)
-        } else {
-            self.next.as_ref()
+        match impacts {
+            0 => Some(&self.first),
+            _ => self.next.as_ref(),
         }
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        self.link(impacts)
-            .map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
+        let link = self.link(impacts);
+        link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 
     /// None: the restitution coefficient alone describes the impact of a column.

@@ -5,25 +5,14 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver as _, NonnegativeConeT, ZeroConeT,
 };
 
-/// Entries of a sparse matrix.
-#[derive(Default)]
-pub(crate) struct Entries {
-    rows: Vec<usize>,
-    columns: Vec<usize>,
-    values: Vec<f64>,
-}
-
-impl Entries {
-    pub fn put(&mut self, row: usize, column: usize, value: f64) {
-        self.rows.push(row);
-        self.columns.push(column);
-        self.values.push(value);
-    }
-
-    /// The matrix of this height and width.
-    pub fn matrix(self, height: usize, width: usize) -> CscMatrix {
-        CscMatrix::new_from_triplets(height, width, self.rows, self.columns, self.values)
-    }
+/// The sparse matrix of this height and width with these entries: row, column and value.
+pub(crate) fn matrix(
+    height: usize,
+    width: usize,
+    entries: impl IntoIterator<Item = (usize, usize, f64)>,
+) -> CscMatrix {
+    let (rows, columns, values) = entries.into_iter().collect();
+    CscMatrix::new_from_triplets(height, width, rows, columns, values)
 }
 
 /// Minimises `x P x / 2 + q x` where `s = b - A x` is zero in its first rows, the equations, and not negative in the others.

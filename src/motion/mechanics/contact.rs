@@ -23,10 +23,12 @@ mod exchange;
 mod factor;
 mod placed;
 
+use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::blocks::{Row, Supports};
 use super::joints::{Closure, Placement};
+use super::tie::{TieLine, pull_blocks};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::MassMoments;
 
@@ -79,14 +81,42 @@ pub struct Effort {
 pub type Corners = [bool; 2];
 
 /// The data of a program, besides the positions.
-#[derive(Clone, Copy, Debug)]
-pub struct Load<'a> {
+#[derive(Clone, Debug)]
+pub struct Load {
     /// Motion of every block without the others (m/s at the origin, rad/s).
-    pub free: &'a [Twist],
+    pub free: Vec<Twist>,
     /// Motion of the right block of every joint relative to its left one that counts as standing still.
-    pub jumps: &'a [Twist],
+    pub jumps: Vec<Twist>,
     /// Corners that may not close further.
-    pub touching: &'a [Corners],
+    pub touching: Vec<Corners>,
+}
+
+impl Load {
+    /// None on a row whose joints are shut.
+    #[must_use]
+    pub fn none(row: &Row) -> Self {
+        let (blocks, joints) = (row.blocks.len(), row.joints.len());
+        Self {
+            free: vec![Twist::ZERO; blocks],
+            jumps: vec![Twist::ZERO; joints],
+            touching: vec![[true; 2]; joints],
+        }
+    }
+
+    /// Takes a force per unit mass on all blocks where they are, with impulses of ties; corners that touch there may not close further.
+    pub(super) fn push<'a>(
+        &mut self,
+        row: &Row,
+        placement: &Placement,
+        force: Vector2<f64>,
+        ties: impl Iterator<Item = (&'a TieLine, f64)>,
+    ) {
+        self.free.fill(Twist::translation(force));
+        pull_blocks(&row.blocks, &placement.centres_m, ties, &mut self.free);
+        for (touching, gaps) in self.touching.iter_mut().zip(&placement.gaps_m) {
+            *touching = gaps.map(|gap| gap == 0.0);
+        }
+    }
 }
 
 /// The program of a row, with all the memory that it needs and the active set of the last solution.
@@ -189,7 +219,7 @@ impl Program {
     /// When the active set is not found.
     pub fn solve(&mut self, load: &Load) -> Result<Effort, ContactError> {
         let largest_rate = self.set_up(load);
-        for (active, touching) in self.active.iter_mut().zip(load.touching) {
+        for (active, touching) in self.active.iter_mut().zip(&load.touching) {
             for edge in 0..2 {
                 active[edge] &= touching[edge];
             }
@@ -202,15 +232,29 @@ impl Program {
         self.answer.take_load(&self.factor, None);
         effort.iterations += 1;
         let tolerance = RATE_TOLERANCE * largest_rate;
-        let touching = load.touching;
+        let touching = &load.touching;
         if !self.exchange(touching, tolerance, &mut effort.iterations) {
             self.exchange_tolerantly(touching, largest_rate, &mut effort)?;
         }
-        let finite = self.set_velocities();
-        let iterations = effort.iterations;
-        finite
-            .then_some(effort)
-            .ok_or(ContactError::Unsolved { iterations })
+        let (finite, iterations) = (self.set_velocities(), effort.iterations);
+        let found = finite.then_some(effort);
+        found.ok_or(ContactError::Unsolved { iterations })
+    }
+
+    /// The fastest velocity under a load on the row where it was placed: of a centre, or the rate of a block times the size of the row.
+    pub(super) fn fastest(
+        &mut self,
+        load: &Load,
+        row: &Row,
+        placement: &Placement,
+    ) -> Result<f64, ContactError> {
+        self.solve(load)?;
+        let velocities = self.velocities.iter();
+        let speeds = velocities.zip(&placement.centres_m).map(|(twist, centre)| {
+            let turning = twist.rate.abs() * row.size_m;
+            twist.at(*centre).norm().max(turning)
+        });
+        Ok(speeds.fold(0.0, f64::max))
     }
 
     /// Velocities under another load while the same corners press as in the last solution, even where they would pull.
@@ -274,7 +318,7 @@ fn exceeds(pivot: f64, least: f64) -> bool {
 }
 
 /// The lower of two numbers; the second one if either is NaN.
-fn lower(one: f64, other: f64) -> f64 {
+pub(super) fn lower(one: f64, other: f64) -> f64 {
     if one <= other { one } else { other }
 }
 
@@ -285,8 +329,6 @@ fn higher(one: f64, other: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector2;
-
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
@@ -320,14 +362,15 @@ mod tests {
                     let touching: Vec<Corners> =
                         (0..joints).map(|_| [next() < 0.9, next() < 0.9]).collect();
                     let load = Load {
-                        free: &free,
-                        jumps: &jumps,
-                        touching: &touching,
+                        free,
+                        jumps,
+                        touching,
                     };
+                    let touching = &load.touching;
                     let begin = |program: &mut Program| {
                         program.reset();
                         let largest_rate = program.set_up(&load);
-                        for (active, touching) in program.active.iter_mut().zip(&touching) {
+                        for (active, touching) in program.active.iter_mut().zip(touching) {
                             *active = [0, 1].map(|edge| active[edge] && touching[edge]);
                         }
                         program.factor.update(&program.active);
@@ -337,7 +380,7 @@ mod tests {
                     let tolerance = RATE_TOLERANCE * begin(&mut program);
                     let mut iterations = 0;
                     programs += 1;
-                    settled += usize::from(program.exchange(&touching, tolerance, &mut iterations));
+                    settled += usize::from(program.exchange(touching, tolerance, &mut iterations));
                     most = most.max(iterations);
                     program.solve(&load).unwrap();
                     let solution = program.velocities.clone();
@@ -345,7 +388,7 @@ mod tests {
                     let largest_rate = begin(&mut program);
                     let mut effort = Effort::default();
                     program
-                        .exchange_tolerantly(&touching, largest_rate, &mut effort)
+                        .exchange_tolerantly(touching, largest_rate, &mut effort)
                         .unwrap();
                     program.set_velocities();
                     for (block, twist) in program.velocities.iter().enumerate() {

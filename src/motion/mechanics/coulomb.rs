@@ -137,8 +137,6 @@ pub struct Program {
     equations: Vec<[Equation; 3]>,
     gains: Vec<Matrix3<f64>>,
     target: Vec<Vector3<f64>>,
-    trial: Vec<Vector3<f64>>,
-    slopes: Vec<Vector3<f64>>,
     modes_before: Vec<Mode>,
     kept: Vec<Vector3<f64>>,
 }
@@ -169,8 +167,6 @@ impl Program {
             equations: vec![[Equation::Still; 3]; joints],
             gains: vec![Matrix3::zeros(); joints],
             target: vec![Vector3::zeros(); joints],
-            trial: vec![Vector3::zeros(); joints],
-            slopes: vec![Vector3::zeros(); joints],
             modes_before: vec![Mode::WHOLE; joints],
             kept: vec![Vector3::zeros(); joints],
         }
@@ -213,16 +209,13 @@ impl Program {
         };
         for joint in 0..faces.len() {
             let before = joint.checked_sub(1);
-            let mut gradients =
-                contacts[joint].gradients(&faces[joint], centre(before), centre(Some(joint)));
-            for (side, block) in [before, Some(joint).filter(|block| *block < blocks)]
-                .into_iter()
-                .enumerate()
-            {
-                let scale = block.map_or(Vector3::zeros(), |block| {
-                    self.roots[block].map(|root| 1.0 / root)
-                });
-                for (mut column, scale) in gradients[side].column_iter_mut().zip(scale.iter()) {
+            let sides = [before, Some(joint).filter(|block| *block < blocks)];
+            let [left_m, right_m] = [before, Some(joint)].map(centre);
+            let mut gradients = contacts[joint].gradients(&faces[joint], left_m, right_m);
+            for (gradients, block) in gradients.iter_mut().zip(sides) {
+                let root = block.map(|block| self.roots[block]);
+                let scale = root.map_or(Vector3::zeros(), |root| root.map(|root| 1.0 / root));
+                for (mut column, scale) in gradients.column_iter_mut().zip(&scale) {
                     column *= *scale;
                 }
             }
@@ -270,7 +263,7 @@ impl Program {
         self.modes_before.copy_from_slice(&self.modes);
         let mut solution = Solution::default();
         if !self.newton(PASSES, false, tolerance, &mut solution.passes) {
-            self.bounded(tolerance, &mut solution);
+            solution.bound_error = self.bounded(tolerance, &mut solution.passes);
         }
         solution.changed = self.modes != self.modes_before;
         let drawn = (0..self.own.len()).map(|joint| self.drawn(joint).amax());
@@ -465,46 +458,40 @@ impl Program {
         self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL
     }
 
-    /// Solves programs with given bounds until the modes confirm themselves, or the bounds agree with the impulses.
-    fn bounded(&mut self, tolerance: f64, solution: &mut Solution) {
+    /// Solves programs with given bounds until the modes confirm themselves, or the bounds agree with the impulses. Returns the error of the
+    /// bounds.
+    fn bounded(&mut self, tolerance: f64, count: &mut usize) -> f64 {
         self.impulses.copy_from_slice(&self.before);
         for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
             *bound = self.coefficient * (impulse.x.max(0.0) + impulse.y.max(0.0));
         }
+        let mut error = 0.0;
         for pass in 0..BOUND_PASSES {
-            self.descend(tolerance, &mut solution.passes);
-            let error = self.bound_error();
+            self.descend(tolerance, count);
+            error = self.bound_error();
             self.read_modes();
             self.kept.copy_from_slice(&self.impulses);
-            if self.newton(PASSES, false, tolerance, &mut solution.passes) {
-                solution.bound_error = 0.0;
-                return;
+            for (passes, one) in [(PASSES, false), (SINGLE_PASSES, true)] {
+                if (!one || pass % 4 == 0) && self.newton(passes, one, tolerance, count) {
+                    return 0.0;
+                }
+                self.impulses.copy_from_slice(&self.kept);
+                self.read_modes();
             }
-            self.impulses.copy_from_slice(&self.kept);
-            self.read_modes();
-            if pass % 4 == 0 && self.newton(SINGLE_PASSES, true, tolerance, &mut solution.passes) {
-                solution.bound_error = 0.0;
-                return;
-            }
-            self.impulses.copy_from_slice(&self.kept);
-            self.read_modes();
-            solution.bound_error = error;
             if error <= SAME_BOUND {
-                return;
+                return error;
             }
             for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
                 *bound = (self.coefficient * (impulse.x + impulse.y)).max(0.0);
             }
         }
         let impulses = self.kept.clone();
-        if self.interior(tolerance, &mut solution.passes)
-            || self.pivoted(tolerance, &mut solution.passes)
-        {
-            solution.bound_error = 0.0;
-            return;
+        if self.interior(tolerance, count) || self.pivoted(tolerance, count) {
+            return 0.0;
         }
         self.impulses.copy_from_slice(&impulses);
         self.read_modes();
+        error
     }
 
     /// Largest difference of a bound from what the impulses allow, as a fraction of the largest bound.
@@ -534,20 +521,16 @@ impl Program {
         }
     }
 
-    /// Least and largest impulse of a row while the bounds are given.
-    fn limits(&self, joint: usize, row: usize) -> (f64, f64) {
-        if row < 2 {
-            (0.0, f64::INFINITY)
-        } else {
-            (-self.bounds[joint], self.bounds[joint])
-        }
+    /// Least and largest impulse of every row of a joint while the bounds are given.
+    fn limits(&self, joint: usize) -> [(f64, f64); 3] {
+        let (pressed, bound) = ((0.0, f64::INFINITY), self.bounds[joint]);
+        [pressed, pressed, (-bound, bound)]
     }
 
     /// Solves the program with given bounds: projected Newton steps with a search along them.
     fn descend(&mut self, tolerance: f64, count: &mut usize) {
         for joint in 0..self.impulses.len() {
-            for row in 0..3 {
-                let (least, most) = self.limits(joint, row);
+            for (row, (least, most)) in self.limits(joint).into_iter().enumerate() {
                 self.impulses[joint][row] = self.impulses[joint][row].clamp(least, most);
             }
         }
@@ -556,8 +539,7 @@ impl Program {
             // `height` has set the rates for these impulses.
             let mut open = 0.0_f64;
             for joint in 0..self.impulses.len() {
-                for row in 0..3 {
-                    let (least, most) = self.limits(joint, row);
+                for (row, (least, most)) in self.limits(joint).into_iter().enumerate() {
                     let (impulse, rate) = (self.impulses[joint][row], self.rates[joint][row]);
                     let held = (impulse <= least && rate > 0.0) || (impulse >= most && rate < 0.0);
                     self.equations[joint][row] = if held || least >= most {
@@ -573,18 +555,16 @@ impl Program {
             }
             self.balance();
             *count += 1;
-            self.trial.copy_from_slice(&self.impulses);
-            self.slopes.copy_from_slice(&self.rates);
+            let (start, slopes) = (self.impulses.clone(), self.rates.clone());
             let mut part = 1.0;
             loop {
                 let mut slope = 0.0;
                 for joint in 0..self.impulses.len() {
-                    for row in 0..3 {
-                        let (least, most) = self.limits(joint, row);
-                        let from = self.trial[joint][row];
+                    for (row, (least, most)) in self.limits(joint).into_iter().enumerate() {
+                        let from = start[joint][row];
                         let to = from + part * (self.target[joint][row] - from);
                         self.impulses[joint][row] = to.clamp(least, most);
-                        slope += self.slopes[joint][row] * (self.impulses[joint][row] - from);
+                        slope += slopes[joint][row] * (self.impulses[joint][row] - from);
                     }
                 }
                 let reached = self.height();

@@ -10,7 +10,7 @@ use clarabel::solver::{DefaultSettings, SolverStatus};
 use thiserror::Error;
 
 use super::blocks::Row;
-use super::cone_program::{self, Entries};
+use super::cone_program;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stance::Stance;
@@ -108,14 +108,11 @@ pub(crate) fn onset_of_standing(
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
     let program = Program::new(row, stance, coefficient, Goal::Push);
-    match program.solve(-sway.sign())? {
-        Answer::Found(goal, yields) => Ok(Some(FrictionOnset {
-            acceleration_g: sway.sign() * goal,
-            yields,
-        })),
-        Answer::Unbounded => Ok(None),
-        Answer::Infeasible => Err(FrictionError::CannotStand(coefficient)),
-    }
+    let found = program.solve(-sway.sign(), FrictionError::CannotStand(coefficient))?;
+    Ok(found.map(|(goal, yields)| FrictionOnset {
+        acceleration_g: sway.sign() * goal,
+        yields,
+    }))
 }
 
 /// Whether a row carries its own weight with this coefficient.
@@ -135,11 +132,9 @@ pub(crate) fn stands_at(
     stance: &Stance,
     coefficient: f64,
 ) -> Result<bool, FrictionError> {
-    match Program::new(row, stance, coefficient, Goal::Shortage).solve(1.0)? {
-        Answer::Found(shortage, _) => Ok(shortage <= LEAST_SHORTAGE),
-        Answer::Unbounded => Ok(true),
-        Answer::Infeasible => Err(FrictionError::NeverStands),
-    }
+    let program = Program::new(row, stance, coefficient, Goal::Shortage);
+    let found = program.solve(1.0, FrictionError::NeverStands)?;
+    Ok(found.is_none_or(|(shortage, _)| shortage <= LEAST_SHORTAGE))
 }
 
 /// The least coefficient of friction with which a row carries its own weight, to within 1e-7.
@@ -164,16 +159,6 @@ enum Goal {
     Push,
     /// By how much friction has to exceed its bound at every joint, in units of the weight, for the row to stand.
     Shortage,
-}
-
-/// The answer of a programme.
-enum Answer {
-    /// The goal, and the joints that open or slip.
-    Found(f64, Vec<Yield>),
-    /// The goal has no bound.
-    Unbounded,
-    /// No forces balance the row.
-    Infeasible,
 }
 
 /// Unknowns: the goal, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: the equilibrium of every
@@ -212,8 +197,8 @@ impl Program {
         let centres_m = &placement.centres_m;
         let equations = 3 * blocks + placement.open_corners();
         let size_m = row.size_m;
-        let mut entries = Entries::default();
-        let mut put = |row, column, value| entries.put(row, column, value);
+        let mut entries = Vec::new();
+        let mut put = |row, column, value: f64| entries.push((row, column, value));
         let mut right = loads(row, stance);
         if goal == Goal::Push {
             for (index, block) in row.blocks.iter().enumerate() {
@@ -269,15 +254,20 @@ impl Program {
         }
         let (height, width) = (equations + 4 * joints, 1 + 3 * joints);
         Self {
-            matrix: entries.matrix(height, width),
+            matrix: cone_program::matrix(height, width, entries),
             right,
             equations,
             joints,
         }
     }
 
-    /// Minimises `factor` times the goal.
-    fn solve(&self, factor: f64) -> Result<Answer, FrictionError> {
+    /// Minimises `factor` times the goal. Returns the goal, and the joints that open or slip; `None` if the goal has no bound, and this error
+    /// if no forces balance the row.
+    fn solve(
+        &self,
+        factor: f64,
+        unbalanced: FrictionError,
+    ) -> Result<Option<(f64, Vec<Yield>)>, FrictionError> {
         let width = 1 + 3 * self.joints;
         let mut objective = vec![0.0; width];
         objective[0] = factor;
@@ -291,11 +281,9 @@ impl Program {
         match solution.status {
             SolverStatus::Solved | SolverStatus::AlmostSolved => {}
             SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible => {
-                return Ok(Answer::Infeasible);
+                return Err(unbalanced);
             }
-            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => {
-                return Ok(Answer::Unbounded);
-            }
+            SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => return Ok(None),
             status => return Err(FrictionError::NotSolved(status)),
         }
         let rates = &solution.z[self.equations..];
@@ -312,6 +300,6 @@ impl Program {
             },
         });
         let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());
-        Ok(Answer::Found(solution.x[0], yields.collect()))
+        Ok(Some((solution.x[0], yields.collect())))
     }
 }

@@ -21,7 +21,7 @@ use crate::mechanics::geometry::ring::Edge;
 pub const SHUT_RATIO: f64 = 1e-12;
 
 /// The line on which the faces of a joint press each other, in its present position.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
     /// Its intrados corner: midway between the intrados corners of the two faces if these are the nearer ones,
     /// else one thickness along the joint from the midpoint of the extrados corners.
@@ -88,23 +88,14 @@ impl Placement {
     /// The undeformed row.
     #[must_use]
     pub fn new(row: &Row) -> Self {
-        let faces: Vec<Face> = row
-            .joints
-            .iter()
-            .map(|joint| Face {
-                joint: *joint,
-                middle: joint.middle_m(),
-                along: joint.along(),
-                thickness: joint.thickness_m(),
-            })
-            .collect();
+        let faces = row.joints.iter().map(|joint| Face {
+            joint: *joint,
+            middle: joint.middle_m(),
+            along: joint.along(),
+            thickness: joint.thickness_m(),
+        });
+        let faces: Vec<Face> = faces.collect();
         let undeformed_m: Vec<_> = row.blocks.iter().map(|block| block.centre_m).collect();
-        let nowhere = Frame {
-            intrados_m: Vector2::zeros(),
-            along: Vector2::zeros(),
-            normal: Vector2::zeros(),
-            thickness_m: 0.0,
-        };
         let mut placement = Self {
             handedness: row.handedness,
             supports: row.supports,
@@ -112,7 +103,7 @@ impl Placement {
             gaps_m: vec![[0.0; 2]; faces.len()],
             poses: vec![Pose::UNDEFORMED; undeformed_m.len()],
             centres_m: undeformed_m.clone(),
-            frames: vec![nowhere; faces.len()],
+            frames: vec![Frame::default(); faces.len()],
             closure: None,
             faces,
             undeformed_m,
@@ -142,10 +133,8 @@ impl Placement {
     /// The first joint that is open at both edges.
     #[must_use]
     pub(crate) fn parted_joint(&self) -> Option<usize> {
-        let gaps_m = &self.gaps_m;
-        gaps_m
-            .iter()
-            .position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
+        let mut gaps_m = self.gaps_m.iter();
+        gaps_m.position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
     }
 
     /// Number of corners that do not touch.
@@ -206,13 +195,8 @@ impl Placement {
     /// Adds to the gaps, shuts what is below [`SHUT_RATIO`], and places the blocks anew.
     pub fn open(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
         for joint in 0..self.faces.len() {
-            let least = SHUT_RATIO * self.faces[joint].thickness;
-            let change = change_m(joint);
-            for (gap, change) in self.gaps_m[joint].iter_mut().zip(change) {
-                *gap += change;
-                if *gap < least {
-                    *gap = 0.0;
-                }
+            for (gap, change) in self.gaps_m[joint].iter_mut().zip(change_m(joint)) {
+                *gap = shut(*gap + change, &self.faces[joint]);
             }
         }
         self.place();
@@ -230,12 +214,11 @@ impl Placement {
             let face = &self.faces[joint];
             let closing = last_open == Some(joint);
             let right = if closing {
-                self.gaps_m[joint] = closed_gaps(
-                    &self.gaps_m[joint],
-                    last.rotation_rad() - left.rotation_rad(),
-                    face,
-                    self.handedness,
-                );
+                // Its rotation brings the rotation of the row to that of the right support.
+                let opening = self.handedness * (last.rotation_rad() - left.rotation_rad());
+                let [intrados, extrados] = self.gaps_m[joint];
+                let gaps = hinged(opening * face.thickness, intrados.min(extrados));
+                self.gaps_m[joint] = gaps.map(|gap| shut(gap, face));
                 last
             } else if self.gaps_m[joint] == [0.0; 2] {
                 left
@@ -287,13 +270,12 @@ impl Placement {
             right.translation = start - right.turned(face.middle);
         }
         let gaps = self.gaps_m[joint];
-        let (edge, offset) = if gaps[0] <= gaps[1] {
-            (Edge::Intrados, 0.0)
-        } else {
-            (Edge::Extrados, face.thickness)
+        let (edge, offset) = match gaps[0] <= gaps[1] {
+            true => (Edge::Intrados, 0.0),
+            false => (Edge::Extrados, face.thickness),
         };
-        let nearer_corner =
-            left.of(face.joint.corner_m(edge)) + normal * (0.5 * gaps[0].min(gaps[1]));
+        let corner = left.of(face.joint.corner_m(edge));
+        let nearer_corner = corner + normal * (0.5 * gaps[0].min(gaps[1]));
         self.frames[joint] = Frame {
             intrados_m: nearer_corner - along * offset,
             along,
@@ -309,17 +291,8 @@ fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
-/// Gaps of the last open joint: its rotation brings the rotation of the row to that of the right support.
-fn closed_gaps(gaps: &[f64; 2], rotation_rad: f64, face: &Face, handedness: f64) -> [f64; 2] {
-    let gaps = hinged(
-        handedness * rotation_rad * face.thickness,
-        gaps[0].min(gaps[1]),
-    );
-    gaps.map(|gap| {
-        if gap < SHUT_RATIO * face.thickness {
-            0.0
-        } else {
-            gap
-        }
-    })
+/// The gap, or zero below [`SHUT_RATIO`].
+fn shut(gap: f64, face: &Face) -> f64 {
+    let least = SHUT_RATIO * face.thickness;
+    if gap < least { 0.0 } else { gap }
 }

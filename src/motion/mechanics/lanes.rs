@@ -43,17 +43,30 @@ pub trait Real:
     #[must_use]
     fn sqrt(self) -> Self;
 
-    /// `yes` where this is positive, else `no`.
+    /// `yes` where this is above another number, else `no`. The difference of two infinities is NaN, so it compares instead of subtracting.
     #[must_use]
-    fn positive(self, yes: Self, no: Self) -> Self;
+    fn above(self, other: Self, yes: Self, no: Self) -> Self;
+
+    /// `yes` where this is positive, else `no`.
+    #[inline(always)]
+    #[must_use]
+    fn positive(self, yes: Self, no: Self) -> Self {
+        self.above(Self::of(0.0), yes, no)
+    }
 
     /// The larger of the two.
+    #[inline(always)]
     #[must_use]
-    fn max(self, other: Self) -> Self;
+    fn max(self, other: Self) -> Self {
+        self.above(other, self, other)
+    }
 
     /// The smaller of the two.
+    #[inline(always)]
     #[must_use]
-    fn min(self, other: Self) -> Self;
+    fn min(self, other: Self) -> Self {
+        other.above(self, self, other)
+    }
 
     /// The magnitude.
     #[inline(always)]
@@ -145,19 +158,8 @@ impl<const L: usize> Real for Lanes<L> {
     }
 
     #[inline(always)]
-    fn positive(self, yes: Self, no: Self) -> Self {
-        by_lane!(lane: if self.0[lane] > 0.0 { yes.0[lane] } else { no.0[lane] })
-    }
-
-    // The difference of two infinities is NaN, so these compare instead of subtracting.
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        by_lane!(lane: if self.0[lane] > other.0[lane] { self.0[lane] } else { other.0[lane] })
-    }
-
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        by_lane!(lane: if self.0[lane] < other.0[lane] { self.0[lane] } else { other.0[lane] })
+    fn above(self, other: Self, yes: Self, no: Self) -> Self {
+        by_lane!(lane: if self.0[lane] > other.0[lane] { yes.0[lane] } else { no.0[lane] })
     }
 }
 
@@ -293,23 +295,7 @@ impl<const D: usize> Real for Dual<D> {
         self.chained(root, 0.5 / root)
     }
 
-    fn positive(self, yes: Self, no: Self) -> Self {
-        if self.value > 0.0 { yes } else { no }
-    }
-
-    fn max(self, other: Self) -> Self {
-        if self.value > other.value {
-            self
-        } else {
-            other
-        }
-    }
-
-    fn min(self, other: Self) -> Self {
-        if self.value < other.value {
-            self
-        } else {
-            other
-        }
+    fn above(self, other: Self, yes: Self, no: Self) -> Self {
+        if self.value > other.value { yes } else { no }
     }
 }

@@ -152,12 +152,13 @@ impl Parts for Column {
         if let Some(row) = self.tied_row() {
             return row.outline();
         }
-        let half_m = [self.width_m, self.top_width_m()].map(|width_m| 0.5 * width_m);
+        let [base_m, top_m] = [self.width_m, self.top_width_m()].map(|width_m| 0.5 * width_m);
+        let height_m = self.height_m;
         let corners = [
-            (-half_m[0], 0.0),
-            (-half_m[1], self.height_m),
-            (half_m[1], self.height_m),
-            (half_m[0], 0.0),
+            (-base_m, 0.0),
+            (-top_m, height_m),
+            (top_m, height_m),
+            (base_m, 0.0),
         ];
         Outline::Block {
             outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
@@ -235,37 +236,27 @@ impl Parts for Row {
     fn crown(&self) -> (f64, Vector2<f64>) {
         let outlines = self.outlines_m.iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {
-            outline
-                .iter()
-                .map(move |corner| (middle_of(block), *corner))
+            let corners = outline.iter();
+            corners.map(move |corner| (middle_of(block), *corner))
         });
-        let (place, highest_m) = corners
-            .clone()
-            .reduce(|highest, next| {
-                if next.1.y > highest.1.y {
-                    next
-                } else {
-                    highest
-                }
-            })
-            .expect("a row has blocks");
+        let highest = corners.clone().reduce(|highest, next| {
+            let is_higher = next.1.y > highest.1.y;
+            if is_higher { next } else { highest }
+        });
+        let (place, highest_m) = highest.expect("a row has blocks");
         if self.supports == Supports::Both {
             return (place, highest_m);
         }
         let level_m = highest_m.y - 1e-9 * self.size_m;
         let top = corners.filter(|corner| corner.0 == place && corner.1.y >= level_m);
-        let (low_m, high_m) = top.fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(low_m, high_m), corner| (low_m.min(corner.1.x), high_m.max(corner.1.x)),
-        );
+        let top_m = top.map(|corner| corner.1.x);
+        let low_m = top_m.clone().fold(f64::INFINITY, f64::min);
+        let high_m = top_m.fold(f64::NEG_INFINITY, f64::max);
         (place, Vector2::new(0.5 * (low_m + high_m), highest_m.y))
     }
 
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64> {
-        let outlines = &self.outlines_m;
-        (0..outlines.len())
-            .find(|block| contains(&outlines[*block], at_m))
-            .map(middle_of)
+        self.blocks_at(at_m).first().map(|block| middle_of(*block))
     }
 }
 
@@ -273,10 +264,9 @@ impl Row {
     /// The blocks that a point in metres is in, or on the edge of.
     #[must_use]
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
-        let outlines = self.outlines_m.iter().enumerate();
-        outlines
-            .filter(|(_, outline)| contains(outline, at_m))
-            .map(|(block, _)| block)
+        let blocks = 0..self.outlines_m.len();
+        blocks
+            .filter(|block| contains(&self.outlines_m[*block], at_m))
             .collect()
     }
 

@@ -27,9 +27,11 @@ use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
 use super::geometry::rigid::linear;
+use super::lanes::Lanes;
 use super::stability::{StabilityError, falls_at, onset_at};
 use super::stance::Stance;
 use super::sway::Sway;
+use super::tie::TieMemory;
 use crate::bisection::{Width, falls_below_zero, try_bisect};
 
 /// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
@@ -102,14 +104,10 @@ impl Movements {
     /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
     #[must_use]
     pub fn displacements(&self) -> [[f64; 3]; 2] {
-        let of = |outwards: f64, movement: &Movement| {
-            [
-                outwards * movement.spread_m,
-                -movement.settlement_m,
-                movement.rotation_rad,
-            ]
-        };
-        [of(-1.0, &self.left), of(1.0, &self.right)]
+        [(-1.0, self.left), (1.0, self.right)].map(|(outwards, moved)| {
+            let outwards_m = outwards * moved.spread_m;
+            [outwards_m, -moved.settlement_m, moved.rotation_rad]
+        })
     }
 
     /// Positions of the left and the right support of a row then.
@@ -257,9 +255,8 @@ impl<'a> Follower<'a> {
     /// Whether it stands on more hinges than three, which ties alone hold.
     #[must_use]
     pub fn is_held_by_ties(&self) -> bool {
-        self.hinges
-            .as_ref()
-            .is_some_and(|pins| pins.hinges.len() > 3)
+        let hinges = self.hinges.as_ref();
+        hinges.is_some_and(|pins| pins.hinges.len() > 3)
     }
 
     /// Its forces and rotations; none while it is undeformed, where they are not determined.
@@ -315,7 +312,7 @@ impl<'a> Follower<'a> {
             stance.placement.open(|_| [0.0; 2]);
             stance
         };
-        let falls = |part: f64| falls_at(row, &there(part));
+        let falls = |part: f64| Ok(falls_at(row, &there(part))?.is_some());
         if falls(to)? {
             let (last, _) = try_bisect(from, to, Width::Rounding, falls)?;
             return Ok(Reached::Falls(last));
@@ -340,18 +337,6 @@ impl<'a> Follower<'a> {
             Err(StabilityError::CannotStand(_)) => Ok(Some(0.0)),
             Err(StabilityError::Contact(error)) => Err(error),
         }
-    }
-
-    /// The pushes to a side, in units of gravity, of its first motion and at its fall; `None` where no push moves it, or none makes it fall.
-    ///
-    /// # Errors
-    /// When the row is lost where it gives way.
-    pub fn pushes_g(&self, sway: Sway) -> Result<Option<[f64; 2]>, SettlingError> {
-        let Some(first_g) = self.first_motion_g(sway)? else {
-            return Ok(None);
-        };
-        let capacity_g = self.capacity_g(sway, first_g)?;
-        Ok(capacity_g.map(|capacity_g| [first_g, capacity_g]))
     }
 
     /// Pushes the row to a side until it falls, and returns that push in units of gravity; `None` where none was met. `first_g` is the push
@@ -407,9 +392,8 @@ impl<'a> Follower<'a> {
             let next = (low + step * unit).min(to);
             let condition = way(next);
             let held = self.holds(&condition);
-            let evenly = held
-                .as_ref()
-                .is_some_and(|state| self.goes_evenly(state, &rates, next - low));
+            let goes_evenly = |state: &State| self.goes_evenly(state, &rates, next - low);
+            let evenly = held.as_ref().is_some_and(goes_evenly);
             if step > STEP && !evenly {
                 step = (0.25 * step).max(STEP);
                 continue;
@@ -457,17 +441,13 @@ impl<'a> Follower<'a> {
 
     /// Whether blocks turn on the way to a state so far on as fast as before, and no tie yields or breaks. Without ties there is no before.
     fn goes_evenly(&self, there: &State, before: &[f64], way: f64) -> bool {
-        let most = before
-            .iter()
-            .fold(0.0_f64, |most, rate| most.max(rate.abs()));
+        let most = before.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         let alike =
             |(before, now): (&f64, f64)| (before - now).abs() <= EVEN * most + ROUNDING / way;
-        let mut ties = self.stance.ties.iter().zip(&there.ties);
-        !before.is_empty()
-            && before.iter().zip(self.rates(there, way)).all(alike)
-            && ties.all(|(here, there)| {
-                there.yielded_m == here.yielded_m && there.is_broken() == here.is_broken()
-            })
+        let yielded = |memory: &TieMemory<Lanes<1>>| (memory.yielded_m, memory.is_broken());
+        let mut before_and_now = before.iter().zip(self.rates(there, way));
+        let ties = self.stance.ties.iter().map(yielded);
+        !before.is_empty() && before_and_now.all(alike) && ties.eq(there.ties.iter().map(yielded))
     }
 
     /// The row in a condition in which the present hinges hold it; `None` where they do not.
@@ -538,10 +518,7 @@ impl<'a> Follower<'a> {
             }
             for tilt_g in TILTS_G {
                 let mut stance = self.stance.clone();
-                let rests = self
-                    .descent
-                    .settle(&mut stance, &last, &condition, tilt_g)?;
-                if !rests {
+                if !(self.descent).settle(&mut stance, &last, &condition, tilt_g)? {
                     self.snaps.push(snap(None));
                     return Ok(None);
                 }

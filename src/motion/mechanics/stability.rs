@@ -12,8 +12,9 @@ use thiserror::Error;
 
 use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
+use super::joints::Placement;
 use super::stance::Stance;
-use super::tie::{TieLine, pull_blocks};
+use super::tie::TieLine;
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -61,20 +62,17 @@ pub enum StabilityError {
 /// # Errors
 /// When the velocities under the weight are not found.
 pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
-    let undeformed = Stance::undeformed(row);
-    let mut trial = Trial::new(row, &undeformed);
-    Ok(trial
-        .moves(Vector2::new(0.0, -1.0), true)?
-        .map(|_| trial.openings()))
+    falls_at(row, &Stance::undeformed(row))
 }
 
-/// Whether a row that stands there falls under its own weight.
+/// The mechanism in which a row falls under its own weight from where it stands; `None` when it stays.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn falls_at(row: &Row, stance: &Stance) -> Result<bool, ContactError> {
-    let moves = Trial::new(row, stance).moves(Vector2::new(0.0, -1.0), true)?;
-    Ok(moves.is_some())
+pub fn falls_at(row: &Row, stance: &Stance) -> Result<Option<Vec<Opening>>, ContactError> {
+    let mut trial = Trial::new(row, stance);
+    let moves = trial.moves(Vector2::new(0.0, -1.0), true)?;
+    Ok(moves.map(|_| trial.openings()))
 }
 
 /// The least horizontal ground acceleration that starts the row swaying to a side, its ties pulling as they do at rest; `None` when no
@@ -96,7 +94,27 @@ pub fn onset_at(
     stance: &Stance,
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
-    Trial::new(row, stance).pushed(sway)
+    let mut trial = Trial::new(row, stance);
+    if trial.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
+        return Err(StabilityError::CannotStand(trial.openings()));
+    }
+    let mut load = Vector2::new(sway.sign(), 0.0);
+    let mut found: Option<RowOnset> = None;
+    // A push beyond all bounds leaves no part to ties.
+    while let Some(work) = trial.moves(load, found.is_some())? {
+        let lengthening = trial.lengthening();
+        let ties = lengthening.iter().zip(&trial.ties_kg);
+        let resists: f64 = ties.map(|(rate, kg)| rate * kg).sum();
+        let acceleration_g = (work.y + resists) / (sway.sign() * work.x);
+        // The bounds fall; below rounding they do not.
+        let falls = |found: &RowOnset| acceleration_g < found.acceleration_g * (1.0 - 1e-14);
+        if !found.as_ref().is_none_or(falls) {
+            break;
+        }
+        found = Some(trial.onset(acceleration_g));
+        load = Vector2::new(sway.sign() * acceleration_g, -1.0);
+    }
+    Ok(found)
 }
 
 /// The limit of a row whose ties yield.
@@ -130,9 +148,10 @@ pub fn limit_with_yielding_ties(
         .collect();
     let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
-    let work_at_rest = work(row, &undeformed.placement.centres_m, &at_rest.velocities);
+    let work_at_rest = work(row, &undeformed.placement, &at_rest.velocities);
     let mut highest = Highest::new(&most);
-    highest.add(&Plane::new(row, work_at_rest, &at_rest.lengthening, sway));
+    let at_rest = Plane::new(row, work_at_rest, &at_rest.lengthening, sway);
+    highest.planes.push(at_rest);
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
     for _ in 0..MOST_TRIALS {
         let Some((highest_g, next)) = highest.find() else {
@@ -142,10 +161,8 @@ pub fn limit_with_yielding_ties(
             break;
         }
         (push_g, forces) = (highest_g, next);
-        trial.ties_kg.clear();
-        trial
-            .ties_kg
-            .extend(forces.iter().map(|force| force * row.mass_kg()));
+        let ties_kg = forces.iter().map(|force| force * row.mass_kg());
+        trial.ties_kg = ties_kg.collect();
         let mut lower_g = push_g;
         let mut met = 0;
         // With the same forces, down to the push that they bear.
@@ -153,10 +170,9 @@ pub fn limit_with_yielding_ties(
             .moves(Vector2::new(sway.sign() * lower_g, -1.0), true)?
             .is_some()
         {
-            let lengthening = trial.lengthening();
-            let plane = Plane::new(row, trial.work(), &lengthening, sway);
+            let plane = Plane::new(row, trial.work(), &trial.lengthening(), sway);
             let bound_g = plane.bound_g(&forces);
-            highest.add(&plane);
+            highest.planes.push(plane);
             met += 1;
             match bound_g {
                 Some(bound_g) if bound_g >= 0.0 && bound_g < lower_g * (1.0 - 1e-14) => {
@@ -180,18 +196,11 @@ pub fn limit_with_yielding_ties(
     // The mechanism is that of a push a little larger.
     let beyond = Vector2::new(sway.sign() * push_g * (1.0 + BEYOND), -1.0);
     trial.moves(beyond, true)?;
+    let ties = row.ties.iter().zip(&forces);
+    let forces_n = ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n));
     Ok(Some(TiedLimit {
-        onset: RowOnset {
-            acceleration_g: push_g,
-            openings: trial.openings(),
-            velocities: trial.program.velocities.to_vec(),
-            lengthening: trial.lengthening(),
-        },
-        forces_n: {
-            let ties = row.ties.iter().zip(&forces);
-            ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n))
-                .collect()
-        },
+        onset: trial.onset(push_g),
+        forces_n: forces_n.collect(),
     }))
 }
 
@@ -212,11 +221,11 @@ const ROUNDING: f64 = 1e-14;
 /// Forces that are tried, at most.
 const MOST_TRIALS: usize = 200;
 
-/// A bound of what a mechanism leaves: `push * acceleration_g - sum pulls * forces <= weight`, in units of the weight.
+/// A bound of the push and the forces of the ties, such as a mechanism leaves: their slopes times these are at most so much, in units of the
+/// weight.
 struct Plane {
-    push: f64,
-    pulls: Vec<f64>,
-    weight: f64,
+    slopes: DVector<f64>,
+    most: f64,
 }
 
 impl Plane {
@@ -226,18 +235,20 @@ impl Plane {
         let (push, weight) = (sway.sign() * work.x, work.y);
         let all = lengthening.iter().copied().chain([push, weight]);
         let largest = all.map(f64::abs).fold(0.0, f64::max);
+        let slopes = [push]
+            .into_iter()
+            .chain(lengthening.iter().map(|rate| -rate));
         Self {
-            push: push / largest,
-            pulls: lengthening.iter().map(|rate| rate / largest).collect(),
-            weight: weight / largest,
+            slopes: DVector::from_iterator(1 + lengthening.len(), slopes) / largest,
+            most: weight / largest,
         }
     }
 
     /// The push that it leaves with these forces, if it bounds any.
     fn bound_g(&self, forces: &[f64]) -> Option<f64> {
-        let pulled = self.pulls.iter().zip(forces);
-        let held: f64 = pulled.map(|(pull, force)| pull * force).sum();
-        (self.push > 0.0).then(|| (self.weight + held) / self.push)
+        let (push, pulls) = (self.slopes[0], self.slopes.iter().skip(1));
+        let held: f64 = pulls.zip(forces).map(|(pull, force)| -pull * force).sum();
+        (push > 0.0).then(|| (self.most + held) / push)
     }
 }
 
@@ -248,8 +259,8 @@ impl Plane {
 struct Highest {
     /// Largest forces of the ties.
     most: Vec<f64>,
-    /// Slopes and bounds.
-    constraints: Vec<(DVector<f64>, f64)>,
+    /// Bounds.
+    planes: Vec<Plane>,
     /// Those that meet at the corner.
     basis: Vec<usize>,
     /// Inverse of the slopes of the basis, whose rows they are.
@@ -260,14 +271,14 @@ struct Highest {
 impl Highest {
     fn new(most: &[f64]) -> Self {
         let width = 1 + most.len();
-        let axis = |index: usize, value: f64| {
-            let mut row = DVector::zeros(width);
-            row[index] = value;
-            row
+        let axis = |index: usize, slope: f64, most: f64| {
+            let mut slopes = DVector::zeros(width);
+            slopes[index] = slope;
+            Plane { slopes, most }
         };
-        let mut constraints = vec![(axis(0, 1.0), LARGEST_PUSH)];
-        constraints.extend((1..).zip(most).map(|(tie, most)| (axis(tie, 1.0), *most)));
-        constraints.extend((0..width).map(|index| (axis(index, -1.0), 0.0)));
+        let mut planes = vec![axis(0, 1.0, LARGEST_PUSH)];
+        planes.extend((1..).zip(most).map(|(tie, most)| axis(tie, 1.0, *most)));
+        planes.extend((0..width).map(|index| axis(index, -1.0, 0.0)));
         // Of forces that are as good, the least.
         let mut goal = DVector::repeat(width, -LESS_FORCE);
         goal[0] = 1.0;
@@ -277,17 +288,10 @@ impl Highest {
         Self {
             most: most.to_vec(),
             basis: [0].into_iter().chain(width + 1..2 * width).collect(),
-            constraints,
+            planes,
             inverse,
             goal,
         }
-    }
-
-    fn add(&mut self, plane: &Plane) {
-        let pulls = plane.pulls.iter().map(|pull| -pull);
-        let row = [plane.push].into_iter().chain(pulls);
-        let row = DVector::from_iterator(1 + self.most.len(), row);
-        self.constraints.push((row, plane.weight));
     }
 
     /// The push and the forces; `None` if there are none.
@@ -309,12 +313,12 @@ impl Highest {
 
     /// The point at which the constraints of the basis meet.
     fn corner(&self) -> DVector<f64> {
-        let basis = || self.basis.iter().map(|index| &self.constraints[*index]);
+        let basis = || self.basis.iter().map(|index| &self.planes[*index]);
         let width = self.basis.len();
-        let bounds = DVector::from_iterator(width, basis().map(|(_, bound)| *bound));
+        let bounds = DVector::from_iterator(width, basis().map(|plane| plane.most));
         let at = &self.inverse * bounds;
         // The inverse has lost digits in exchanges.
-        let left = basis().map(|(row, bound)| bound - row.dot(&at));
+        let left = basis().map(|plane| plane.most - plane.slopes.dot(&at));
         let left = DVector::from_iterator(width, left);
         at + &self.inverse * left
     }
@@ -322,9 +326,9 @@ impl Highest {
     /// The constraint that a point violates most; `None` if there is none.
     fn most_violated(&self, at: &DVector<f64>) -> Option<usize> {
         let mut worst = (0.0, None);
-        for (index, (row, bound)) in self.constraints.iter().enumerate() {
-            let (mut sum, mut size) = (-bound, bound.abs());
-            for (slope, place) in row.iter().zip(at.iter()) {
+        for (index, plane) in self.planes.iter().enumerate() {
+            let (mut sum, mut size) = (-plane.most, plane.most.abs());
+            for (slope, place) in plane.slopes.iter().zip(at.iter()) {
                 sum += slope * place;
                 size += (slope * place).abs();
             }
@@ -339,7 +343,7 @@ impl Highest {
     /// Takes a constraint into the basis for one that leaves; `None` if none can.
     fn exchange(&mut self, entering: usize) -> Option<()> {
         let multipliers = self.inverse.tr_mul(&self.goal);
-        let shares = self.inverse.tr_mul(&self.constraints[entering].0);
+        let shares = self.inverse.tr_mul(&self.planes[entering].slopes);
         let (leaving, _) = (0..shares.len())
             .filter(|index| shares[*index] > 1e-11)
             .map(|index| (index, multipliers[index].max(0.0) / shares[index]))
@@ -357,7 +361,7 @@ impl Highest {
     fn invert(&mut self) -> Option<()> {
         let width = self.basis.len();
         let slopes = DMatrix::from_fn(width, width, |row, column| {
-            self.constraints[self.basis[row]].0[column]
+            self.planes[self.basis[row]].slopes[column]
         });
         self.inverse = slopes.try_inverse()?;
         Some(())
@@ -365,8 +369,8 @@ impl Highest {
 }
 
 /// Integral of the velocities over the masses.
-fn work(row: &Row, centres_m: &[Vector2<f64>], velocities: &[Twist]) -> Vector2<f64> {
-    let blocks = row.blocks.iter().zip(centres_m).zip(velocities);
+fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> {
+    let blocks = row.blocks.iter().zip(&placement.centres_m).zip(velocities);
     blocks
         .map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg)
         .sum()
@@ -375,11 +379,9 @@ fn work(row: &Row, centres_m: &[Vector2<f64>], velocities: &[Twist]) -> Vector2<
 /// A row under loads.
 struct Trial<'a> {
     row: &'a Row,
-    centres_m: &'a [Vector2<f64>],
+    placement: &'a Placement,
     program: Program,
-    free: Vec<Twist>,
-    jumps: Vec<Twist>,
-    touching: Vec<[bool; 2]>,
+    load: Load,
     lines: Vec<TieLine>,
     /// Forces of the ties, over gravity.
     ties_kg: Vec<f64>,
@@ -390,14 +392,11 @@ impl<'a> Trial<'a> {
         let placement = &stance.placement;
         let mut program = Program::new(row);
         program.place(placement);
-        let gaps_m = placement.gaps_m.iter();
         Self {
             row,
-            centres_m: &placement.centres_m,
+            placement,
             program,
-            free: vec![Twist::ZERO; row.blocks.len()],
-            jumps: vec![Twist::ZERO; row.joints.len()],
-            touching: gaps_m.map(|gaps| gaps.map(|gap| gap == 0.0)).collect(),
+            load: Load::none(row),
             lines: stance.lines(row).collect(),
             ties_kg: stance
                 .forces_n()
@@ -406,37 +405,14 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The least push to a side that starts the row.
-    fn pushed(&mut self, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
-        if self.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
-            return Err(StabilityError::CannotStand(self.openings()));
+    /// The mechanism of the last trial, as that of this push.
+    fn onset(&self, acceleration_g: f64) -> RowOnset {
+        RowOnset {
+            acceleration_g,
+            openings: self.openings(),
+            velocities: self.program.velocities.to_vec(),
+            lengthening: self.lengthening(),
         }
-        let mut load = Vector2::new(sway.sign(), 0.0);
-        let mut found: Option<RowOnset> = None;
-        // A push beyond all bounds leaves no part to ties.
-        let mut with_ties = false;
-        while let Some(work) = self.moves(load, with_ties)? {
-            let lengthening = self.lengthening();
-            let ties = lengthening.iter().zip(&self.ties_kg);
-            let resists: f64 = ties.map(|(rate, kg)| rate * kg).sum();
-            let acceleration_g = (work.y + resists) / (sway.sign() * work.x);
-            // The bounds fall; below rounding they do not.
-            if found
-                .as_ref()
-                .is_some_and(|found| acceleration_g >= found.acceleration_g * (1.0 - 1e-14))
-            {
-                break;
-            }
-            found = Some(RowOnset {
-                acceleration_g,
-                openings: self.openings(),
-                velocities: self.program.velocities.to_vec(),
-                lengthening,
-            });
-            load = Vector2::new(sway.sign() * acceleration_g, -1.0);
-            with_ties = true;
-        }
-        Ok(found)
     }
 
     /// Integral of the velocities over the masses, if the row moves under a load per unit mass.
@@ -445,30 +421,16 @@ impl<'a> Trial<'a> {
         load: Vector2<f64>,
         with_ties: bool,
     ) -> Result<Option<Vector2<f64>>, ContactError> {
-        self.free.fill(Twist::translation(load));
-        if with_ties {
-            let (blocks, centres_m) = (&self.row.blocks, self.centres_m);
-            let ties = self.lines.iter().zip(self.ties_kg.iter().copied());
-            pull_blocks(blocks, centres_m, ties, &mut self.free);
-        }
-        let load_case = Load {
-            free: &self.free,
-            jumps: &self.jumps,
-            touching: &self.touching,
-        };
-        self.program.solve(&load_case)?;
-        let blocks = self.centres_m.iter().zip(&self.program.velocities);
-        let speed = |(centre_m, twist): (&Vector2<f64>, &Twist)| {
-            let centre = twist.at(*centre_m).norm();
-            centre.max(twist.rate.abs() * self.row.size_m)
-        };
-        let fastest = blocks.map(speed).fold(0.0_f64, f64::max);
+        let ties = self.lines.iter().zip(self.ties_kg.iter().copied());
+        let pulling = ties.filter(|_| with_ties);
+        self.load.push(self.row, self.placement, load, pulling);
+        let fastest = (self.program).fastest(&self.load, self.row, self.placement)?;
         Ok((fastest > STANDSTILL * load.norm()).then(|| self.work()))
     }
 
     /// Integral of the velocities of the last trial over the masses.
     fn work(&self) -> Vector2<f64> {
-        work(self.row, self.centres_m, &self.program.velocities)
+        work(self.row, self.placement, &self.program.velocities)
     }
 
     /// Rates at which the ties lengthen in the last trial.

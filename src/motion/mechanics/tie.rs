@@ -75,18 +75,13 @@ impl Tie {
         let [from, to] = &self.ends;
         let (stiffness_n_m, prestress_n) = (self.stiffness_n_m, self.prestress_n);
         let (yield_force_n, breaks_at_strain) = (self.yield_force_n, self.breaks_at_strain);
-        let positive = "a positive number";
+        let (positive, infinite) = ("a positive number", f64::INFINITY);
         let value = |message: String| Err(TieError::Value(message));
         for (key, number, most, allowed) in [
             ("stiffness_n_m", stiffness_n_m, f64::MAX, positive),
             ("prestress_n", prestress_n, f64::MAX, NOT_NEGATIVE),
-            ("yield_force_n", yield_force_n, f64::INFINITY, positive),
-            (
-                "breaks_at_strain",
-                breaks_at_strain,
-                f64::INFINITY,
-                positive,
-            ),
+            ("yield_force_n", yield_force_n, infinite, positive),
+            ("breaks_at_strain", breaks_at_strain, infinite, positive),
         ] {
             let may_be_zero = allowed == NOT_NEGATIVE;
             if !(number > 0.0 || number == 0.0 && may_be_zero) || number > most {
@@ -216,9 +211,8 @@ impl Tie {
         let by = both!(i: moved_m[1][i] - moved_m[0][i]);
         let now = both!(i: by[i] + R::of(apart[i]));
         let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
-        let more =
-            by[0] * (by[0] + R::of(2.0 * apart[0])) + by[1] * (by[1] + R::of(2.0 * apart[1]));
-        let lengthened = more / (length + R::of(length_m));
+        let more = both!(i: by[i] * (by[i] + R::of(2.0 * apart[i])));
+        let lengthened = (more[0] + more[1]) / (length + R::of(length_m));
         let per_length = R::of(1.0) / length;
         TieSpan {
             stretch_m: lengthened + R::of(self.prestress_n / self.stiffness_n_m),
@@ -362,15 +356,11 @@ impl<R: Real> TieMemory<R> {
         let pulls_n = ((stretch_m - self.yielded_m) * tie.stiffness_n_m).max(zero);
         let force_n = pulls_n.min(R::of(tie.yield_force_n));
         let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
-        let breaks_m = R::of(if tie.breaks_at_strain.is_finite() {
-            tie.breaks_at_strain * tie.slack_length_m()
-        } else {
-            f64::INFINITY
-        });
+        // The unstressed length is positive.
+        let breaks_m = R::of(tie.breaks_at_strain * tie.slack_length_m());
         // A tie that breaks within the step pulls hardest where it breaks.
-        let hardest_n = ((stretch_m.min(breaks_m) - self.yielded_m) * tie.stiffness_n_m)
-            .max(zero)
-            .min(R::of(tie.yield_force_n));
+        let pulls_n = (stretch_m.min(breaks_m) - self.yielded_m) * tie.stiffness_n_m;
+        let hardest_n = pulls_n.max(zero).min(R::of(tie.yield_force_n));
         self.peak_n = self.peak_n.max(hardest_n * self.intact);
         self.yielded_m += more_m * self.intact;
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;

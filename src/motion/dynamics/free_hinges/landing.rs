@@ -114,13 +114,11 @@ pub struct LandingStepper<'a> {
     next_pieces: Vec<Piece>,
     /// Corner about which each joint turned in the last drift.
     turning: Vec<Option<Edge>>,
-    free: Vec<Twist>,
-    jumps: Vec<Twist>,
+    load: Load,
     /// Rates of the gaps in the solution before the last.
     earlier_rates: Vec<[f64; 2]>,
     /// Rates of the gaps that bring landing corners to zero within the step.
     landing: Vec<[f64; 2]>,
-    touching: Vec<Corners>,
     /// Corners that land in a merged step: joint and edge.
     landed: Vec<(usize, usize)>,
     change: Vec<[f64; 2]>,
@@ -176,11 +174,9 @@ impl<'a> LandingStepper<'a> {
             pieces: vec![Piece::default()],
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
-            free: vec![Twist::ZERO; blocks],
-            jumps: vec![Twist::ZERO; joints],
+            load: Load::none(row),
             earlier_rates: vec![[0.0; 2]; joints],
             landing: vec![[0.0; 2]; joints],
-            touching: vec![[true; 2]; joints],
             landed: Vec::with_capacity(2 * joints),
             change: vec![[0.0; 2]; joints],
             shares: vec![[0.0; 2]; joints],
@@ -248,7 +244,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Marks the corners that touch: they may not close.
     fn touch_shut(&mut self) {
-        for (touching, gaps) in self.touching.iter_mut().zip(&self.placement.gaps_m) {
+        for (touching, gaps) in self.load.touching.iter_mut().zip(&self.placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
     }
@@ -256,7 +252,7 @@ impl<'a> LandingStepper<'a> {
     /// The blocks of a piece.
     fn blocks_of(&self, piece: usize) -> Range<usize> {
         let next = self.pieces.get(piece + 1);
-        self.pieces[piece].first..next.map_or(self.free.len(), |next| next.first)
+        self.pieces[piece].first..next.map_or(self.load.free.len(), |next| next.first)
     }
 
     /// Motions of the blocks after a kick of this duration, before contact.
@@ -264,10 +260,10 @@ impl<'a> LandingStepper<'a> {
         for index in 0..self.pieces.len() {
             let twist = self.pieces[index].twist(kick);
             let blocks = self.blocks_of(index);
-            self.free[blocks].fill(twist);
+            self.load.free[blocks].fill(twist);
         }
         let centres_m = &self.placement.centres_m;
-        let free = &mut self.free;
+        let free = &mut self.load.free;
         self.ties
             .pull(centres_m, lasts_s, |block, velocity, turning| {
                 let turning = Twist::rotation(centres_m[block], turning);
@@ -291,7 +287,7 @@ impl<'a> LandingStepper<'a> {
         let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse, time - self.kicked_s);
         self.right.stop_at(time);
-        self.jumps.fill(Twist::ZERO);
+        self.load.jumps.fill(Twist::ZERO);
         self.jump_to_right_support();
         self.landing.fill([0.0; 2]);
         self.touch_shut();
@@ -312,12 +308,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     fn solve(&mut self) -> Result<(), RowMotionError> {
-        let load = Load {
-            free: &self.free,
-            jumps: &self.jumps,
-            touching: &self.touching,
-        };
-        let effort = self.program.solve(&load);
+        let effort = self.program.solve(&self.load);
         let effort = effort.map_err(|reason| {
             RowMotionError::Failed(format!(
                 "at {} s {reason}, or give another `longest_step_s` in [free_hinges]",
@@ -334,7 +325,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Jumps of the velocity at the joints: what arcs need over the coming step, and what closes landing corners.
     fn jump(&mut self, step: f64) {
-        self.jumps.fill(Twist::ZERO);
+        self.load.jumps.fill(Twist::ZERO);
         let count = self.pieces.len();
         let boundaries = if self.row.supports == Supports::Both {
             count + 1
@@ -343,7 +334,7 @@ impl<'a> LandingStepper<'a> {
         };
         for index in 0..boundaries {
             let right = self.pieces.get(index);
-            let joint = right.map_or(self.free.len(), |piece| piece.first);
+            let joint = right.map_or(self.load.free.len(), |piece| piece.first);
             let Some(edge) = self.turning[joint] else {
                 continue;
             };
@@ -359,13 +350,13 @@ impl<'a> LandingStepper<'a> {
             let bend = |piece: &Piece| piece.bend(point, step);
             let left = index.checked_sub(1).map(|left| &self.pieces[left]);
             let jump = left.map_or(Vector2::zeros(), bend) - right.map_or(Vector2::zeros(), bend);
-            self.jumps[joint] = Twist::translation(jump);
+            self.load.jumps[joint] = Twist::translation(jump);
         }
         for (joint, rates) in self.landing.iter().enumerate() {
             if *rates != [0.0; 2] {
                 let frame = &self.placement.frames[joint];
                 let rate = self.row.handedness * (rates[1] - rates[0]) / frame.thickness_m;
-                self.jumps[joint] = self.jumps[joint]
+                self.load.jumps[joint] = self.load.jumps[joint]
                     + Twist::translation(frame.normal * rates[0])
                     + Twist::rotation(frame.intrados_m, rate);
             }
@@ -376,7 +367,7 @@ impl<'a> LandingStepper<'a> {
     /// The right support moves: beside one that is still, its joint jumps the other way.
     fn jump_to_right_support(&mut self) {
         if self.right.moves()
-            && let Some(last) = self.jumps.last_mut()
+            && let Some(last) = self.load.jumps.last_mut()
         {
             *last = *last - Twist::translation(self.right.next_m_s);
         }
@@ -403,7 +394,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Starts the next program with these corners pressed.
     fn press(&mut self, presses: impl Fn(&Self, usize, usize) -> bool) {
-        for joint in 0..self.touching.len() {
+        for joint in 0..self.load.touching.len() {
             for edge in 0..2 {
                 if presses(self, joint, edge) {
                     self.program.press(joint, edge);
@@ -420,12 +411,12 @@ impl<'a> LandingStepper<'a> {
     /// The pieces that move as one in the last solution.
     fn form_pieces(&mut self) {
         self.next_pieces.clear();
-        let (blocks, mut first) = (self.free.len(), 0);
+        let (blocks, mut first) = (self.load.free.len(), 0);
         let moments = self.program.moments();
         for joint in 1..=blocks {
             let ends = joint == blocks
                 || self.program.active[joint] != [true; 2]
-                || self.jumps[joint] != Twist::ZERO;
+                || self.load.jumps[joint] != Twist::ZERO;
             if ends {
                 let sum = moments[joint] - moments[first];
                 let centre = sum.centroid();
@@ -553,7 +544,7 @@ impl<'a> LandingStepper<'a> {
         let kinetic_before = kinetic(&self.next_pieces);
         self.course.potential = self.energy();
         self.audit(kinetic_before);
-        self.free.copy_from_slice(&self.program.velocities);
+        self.load.free.copy_from_slice(&self.program.velocities);
         self.touch_shut();
         self.program.start_from(&self.pressed);
         // Most of the corners that land press.
@@ -602,7 +593,7 @@ impl<'a> LandingStepper<'a> {
     fn complete_kick(&mut self) -> Result<(), RowMotionError> {
         let before = self.momentum();
         let ground = self.half_kick();
-        for (touching, closed) in self.touching.iter_mut().zip(&self.closed) {
+        for (touching, closed) in self.load.touching.iter_mut().zip(&self.closed) {
             for edge in 0..2 {
                 touching[edge] &= closed[edge];
             }
@@ -638,22 +629,28 @@ mod tests {
         let scale = 1e-2;
         let goal: Vec<f64> = (0..blocks.len())
             .flat_map(|b| {
-                let free = stepper.free[b];
+                let free = stepper.load.free[b];
                 let v = free.at(centres[b]);
                 [v.x, v.y, free.rate * gyration(b)].map(|x| -x * root(b) / scale)
             })
             .collect();
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
         let joints = stepper.row.joints.len();
-        let gates: usize = stepper.touching.iter().flatten().filter(|t| **t).count();
+        let gates: usize = stepper
+            .load
+            .touching
+            .iter()
+            .flatten()
+            .filter(|t| **t)
+            .count();
         let mut right = vec![0.0; joints + gates];
         let mut gate = joints;
         for (joint, frame) in stepper.placement.frames.iter().enumerate() {
-            let jump = stepper.jumps[joint];
+            let jump = stepper.load.jumps[joint];
             let mut kinds = vec![(joint, frame.intrados_m, frame.along, 1.0)];
             for (edge, touching) in [Edge::Intrados, Edge::Extrados]
                 .into_iter()
-                .zip(stepper.touching[joint])
+                .zip(stepper.load.touching[joint])
             {
                 if touching {
                     kinds.push((gate, frame.corner_m(edge), frame.normal, -1.0));

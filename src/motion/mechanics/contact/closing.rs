@@ -1,8 +1,7 @@
 //! Positions of an arch whose two parts meet again, from those that rounding or a straight step has parted.
 
-use super::{Corners, Load, Program};
+use super::{Load, Program};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::joints::Placement;
 
 /// Below this part of the thickness of a joint the closure error is left alone.
@@ -12,9 +11,7 @@ const CLOSURE_RATIO: f64 = 1e-13;
 #[derive(Clone, Debug)]
 pub struct Closer {
     program: Program,
-    still: Vec<Twist>,
-    jumps: Vec<Twist>,
-    touching: Vec<Corners>,
+    none: Load,
     change: Vec<[f64; 2]>,
     backup: Placement,
     thinnest_m: f64,
@@ -24,14 +21,11 @@ impl Closer {
     /// For placements of a row.
     #[must_use]
     pub fn new(row: &Row) -> Self {
-        let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
         Self {
             program: Program::new(row),
-            still: vec![Twist::ZERO; blocks],
-            jumps: vec![Twist::ZERO; joints],
-            touching: vec![[true; 2]; joints],
-            change: vec![[0.0; 2]; joints],
+            none: Load::none(row),
+            change: vec![[0.0; 2]; row.joints.len()],
             backup: Placement::new(row),
             thinnest_m: thicknesses.fold(f64::INFINITY, f64::min),
         }
@@ -45,12 +39,7 @@ impl Closer {
             if error_m <= CLOSURE_RATIO * self.thinnest_m {
                 return;
             }
-            let load = Load {
-                free: &self.still,
-                jumps: &self.jumps,
-                touching: &self.touching,
-            };
-            if !self.program.close(placement, &closure, &load) {
+            if !self.program.close(placement, &closure, &self.none) {
                 return;
             }
             let shuts = self.closing_change(placement);

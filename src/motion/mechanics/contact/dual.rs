@@ -54,11 +54,10 @@ impl Program {
             effort.relaxed += 1;
             if tolerance > LARGEST_RATE_TOLERANCE {
                 let iterations = *iterations;
-                return Err(self
-                    .jammed
-                    .map_or(ContactError::Unsolved { iterations }, |joint| {
-                        ContactError::Jammed { joint }
-                    }));
+                return Err(match self.jammed {
+                    Some(joint) => ContactError::Jammed { joint },
+                    None => ContactError::Unsolved { iterations },
+                });
             }
         }
         Ok(())

@@ -216,25 +216,21 @@ impl Factor {
         }
     }
 
+    /// The joints at the ends of a body, where they are open.
+    fn ends(&self, body: usize) -> [Option<usize>; 2] {
+        let pin = |pin: usize| Some(self.pins.get(pin)?.joint);
+        [body.checked_sub(1).and_then(pin), pin(body)]
+    }
+
     /// The shut joints inside a body.
     pub(crate) fn shut_joints(&self, body: usize) -> Range<usize> {
-        let start = body
-            .checked_sub(1)
-            .map_or(0, |pin| self.pins[pin].joint + 1);
-        let end = self
-            .pins
-            .get(body)
-            .map_or(self.active.len(), |pin| pin.joint);
-        start..end
+        let [first, last] = self.ends(body);
+        first.map_or(0, |joint| joint + 1)..last.unwrap_or(self.active.len())
     }
 
     /// The blocks of a body.
     pub fn blocks(&self, body: usize) -> Range<usize> {
-        let start = body.checked_sub(1).map_or(0, |pin| self.pins[pin].joint);
-        let end = self
-            .pins
-            .get(body)
-            .map_or(self.row.own.len(), |pin| pin.joint);
-        start..end
+        let [first, last] = self.ends(body);
+        first.unwrap_or(0)..last.unwrap_or(self.row.own.len())
     }
 }

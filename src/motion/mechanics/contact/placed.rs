@@ -26,14 +26,14 @@ pub(super) struct Placed {
 impl Placed {
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
+        let masses = row
+            .blocks
+            .iter()
+            .map(|block| (block.mass_kg, block.inertia_kg_m2));
         Self {
             supports: row.supports,
             handedness: row.handedness,
-            masses: row
-                .blocks
-                .iter()
-                .map(|b| (b.mass_kg, b.inertia_kg_m2))
-                .collect(),
+            masses: masses.collect(),
             frames: Vec::with_capacity(joints),
             own: vec![MassMoments::default(); blocks],
             moments: vec![MassMoments::default(); blocks + 1],

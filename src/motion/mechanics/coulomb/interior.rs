@@ -61,10 +61,8 @@ impl Pairs {
     }
 
     fn products(&self) -> impl Iterator<Item = f64> {
-        self.own
-            .into_iter()
-            .zip(self.other)
-            .map(|(own, other)| own * other)
+        let pairs = self.own.into_iter().zip(self.other);
+        pairs.map(|(own, other)| own * other)
     }
 
     /// Newton's equations for the three impulses of the joint, to be added to its compliance: matrix, right side, and what
@@ -135,10 +133,9 @@ impl Pairs {
     fn room(&self, change: &Self) -> f64 {
         let own = self.own.iter().zip(&change.own);
         let pairs = own.chain(self.other.iter().zip(&change.other));
-        pairs
-            .filter(|(_, change)| **change < 0.0)
-            .map(|(value, change)| -value / change)
-            .fold(f64::INFINITY, f64::min)
+        let falling = pairs.filter(|(_, change)| **change < 0.0);
+        let rooms = falling.map(|(value, change)| -value / change);
+        rooms.fold(f64::INFINITY, f64::min)
     }
 
     fn go(&mut self, change: &Self, part: f64) {
@@ -168,9 +165,8 @@ impl Pairs {
 impl Program {
     /// Modes and impulses by Coulomb's law; false where no start leads to them.
     pub(super) fn interior(&mut self, tolerance: f64, passes: &mut usize) -> bool {
-        STARTS
-            .iter()
-            .any(|start| self.interior_from(*start, tolerance, passes))
+        let mut starts = STARTS.iter();
+        starts.any(|start| self.interior_from(*start, tolerance, passes))
     }
 
     fn interior_from(&mut self, start: f64, tolerance: f64, passes: &mut usize) -> bool {
@@ -185,19 +181,12 @@ impl Program {
         let impulse = start * (mean + fastest / compliance);
         let rate = START_RATE * fastest + 1e3 * tolerance;
         let bound = self.coefficient * impulse;
-        let mut pairs = vec![
-            Pairs {
-                own: [
-                    0.5 * impulse,
-                    0.5 * impulse,
-                    0.25 * bound,
-                    0.25 * bound,
-                    rate
-                ],
-                other: [rate, rate, rate, rate, 0.5 * bound],
-            };
-            joints
-        ];
+        let (half, quarter) = (0.5 * impulse, 0.25 * bound);
+        let pair = Pairs {
+            own: [half, half, quarter, quarter, rate],
+            other: [rate, rate, rate, rate, 0.5 * bound],
+        };
+        let mut pairs = vec![pair; joints];
         let mut errors = vec![[0.0; 5]; joints];
         // Mean of the products, and the errors, at the start.
         let mut first: Option<[f64; 2]> = None;
@@ -211,9 +200,8 @@ impl Program {
             let (mut off, mut unbound) = (0.0_f64, 0.0_f64);
             for ((errors, pairs), rate) in errors.iter_mut().zip(&pairs).zip(&self.rates) {
                 *errors = pairs.errors(rate, self.coefficient);
-                off = errors[..4]
-                    .iter()
-                    .fold(off, |most, error| most.max(error.abs()));
+                let rates = errors[..4].iter();
+                off = rates.fold(off, |off, error| off.max(error.abs()));
                 unbound = unbound.max(errors[4].abs() / impulse);
             }
             let products = || pairs.iter().flat_map(Pairs::products);
@@ -254,9 +242,9 @@ impl Program {
     fn go_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
-        let eliminated: Vec<_> = joints
-            .map(|(pairs, errors)| pairs.eliminated(errors, target, coefficient))
-            .collect();
+        let eliminated =
+            joints.map(|(pairs, errors)| pairs.eliminated(errors, target, coefficient));
+        let eliminated: Vec<_> = eliminated.collect();
         self.sweep(|program, joint| {
             let (matrix, right, _) = &eliminated[joint];
             let mut matrix = program.own[joint] + matrix;
@@ -279,9 +267,8 @@ impl Program {
         });
         let changes: Vec<Pairs> = changes.collect();
         let rooms = pairs.iter().zip(&changes);
-        let part = rooms
-            .map(|(pairs, change)| REACH * pairs.room(change))
-            .fold(1.0, f64::min);
+        let parts = rooms.map(|(pairs, change)| REACH * pairs.room(change));
+        let part = parts.fold(1.0, f64::min);
         for (pairs, change) in pairs.iter_mut().zip(&changes) {
             pairs.go(change, part);
         }

@@ -66,10 +66,10 @@ impl Section {
     pub(super) fn second_moment(&self) -> f64 {
         match self {
             Self::Whole | Self::Cells(_) => 1.0 / 12.0,
-            Self::Points(points) => points
-                .iter()
-                .map(|[at, share]| share * (at - 0.5).powi(2))
-                .sum(),
+            Self::Points(points) => {
+                let parts = points.iter();
+                parts.map(|[at, share]| share * (at - 0.5).powi(2)).sum()
+            }
         }
     }
 
@@ -207,41 +207,32 @@ impl Law {
             Some(damping) => Some(both!(end: moved[end] * damping)),
             None => None,
         };
-        let sums = match &self.section {
+        let limit = self.crushes.then_some(joint.strength_m);
+        let (elastic, total, crushed) = match &self.section {
             Section::Whole => {
                 let elastic = pressed(p);
                 let total = match brakes {
                     Some(b) => braked(p, both!(end: p[end] + b[end])),
                     None => elastic,
                 };
-                Sums {
-                    elastic,
-                    total,
-                    crushed: zero,
-                }
+                (elastic, total, zero)
             }
-            Section::Cells(nodes) => {
-                let limit = self.crushes.then_some(joint.strength_m);
-                in_cells(nodes, limit, p, brakes, fibres)
-            }
-            Section::Points(points) => {
-                let limit = self.crushes.then_some(joint.strength_m);
-                at_points(points, limit, p, brakes, fibres)
-            }
+            Section::Cells(nodes) => in_cells(nodes, limit, p, brakes, fibres),
+            Section::Points(points) => at_points(points, limit, p, brakes, fibres),
         };
         let k = joint.normal_n_m * (1.0 / 6.0);
         let mut damped_j = zero;
         if damping.is_some() {
             let before = memory.viscous_n;
-            let viscous = both!(end: (sums.total[end] - sums.elastic[end]) * k);
+            let viscous = both!(end: (total[end] - elastic[end]) * k);
             let taken = both!(end: (viscous[end] + before[end]) * moved[end]);
             damped_j = (taken[0] + taken[1]) * 0.5;
             memory.viscous_n = viscous;
         }
         Pressing {
-            edges_n: both!(end: sums.total[end] * k),
+            edges_n: both!(end: total[end] * k),
             damped_j,
-            crushed_j: sums.crushed * k,
+            crushed_j: crushed * k,
         }
     }
 
@@ -291,11 +282,7 @@ fn clamped<R: Real>(force: R, bound: R) -> R {
 }
 
 /// Six times the forces at the edges, elastic and with damping, and the work of crushing, per stiffness.
-struct Sums<R> {
-    elastic: [R; 2],
-    total: [R; 2],
-    crushed: R,
-}
+type Sums<R> = ([R; 2], [R; 2], R);
 
 /// At one place, this fraction of the length along: the elastic stress, the stress with damping, and by how much the place
 /// crushes now.
@@ -333,11 +320,7 @@ fn at_points<R: Real>(
     fibres: &mut [Fibre<R>],
 ) -> Sums<R> {
     let zero = R::of(0.0);
-    let mut sums = Sums {
-        elastic: [zero; 2],
-        total: [zero; 2],
-        crushed: zero,
-    };
+    let (mut elastic_sum, mut total_sum, mut crushed) = ([zero; 2], [zero; 2], zero);
     let mut index = 0;
     while index < points.len() {
         let ([at, share], memory) = (points[index], &mut fibres[index]);
@@ -347,12 +330,12 @@ fn at_points<R: Real>(
         let elastic = q.max(zero) * share;
         let total = q.positive(v.max(zero), zero) * share;
         let parts = [1.0 - at, at];
-        sums.elastic = both!(end: sums.elastic[end] + elastic * parts[end]);
-        sums.total = both!(end: sums.total[end] + total * parts[end]);
-        sums.crushed += (memory.force_m + elastic) * over * 0.5;
+        elastic_sum = both!(end: elastic_sum[end] + elastic * parts[end]);
+        total_sum = both!(end: total_sum[end] + total * parts[end]);
+        crushed += (memory.force_m + elastic) * over * 0.5;
         memory.force_m = elastic;
     }
-    sums
+    (elastic_sum, total_sum, crushed)
 }
 
 #[inline(always)]
@@ -364,21 +347,14 @@ fn in_cells<R: Real>(
     fibres: &mut [Fibre<R>],
 ) -> Sums<R> {
     let zero = R::of(0.0);
-    let mut sums = Sums {
-        elastic: [zero; 2],
-        total: [zero; 2],
-        crushed: zero,
-    };
+    let (mut elastic_sum, mut total_sum, mut crushed) = ([zero; 2], [zero; 2], zero);
     let mut before = (0.0, (zero, zero, zero));
     // The force at the previous node due to the cell before it.
     let mut carried = zero;
     let mut index = 0;
     while index <= nodes.len() {
         let (at, here) = match nodes.get(index) {
-            Some(&at) => {
-                let here = fibre(at, p, brakes, limit, &mut fibres[index]);
-                (at, here)
-            }
+            Some(&at) => (at, fibre(at, p, brakes, limit, &mut fibres[index])),
             None => before,
         };
         if index > 0 {
@@ -393,24 +369,24 @@ fn in_cells<R: Real>(
             let elastic = both!(end: elastic[end] * width);
             let total = both!(end: total[end] * width);
             let shares = [[1.0 - left, 1.0 - at], [left, at]];
-            sums.elastic = both!(end: {
+            elastic_sum = both!(end: {
                 let [from, to] = shares[end];
-                sums.elastic[end] + (elastic[0] * from + elastic[1] * to)
+                elastic_sum[end] + (elastic[0] * from + elastic[1] * to)
             });
-            sums.total = both!(end: {
+            total_sum = both!(end: {
                 let [from, to] = shares[end];
-                sums.total[end] + (total[0] * from + total[1] * to)
+                total_sum[end] + (total[0] * from + total[1] * to)
             });
             let memory = &mut fibres[index - 1];
             let force = carried + elastic[0];
-            sums.crushed += (memory.force_m + force) * over * 0.5;
+            crushed += (memory.force_m + force) * over * 0.5;
             memory.force_m = force;
             carried = elastic[1];
         }
         before = (at, here);
         index += 1;
     }
-    sums
+    (elastic_sum, total_sum, crushed)
 }
 
 /// The interval in which a function that is linear between two ends is positive, as fractions of the length; an empty interval if nowhere.
@@ -446,12 +422,9 @@ fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));
     let from = touching[0].max(pressing[0]);
     let to = touching[1].min(pressing[1]).max(from);
-    let ends = [from, to];
-    let slope = stress[1] - stress[0];
-    amount(
-        ends,
-        both!(end: (stress[0] + slope * ends[end]).max(R::of(0.0))),
-    )
+    let (ends, slope) = ([from, to], stress[1] - stress[0]);
+    let presses = both!(end: (stress[0] + slope * ends[end]).max(R::of(0.0)));
+    amount(ends, presses)
 }
 
 /// Energy of the part that presses.

@@ -103,22 +103,21 @@ impl Rest {
     #[must_use]
     pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
-        let place =
-            |body: usize| Place::at(self.moved.get(body).unwrap_or(structure.support(body)));
+        let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
         let joints = structure.joints.iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
-            let [first, second] = joint.link.bodies.map(place);
+            let [first, second] = joint.link.bodies.map(|body| Place::at(moved(body)));
             let mut fibres = self.fibres[index * each..(index + 1) * each].to_vec();
             let memory = &self.memories[index];
-            let (edges_n, _) = structure.elastic_n(joint, [&first, &second], memory, &mut fibres);
-            (
-                index,
-                0.5 * ((edges_n[1] - edges_n[0]) / (edges_n[0] + edges_n[1])).abs(),
-            )
+            let places = [&first, &second];
+            let ([one_n, other_n], _) = structure.elastic_n(joint, places, memory, &mut fibres);
+            (index, 0.5 * ((other_n - one_n) / (one_n + other_n)).abs())
         });
         eccentricities.fold(
             (0, 0.0),
-            |most, other| if other.1 > most.1 { other } else { most },
+            |most, other| {
+                if other.1 > most.1 { other } else { most }
+            },
         )
     }
 }
@@ -183,15 +182,12 @@ impl ElasticStructure {
         let mut before: Option<(f64, Vec<[f64; 3]>)> = None;
         while part < 1.0 {
             let next = (part + stride).min(1.0);
-            let mut expected = here.moved.clone();
-            if let Some((earlier, moved)) = &before {
-                let ahead = (next - part) / (part - earlier);
-                for (expected, earlier) in expected.iter_mut().zip(moved) {
-                    for (expected, earlier) in expected.iter_mut().zip(earlier) {
-                        *expected += ahead * (*expected - earlier);
-                    }
+            let expected = match &before {
+                Some((earlier, moved)) => {
+                    extrapolated(&here.moved, moved, (next - part) / (part - earlier))
                 }
-            }
+                None => here.moved.clone(),
+            };
             let on_way = self.on_part_of_the_way(next);
             let most_m = (FARTHEST * (next - part) * extent_m).max(NOT_FAR * length_m);
             let near = |rest: &Rest| {
@@ -232,10 +228,8 @@ impl ElasticStructure {
         }
         FIRST_STIFFNESS.into_iter().find_map(|first| {
             let mut stiffness = first;
-            let mut moved: Vec<_> = bonded
-                .iter()
-                .map(|moved| moved.map(|part| part / first))
-                .collect();
+            let softened = bonded.iter().map(|moved| moved.map(|part| part / first));
+            let mut moved: Vec<_> = softened.collect();
             let mut steps = 0;
             loop {
                 let softer = self.stiffness_times(stiffness);
@@ -462,10 +456,8 @@ impl<'a> Search<'a> {
         let bodies = self.structure.bodies.len();
         let mut between = |pair: [usize; 2], action: &Action<R>| {
             let [x, y] = action.force_n;
-            let on = [
-                [-x, -y, action.moments_n_m[0]],
-                [x, y, action.moments_n_m[1]],
-            ];
+            let [first, second] = action.moments_n_m;
+            let on = [[-x, -y, first], [x, y, second]];
             for (body, on) in pair.into_iter().zip(on) {
                 for (axis, force) in on.into_iter().enumerate() {
                     if body < bodies {
@@ -541,9 +533,8 @@ impl<'a> Search<'a> {
         let mut matrix = Banded::new(3 * bodies, self.width);
         let mut forces = vec![0.0; 3 * bodies];
         self.unbalanced(&moved, true, Some(&mut matrix), &mut forces);
-        matrix
-            .solve([&mut forces])
-            .then(|| self.stepped(&moved, &forces, 1.0))
+        let found = matrix.solve([&mut forces]);
+        found.then(|| self.stepped(&moved, &forces, 1.0))
     }
 
     fn stepped(&self, moved: &[[f64; 3]], step: &[f64], part: f64) -> Vec<[f64; 3]> {
@@ -568,17 +559,14 @@ impl<'a> Search<'a> {
             if !matrix.solve([&mut forces]) {
                 break;
             }
-            let shortened = (0..12)
-                .map(|halvings| 0.5_f64.powi(halvings))
-                .find_map(|part| {
-                    let there = self.stepped(&moved, &forces, part);
-                    self.unbalanced(&there, false, None, &mut trial);
-                    let other = self.norm(&trial);
-                    (other < norm * (1.0 - 1e-4 * part)).then_some((there, other))
-                });
-            let Some(better) = shortened else {
-                break;
-            };
+            let mut parts = (0..12).map(|halvings| 0.5_f64.powi(halvings));
+            let shortened = parts.find_map(|part| {
+                let there = self.stepped(&moved, &forces, part);
+                self.unbalanced(&there, false, None, &mut trial);
+                let other = self.norm(&trial);
+                (other < norm * (1.0 - 1e-4 * part)).then_some((there, other))
+            });
+            let Some(better) = shortened else { break };
             (moved, norm) = better;
         }
         (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
@@ -605,11 +593,7 @@ impl<'a> Search<'a> {
         let (mut moved, mut push_m_s2) = (here.moved.clone(), here.push_m_s2);
         if let Some(before) = before {
             let part = stride_m / (here.sway_m - before.sway_m);
-            for (moved, before) in moved.iter_mut().zip(&before.moved) {
-                for (moved, before) in moved.iter_mut().zip(before) {
-                    *moved += part * (*moved - before);
-                }
-            }
+            moved = extrapolated(&moved, &before.moved, part);
             push_m_s2 += part * (push_m_s2 - before.push_m_s2);
         }
         let mut matrix = Banded::new(size, self.width);
@@ -644,17 +628,16 @@ impl<'a> Search<'a> {
                 *step += more_m_s2 * by_push;
             }
             let step = forces.clone();
-            let better = (0..8)
-                .map(|halvings| 0.5_f64.powi(halvings))
-                .find_map(|part| {
-                    let there = self.stepped(&moved, &step, part);
-                    let push_m_s2 = push_m_s2 + part * more_m_s2;
-                    self.unbalanced(&there, false, None, &mut forces);
-                    self.push(push_m_s2, &mut forces);
-                    let other = self.norm(&forces);
-                    let closer = other < norm || other < BALANCED_ON_WAY;
-                    closer.then(|| (missing_m(&there), other, there, push_m_s2))
-                });
+            let mut parts = (0..8).map(|halvings| 0.5_f64.powi(halvings));
+            let better = parts.find_map(|part| {
+                let there = self.stepped(&moved, &step, part);
+                let push_m_s2 = push_m_s2 + part * more_m_s2;
+                self.unbalanced(&there, false, None, &mut forces);
+                self.push(push_m_s2, &mut forces);
+                let other = self.norm(&forces);
+                let closer = other < norm || other < BALANCED_ON_WAY;
+                closer.then(|| (missing_m(&there), other, there, push_m_s2))
+            });
             (missing, norm, moved, push_m_s2) = better?;
         }
         None
@@ -670,18 +653,14 @@ impl<'a> Search<'a> {
     /// Elastic and potential energy, in J.
     fn energy_j(&self, rest: &Rest) -> f64 {
         let bodies = self.structure.bodies.iter().zip(&rest.moved);
-        let lifted: f64 = bodies
-            .map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1])
-            .sum();
+        let lifted = bodies.map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1]);
         let each = self.structure.fibres();
         let joints = self.structure.joints.iter().zip(&rest.memories).enumerate();
-        let elastic: f64 = joints
-            .map(|(index, (joint, memory))| {
-                let fibres = &rest.fibres[index * each..(index + 1) * each];
-                self.structure.energy_j(joint, memory, fibres).0[0]
-            })
-            .sum();
-        lifted + elastic
+        let elastic = joints.map(|(index, (joint, memory))| {
+            let fibres = &rest.fibres[index * each..(index + 1) * each];
+            self.structure.energy_j(joint, memory, fibres).0[0]
+        });
+        lifted.sum::<f64>() + elastic.sum::<f64>()
     }
 
     fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Rest {
@@ -701,8 +680,7 @@ impl<'a> Search<'a> {
             let [one, other] = joint.link.bodies.map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];
             let memory = &mut memories[index];
-            self.structure
-                .act(joint, [&one, &other], None, memory, fibres);
+            (self.structure).act(joint, [&one, &other], None, memory, fibres);
         }
         Rest {
             bent: moved.clone(),
@@ -714,6 +692,15 @@ impl<'a> Search<'a> {
             steps,
         }
     }
+}
+
+/// The displacements that are so many times farther on than those before.
+fn extrapolated(here: &[[f64; 3]], before: &[[f64; 3]], times: f64) -> Vec<[f64; 3]> {
+    let ahead = |here: f64, before: f64| here + times * (here - before);
+    let pairs = here.iter().zip(before);
+    pairs
+        .map(|(here, before)| [0, 1, 2].map(|axis| ahead(here[axis], before[axis])))
+        .collect()
 }
 
 /// The most places along a joint.

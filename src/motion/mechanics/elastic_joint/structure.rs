@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use super::contact::{Contact, ElasticJoint, Fibre, Law, Memory, Pressing, Rubbing, Section};
 use super::kinematics::{Action, Link, Place};
 use super::tie::BoundTie;
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::lanes::{Lanes, Real};
 use crate::mechanics::tie::square_frequency;
@@ -94,42 +94,32 @@ impl ElasticProperties {
         }
     }
 
-    /// Refuses properties out of range.
+    /// Refuses properties out of range; the stiffness of joints is checked joint by joint.
     fn check(&self) -> Result<(), ArgumentError> {
-        match self.stiffness {
-            Stiffness::Uniform(stiffness) => check_stiffness(stiffness)?,
-            Stiffness::Materials(materials) => {
-                let modulus_pa = materials.stone_modulus_pa;
-                within("stone_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
-                if let Some([modulus_pa, thickness_m]) = materials.mortar {
-                    within("mortar_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
-                    within("mortar_thickness_m", thickness_m, Self::MORTAR_M)?;
-                }
-                within("shear_ratio", materials.shear_ratio, Self::SHEAR_RATIO)?;
+        if let Stiffness::Materials(materials) = self.stiffness {
+            let modulus_pa = materials.stone_modulus_pa;
+            within("stone_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+            if let Some([modulus_pa, thickness_m]) = materials.mortar {
+                within("mortar_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+                within("mortar_thickness_m", thickness_m, Self::MORTAR_M)?;
             }
+            within("shear_ratio", materials.shear_ratio, Self::SHEAR_RATIO)?;
         }
         within("depth_m", self.depth_m, 1e-6..=1e6)?;
         if let Some(coefficient) = self.friction_coefficient {
-            within(
-                "friction_coefficient",
-                coefficient,
-                Self::FRICTION_COEFFICIENT,
-            )?;
+            let range = Self::FRICTION_COEFFICIENT;
+            within("friction_coefficient", coefficient, range)?;
         }
         within("damping_time_s", self.damping_time_s, Self::DAMPING_TIME_S)?;
         if let Some(strength_pa) = self.compressive_strength_pa {
             within("compressive_strength_pa", strength_pa, Self::STRENGTH_PA)?;
         }
-        match self.contact {
-            Contact::Points(count) if !Self::CONTACT_POINTS.contains(&count) => {
-                Err(ArgumentError {
-                    argument: "contact_points",
-                    value: count as f64,
-                    allowed: "2 to 100: one point does not hold a block".to_owned(),
-                })
-            }
-            _ => Ok(()),
+        if let Contact::Points(count) = self.contact {
+            let is_allowed = Self::CONTACT_POINTS.contains(&count);
+            let allowed = "2 to 100: one point does not hold a block";
+            allow(is_allowed, "contact_points", count as f64, allowed)?;
         }
+        Ok(())
     }
 
     /// These properties or this structure with all stiffness multiplied.
@@ -152,12 +142,11 @@ impl ElasticProperties {
 }
 
 fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
-    let normal_pa_m = stiffness.normal_pa_m;
-    within(
-        "normal_stiffness_pa_m",
-        normal_pa_m,
+    let (normal_pa_m, range) = (
+        stiffness.normal_pa_m,
         ElasticProperties::NORMAL_STIFFNESS_PA_M,
-    )?;
+    );
+    within("normal_stiffness_pa_m", normal_pa_m, range)?;
     let shear_ratio = stiffness.shear_pa_m / normal_pa_m;
     within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
 }
@@ -225,14 +214,10 @@ impl ElasticStructure {
             check_stiffness(stiffness)?;
             let area_m2 = properties.depth_m * length_m;
             let strength_pa = properties.compressive_strength_pa;
+            let arms_m = arms_m.map(|arm| [arm.x, arm.y]);
+            let along = [along.x, along.y];
             Ok(ElasticJoint {
-                link: Link::new(
-                    pair,
-                    arms_m.map(|arm| [arm.x, arm.y]),
-                    [along.x, along.y],
-                    row.handedness,
-                    length_m,
-                ),
+                link: Link::new(pair, arms_m, along, row.handedness, length_m),
                 normal_n_m: stiffness.normal_pa_m * area_m2,
                 shear_n_m: stiffness.shear_pa_m * area_m2,
                 strength_m: strength_pa.map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
@@ -307,13 +292,10 @@ impl ElasticStructure {
     /// This structure when its supports have gone this part of their way from where they moved along.
     pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
         let from = self.moved_along().1.supports;
-        let between = |side: usize| {
-            [0, 1, 2].map(|axis| {
-                let to = self.supports[side][axis];
-                to - (1.0 - part) * (to - from[side][axis])
-            })
-        };
-        self.clone().on_supports([between(0), between(1)])
+        let between = |from: f64, to: f64| to - (1.0 - part) * (to - from);
+        let on_way =
+            |side: usize, axis: usize| between(from[side][axis], self.supports[side][axis]);
+        (self.clone()).on_supports([0, 1].map(|side| [0, 1, 2].map(|axis| on_way(side, axis))))
     }
 
     /// Whether joints slip for good.
@@ -447,11 +429,8 @@ impl ElasticStructure {
                 flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);
             }
             let turning = self.law.section.second_moment() * link.length_m.powi(2);
-            let roots = Vector3::new(
-                joint.normal_n_m.sqrt(),
-                joint.shear_n_m.sqrt(),
-                (joint.normal_n_m * turning).sqrt(),
-            );
+            let (normal, shear) = (joint.normal_n_m, joint.shear_n_m);
+            let roots = Vector3::new(normal.sqrt(), shear.sqrt(), (normal * turning).sqrt());
             let scaled = flexibility.component_mul(&(roots * roots.transpose()));
             scaled.symmetric_eigenvalues().max()
         });
@@ -473,9 +452,8 @@ impl ElasticStructure {
 
 /// Stiffness of mortar and of a length of stone, in series.
 fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
-    let mortar = materials
-        .mortar
-        .map_or(0.0, |[modulus, thickness]| thickness / modulus);
+    let mortar = materials.mortar;
+    let mortar = mortar.map_or(0.0, |[modulus, thickness]| thickness / modulus);
     let normal_pa_m = 1.0 / (mortar + length_m / materials.stone_modulus_pa);
     JointStiffness {
         normal_pa_m,

@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::SectionResultant;
-use crate::mechanics::cone_program::{self, Entries};
+use crate::mechanics::cone_program;
 use crate::mechanics::geometry::field::{Field, Twist};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
@@ -45,16 +45,14 @@ impl Projection {
     pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
         let rates = self.joints.iter().flat_map(|joint| joint.opening_rates);
         let threshold = MIN_OPENING * rates.fold(MIN_OPENING, f64::max);
-        self.joints
-            .iter()
-            .enumerate()
-            .flat_map(move |(index, joint)| {
-                [Edge::Intrados, Edge::Extrados]
-                    .into_iter()
-                    .zip(joint.opening_rates)
-                    .filter(move |(_, rate)| *rate > threshold)
-                    .map(move |(edge, rate)| (index, edge, rate))
-            })
+        let joints = self.joints.iter().enumerate();
+        joints.flat_map(move |(index, joint)| {
+            let rates = [Edge::Intrados, Edge::Extrados]
+                .into_iter()
+                .zip(joint.opening_rates);
+            let opening = rates.filter(move |(_, rate)| *rate > threshold);
+            opening.map(move |(edge, rate)| (index, edge, rate))
+        })
     }
 }
 
@@ -134,15 +132,15 @@ pub fn project(
     assert!(joints_rad.len() >= 2, "a body lies between two joints");
     let energy_before = before.product(before, profile);
     let scale = energy_before.sqrt();
-    let bodies: Vec<[Twist; 3]> = joints_rad
-        .windows(2)
+    let parts = joints_rad.windows(2);
+    let bodies: Vec<[Twist; 3]> = parts
         .map(|ends| orthonormal_twists(profile, ends[0], ends[1]))
         .collect();
     let target = components(before, profile, joints_rad, &bodies, scale);
 
     // Rows: no sliding at each joint, then for each joint the gap at the intrados and at the extrados.
     let count = joints_rad.len();
-    let mut entries = Entries::default();
+    let mut entries = Vec::new();
     for (joint, angle) in joints_rad.iter().enumerate() {
         let (outward, onward) = (profile.outward(*angle), profile.onward(*angle));
         let middle = profile.middle(*angle);
@@ -158,28 +156,20 @@ pub fn project(
                     (count + 2 * joint, -twist.at(edges[0]).dot(&onward)),
                     (count + 2 * joint + 1, -twist.at(edges[1]).dot(&onward)),
                 ];
-                for (row, velocity) in velocities {
-                    entries.put(row, 3 * body + axis, side * velocity);
-                }
+                let entry = |(row, velocity)| (row, 3 * body + axis, side * velocity);
+                entries.extend(velocities.map(entry));
             }
         }
     }
     let width = target.len();
-    let matrices = [
-        &CscMatrix::identity(width),
-        &entries.matrix(3 * count, width),
-    ];
+    let matrix = cone_program::matrix(3 * count, width, entries);
+    let matrices = [&CscMatrix::identity(width), &matrix];
     let minus_target: Vec<f64> = target.iter().map(|component| -component).collect();
     let right = vec![0.0; 3 * count];
     let solution = cone_program::solve(matrices, &minus_target, &right, count, settings());
-    if !matches!(
-        solution.status,
-        SolverStatus::Solved | SolverStatus::AlmostSolved
-    ) {
-        return Err(ProjectionError {
-            joints: count,
-            reason: solution.status,
-        });
+    let (joints, reason) = (count, solution.status);
+    if !matches!(reason, SolverStatus::Solved | SolverStatus::AlmostSolved) {
+        return Err(ProjectionError { joints, reason });
     }
 
     let joints = joints_rad.iter().enumerate().map(|(joint, angle)| {
@@ -216,15 +206,13 @@ fn components(
     scale: f64,
 ) -> Vec<f64> {
     let mut passed = field.momentum_to(profile, joints_rad[0]);
-    let components = bodies
-        .iter()
-        .zip(&joints_rad[1..])
-        .flat_map(|(twists, end)| {
-            let reached = field.momentum_to(profile, *end);
-            let momentum = reached - passed;
-            passed = reached;
-            twists.map(|twist| twist.power(&momentum) / scale)
-        });
+    let parts = bodies.iter().zip(&joints_rad[1..]);
+    let components = parts.flat_map(|(twists, end)| {
+        let reached = field.momentum_to(profile, *end);
+        let momentum = reached - passed;
+        passed = reached;
+        twists.map(|twist| twist.power(&momentum) / scale)
+    });
     components.collect()
 }
 

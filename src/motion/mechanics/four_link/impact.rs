@@ -47,12 +47,10 @@ pub enum ImpactModel {
 impl ImpactModel {
     /// Checks a prescribed restitution coefficient.
     pub(crate) fn check(self) -> Result<(), ArgumentError> {
-        match self {
-            Self::Prescribed { restitution } => {
-                within("restitution", restitution, 0.0..=1.0).map(|_| ())
-            }
-            Self::MaxRestitution | Self::SameSections | Self::Mirrored => Ok(()),
+        if let Self::Prescribed { restitution } = self {
+            within("restitution", restitution, 0.0..=1.0)?;
         }
+        Ok(())
     }
 
     /// Its name in scenarios and results.
@@ -173,19 +171,15 @@ pub(crate) fn impact_onto(
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
         _ => projection(&next, &closing, profile),
     };
+    let is_theory = !matches!(model, ImpactModel::Prescribed { .. });
     (rate_ratio > 0.0).then(|| Impact {
         mechanism: next,
         rate_ratio,
         restitution,
-        impulse_line: match model {
-            ImpactModel::Prescribed { .. } => None,
-            _ => Some(ImpulseLine::new(
-                profile,
-                &next,
-                &closing,
-                &next.field().scaled(rate_ratio),
-            )),
-        },
+        impulse_line: is_theory.then(|| {
+            let opening = next.field().scaled(rate_ratio);
+            ImpulseLine::new(profile, &next, &closing, &opening)
+        }),
     })
 }
 
@@ -197,14 +191,9 @@ pub(crate) fn impact_onto(
 #[must_use]
 pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> (f64, f64) {
     let field = mechanism.field();
-    let (own, shared) = (
-        field.product(&field, profile),
-        field.product(before, profile),
-    );
-    (
-        shared / own,
-        shared * shared / (own * before.product(before, profile)),
-    )
+    let [own, shared] = [&field, before].map(|other| field.product(other, profile));
+    let kept = shared * shared / (own * before.product(before, profile));
+    (shared / own, kept)
 }
 
 /// The admissible mechanism that keeps the most of the kinetic energy of `before`.
@@ -236,10 +225,6 @@ impl RetainedEnergy<'_> {
 impl Objective for RetainedEnergy<'_> {
     fn kinks_rad(&self) -> &[f64] {
         &self.before.cuts_rad
-    }
-
-    fn value(&self, mechanism: &FourLink) -> f64 {
-        self.retained(mechanism).0
     }
 
     /// The retained energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
@@ -274,19 +259,16 @@ impl ProductTable {
     fn new(lattice: &Lattice, before: &Field, profile: &dyn Profile) -> Self {
         let end = profile.end();
         let whole = before.momentum_to(profile, end);
-        let rotations: Vec<_> = lattice
-            .sections_rad
+        let rotations = lattice.sections_rad.iter().flat_map(|angle| {
+            let moments = profile.sector(*angle, end);
+            let momentum = whole - before.momentum_to(profile, *angle);
+            [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
+        });
+        let rotations: Vec<_> = rotations.collect();
+        let shares = rotations
             .iter()
-            .flat_map(|angle| {
-                let moments = profile.sector(*angle, end);
-                let momentum = whole - before.momentum_to(profile, *angle);
-                [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
-            })
-            .collect();
-        let with_before = rotations
-            .iter()
-            .map(|(point, _, momentum)| momentum.about(*point))
-            .collect();
+            .map(|(point, _, momentum)| momentum.about(*point));
+        let with_before = shares.collect();
         let size = rotations.len();
         let mut mutual = vec![0.0; size * size];
         for (i, (point, _, _)) in rotations.iter().enumerate() {

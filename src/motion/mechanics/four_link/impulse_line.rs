@@ -5,8 +5,6 @@
 //! determine that one. The points where the impulses cross their sections are the impulse line of the paper (Fig.
 //! 10).
 
-use std::sync::Arc;
-
 use nalgebra::Vector2;
 
 use super::mechanism::{FourLink, HingeSites};
@@ -21,7 +19,6 @@ use crate::mechanics::sway::Sway;
 /// sways right, unless a name ends in `from_left`.
 #[derive(Clone, Debug)]
 pub struct ImpulseLine {
-    profile: Arc<dyn Profile>,
     mechanism: FourLink,
     /// The impulse that each part transmits to its neighbour on the right.
     pub resultants: ResultantLine,
@@ -35,7 +32,6 @@ impl ImpulseLine {
     #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink, before: &Field, after: &Field) -> Self {
         Self {
-            profile: profile.shared(),
             mechanism: *mechanism,
             resultants: ResultantLine::through_hinges(profile, mechanism, before.minus(after)),
         }
@@ -70,13 +66,11 @@ impl ImpulseLine {
     /// given side.
     #[must_use]
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
-        let section = self
-            .resultants
-            .section(sway.from_left(&*self.profile, angle_rad));
-        match sway {
-            Sway::Right => section,
-            Sway::Left => section.mirrored(),
-        }
+        let angle_rad = sway.from_left(&*self.resultants.profile, angle_rad);
+        let mut section = self.resultants.section(angle_rad);
+        // In a mirror the part before it is after it.
+        section.tangential *= sway.sign();
+        section
     }
 
     /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the
@@ -89,7 +83,7 @@ impl ImpulseLine {
             &mut extremes.normal,
             &mut extremes.friction_ratio,
         ] {
-            extremum.angle_rad = sway.from_left(&*self.profile, extremum.angle_rad);
+            extremum.angle_rad = sway.from_left(&*self.resultants.profile, extremum.angle_rad);
         }
         extremes
     }

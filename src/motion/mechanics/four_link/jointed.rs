@@ -29,27 +29,24 @@ impl JointedProfile {
         let mut before = MassMoments::default();
         let mut moments = vec![before];
         for block in &row.blocks {
-            let own = block.moments_at(block.centre_m);
-            before = before
-                + MassMoments {
-                    mass: own.mass * per_kg,
-                    first: own.first * (per_kg * per_m),
-                    polar: own.polar * (per_kg * per_m * per_m),
-                };
+            let mut own = block.moments_at(block.centre_m);
+            own.mass *= per_kg;
+            own.first *= per_kg * per_m;
+            own.polar *= per_kg * per_m * per_m;
+            before = before + own;
             moments.push(before);
         }
-        let joints = row.joints.iter();
+        let joints = row.joints.iter().map(|joint| Joint {
+            intrados_m: joint.intrados_m * per_m,
+            extrados_m: joint.extrados_m * per_m,
+        });
+        let outlines = row.outlines_m.iter();
+        let outlines =
+            outlines.map(|outline| outline.iter().map(|corner| corner * per_m).collect());
         Some(Self {
-            joints: joints
-                .map(|joint| Joint {
-                    intrados_m: joint.intrados_m * per_m,
-                    extrados_m: joint.extrados_m * per_m,
-                })
-                .collect(),
+            joints: joints.collect(),
             moments,
-            outlines: (row.outlines_m.iter())
-                .map(|outline| outline.iter().map(|corner| corner * per_m).collect())
-                .collect(),
+            outlines: outlines.collect(),
         })
     }
 

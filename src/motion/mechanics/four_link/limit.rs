@@ -7,10 +7,11 @@ use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::resultant::ResultantLine;
 use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use super::self_weight::carries_its_weight;
+use crate::argument::ArgumentError;
 use crate::bisection::{Width, try_bisect};
 use crate::mechanics::geometry::field::{Field, Side, Twist, turned};
 use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::{Edge, Ring, RingError};
+use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Onset of rocking under a push to the right.
 #[derive(Clone, Debug)]
@@ -69,8 +70,8 @@ pub(crate) fn incipient_of(
     profile: &dyn Profile,
     sites: HingeSites,
 ) -> Result<Incipient, LimitError> {
-    let (acceleration_g, mechanism) =
-        least_acceleration(profile, sites).ok_or(LimitError::NoPush)?;
+    let least = least_acceleration(profile, sites);
+    let (acceleration_g, mechanism) = least.ok_or(LimitError::NoPush)?;
     let thrust_line = ResultantLine::through_hinges(profile, &mechanism, push(acceleration_g));
     if !thrust_line.extremes(sites).is_admissible() {
         return Err(LimitError::OtherMechanism { acceleration_g });
@@ -94,7 +95,7 @@ pub fn least_thickness_ratio(
     embrace_rad: f64,
     sites: HingeSites,
     accuracy: f64,
-) -> Result<f64, RingError> {
+) -> Result<f64, ArgumentError> {
     let stands = |thickness_ratio: f64| {
         let ring = Ring::new(thickness_ratio, embrace_rad)?;
         Ok(carries_its_weight(&ring, sites))
@@ -115,17 +116,12 @@ fn push(acceleration_g: f64) -> Field {
 fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
-    let moments: Vec<[Vector2<f64>; 2]> = lattice
-        .sections_rad
-        .iter()
-        .map(|angle| {
-            let part = profile.moments_to(*angle);
-            [Edge::Intrados, Edge::Extrados].map(|edge| {
-                let arm = part.first - profile.point(*angle, edge) * part.mass;
-                turned(arm)
-            })
-        })
-        .collect();
+    let moments = lattice.sections_rad.iter().map(|angle| {
+        let part = profile.moments_to(*angle);
+        let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
+        [Edge::Intrados, Edge::Extrados].map(|edge| turned(arm(edge)))
+    });
+    let moments: Vec<[Vector2<f64>; 2]> = moments.collect();
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
         let mut power = Vector2::zeros();
         for i in 0..4 {
@@ -138,9 +134,9 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
         }
     };
     let objective = LeastAcceleration { profile };
-    best_mechanism(profile, sites, &lattice, &score, &objective)
-        .filter(|(value, _)| value.is_finite())
-        .map(|(value, mechanism)| (-value, mechanism))
+    let best = best_mechanism(profile, sites, &lattice, &score, &objective);
+    let moving = best.filter(|(value, _)| value.is_finite());
+    moving.map(|(value, mechanism)| (-value, mechanism))
 }
 
 /// Minus the acceleration at which a mechanism starts to move, if a push to the right moves it.
@@ -149,17 +145,6 @@ struct LeastAcceleration<'a> {
 }
 
 impl Objective for LeastAcceleration<'_> {
-    fn kinks_rad(&self) -> &[f64] {
-        &[]
-    }
-
-    fn value(&self, mechanism: &FourLink) -> f64 {
-        match acceleration_g(mechanism, self.profile) {
-            acceleration_g if acceleration_g > 0.0 => -acceleration_g,
-            _ => f64::NEG_INFINITY,
-        }
-    }
-
     fn evaluate(&self, mechanism: &FourLink, _: [bool; 4]) -> (f64, [f64; 4]) {
         let sway = mechanism.field().product(&push_only(), self.profile);
         let acceleration_g = acceleration_g(mechanism, self.profile);
@@ -167,7 +152,13 @@ impl Objective for LeastAcceleration<'_> {
         let local = [load.at(0.0, Side::After); 4];
         let line = ResultantLine::through_hinges(self.profile, mechanism, load);
         let gradient = line.power_gradient(mechanism, local);
-        (self.value(mechanism), gradient.map(|slope| slope / sway))
+        let moves = acceleration_g > 0.0;
+        let value = if moves {
+            -acceleration_g
+        } else {
+            f64::NEG_INFINITY
+        };
+        (value, gradient.map(|slope| slope / sway))
     }
 }
 
@@ -179,10 +170,10 @@ fn push_only() -> Field {
 /// The push, in units of gravity, at which `mechanism` starts to move.
 #[must_use]
 pub fn acceleration_g(mechanism: &FourLink, profile: &dyn Profile) -> f64 {
-    let field = mechanism.field();
-    let rise = field.product(
-        &Field::uniform(Twist::translation(Vector2::new(0.0, 1.0))),
-        profile,
+    let (field, up) = (
+        mechanism.field(),
+        Twist::translation(Vector2::new(0.0, 1.0)),
     );
+    let rise = field.product(&Field::uniform(up), profile);
     rise / field.product(&push_only(), profile)
 }

@@ -125,10 +125,8 @@ impl Linkage {
         // C is where the circles about B and D meet, on the left of the line from B to D.
         let line = self.ground - left;
         let square = line.norm_squared();
-        let (middle_square, right_square) = (
-            self.middle.bar.norm_squared(),
-            self.right.bar.norm_squared(),
-        );
+        let [middle_square, right_square] =
+            [self.middle.bar, self.right.bar].map(|bar| bar.norm_squared());
         // Dot and cross product of the line and the middle bar.
         let along = 0.5 * (square + middle_square - right_square);
         let cross = (middle_square * square - along * along).sqrt();
@@ -144,10 +142,8 @@ impl Linkage {
     /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): cross
     /// products close the loop of velocities.
     fn rates(bars: &Bars) -> (f64, f64) {
-        (
-            bars.left.perp(&bars.right) * bars.per_cross,
-            bars.left.perp(&bars.middle) * bars.per_cross,
-        )
+        let [middle, right] = [bars.right, bars.middle].map(|bar| bars.left.perp(&bar));
+        (middle * bars.per_cross, right * bars.per_cross)
     }
 
     /// Derivatives of the rates of the middle and the right body with respect to `q`: they close the loop
@@ -155,10 +151,8 @@ impl Linkage {
     fn slopes(bars: &Bars, middle_rate: f64, right_rate: f64) -> (f64, f64) {
         let inward = bars.left + bars.middle * (middle_rate * middle_rate)
             - bars.right * (right_rate * right_rate);
-        (
-            inward.dot(&bars.right) * bars.per_cross,
-            inward.dot(&bars.middle) * bars.per_cross,
-        )
+        let [middle, right] = [bars.right, bars.middle].map(|bar| inward.dot(&bar));
+        (middle * bars.per_cross, right * bars.per_cross)
     }
 
     /// The thrust line in motion: from the dynamic equilibrium of the three bodies.
@@ -172,30 +166,25 @@ impl Linkage {
         let (middle_rate, right_rate) = Self::rates(&bars);
         let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
         let square = motion.rate * motion.rate;
-        let spin = |rate: f64, slope: f64| {
-            (
-                rate * motion.acceleration + slope * square,
-                rate * rate * square,
-            )
+        let spin = |(rate, slope): (f64, f64)| {
+            let acceleration = rate * motion.acceleration + slope * square;
+            (acceleration, rate * rate * square)
         };
-        let (left_spin, middle_spin, right_spin) = (
-            spin(-1.0, 0.0),
-            spin(middle_rate, middle_slope),
-            spin(right_rate, right_slope),
-        );
+        let rates = [
+            (-1.0, 0.0),
+            (middle_rate, middle_slope),
+            (right_rate, right_slope),
+        ];
+        let [left_spin, middle_spin, right_spin] = rates.map(spin);
         let turn_left = turn_between(self.left.bar, bars.left);
         let turn_middle = turn_between(self.middle.bar, bars.middle);
         let turn_right = turn_between(self.right.bar, bars.right);
-        let body_force = motion.body_force_g;
+        let force = motion.body_force_g;
         let at_b = turned(bars.left) * left_spin.0 - bars.left * left_spin.1;
         let [point_a, point_b, _, point_d] = self.points;
-        let left = Load::of_body(point_a, rotate_back(turn_left, body_force), left_spin);
-        let middle = Load::of_body(
-            point_b,
-            rotate_back(turn_middle, body_force - at_b),
-            middle_spin,
-        );
-        let right = Load::of_body(point_d, rotate_back(turn_right, body_force), right_spin);
+        let left = Load::of_body(point_a, rotate_back(turn_left, force), left_spin);
+        let middle = Load::of_body(point_b, rotate_back(turn_middle, force - at_b), middle_spin);
+        let right = Load::of_body(point_d, rotate_back(turn_right, force), right_spin);
 
         let [a, b, c, d] = self.hinges_rad;
         let on_left = left.resultant(&self.profile.sector(a, b));
@@ -208,22 +197,20 @@ impl Linkage {
         let force_a = force_b - product(turn_left, on_left.linear);
         let force_d = force_c + product(turn_right, on_right.linear);
 
-        let still = Load::uniform(body_force);
+        let still = Load::uniform(force);
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
             let at_hinge = Momentum::applied_at(self.points[hinge], force);
             let known = (self.hinges_rad[hinge], at_hinge);
             Part::new(&*self.profile, end_rad, load, known)
         };
-        ThrustLine::new(
-            &*self.profile,
-            vec![
-                part(0, a, still, force_a),
-                part(0, b, left, rotate_back(turn_left, force_a)),
-                part(1, c, middle, rotate_back(turn_middle, force_b)),
-                part(2, d, right, rotate_back(turn_right, force_c)),
-                part(3, self.profile.end(), still, force_d),
-            ],
-        )
+        let parts = vec![
+            part(0, a, still, force_a),
+            part(0, b, left, rotate_back(turn_left, force_a)),
+            part(1, c, middle, rotate_back(turn_middle, force_b)),
+            part(2, d, right, rotate_back(turn_right, force_c)),
+            part(3, self.profile.end(), still, force_d),
+        ];
+        ThrustLine::new(&*self.profile, parts)
     }
 
     /// The limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that
@@ -253,9 +240,8 @@ impl Mechanism for Linkage {
 
     fn moments(&self) -> Vec<MassMoments> {
         let hinges = self.hinges_rad.windows(2);
-        hinges
-            .map(|ends| self.profile.sector(ends[0], ends[1]))
-            .collect()
+        let moments = hinges.map(|ends| self.profile.sector(ends[0], ends[1]));
+        moments.collect()
     }
 
     /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
@@ -298,8 +284,7 @@ impl Mechanism for Linkage {
     fn rotations(&self, q_rad: f64) -> [f64; 3] {
         let bars = self.bars(q_rad);
         let middle = angle_between(self.middle.bar, bars.middle);
-        let right = angle_between(self.right.bar, bars.right);
-        [-q_rad, middle, right]
+        [-q_rad, middle, angle_between(self.right.bar, bars.right)]
     }
 
     /// Rotation rates of the three bodies at `q` for `q' = 1`.

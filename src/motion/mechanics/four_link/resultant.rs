@@ -21,7 +21,7 @@ pub const EDGE_TOLERANCE: f64 = 1e-6;
 /// The resultants over all sections of a ring under a load per unit mass.
 #[derive(Clone, Debug)]
 pub struct ResultantLine {
-    profile: Arc<dyn Profile>,
+    pub(super) profile: Arc<dyn Profile>,
     load: Field,
     start: Momentum,
 }
@@ -56,15 +56,6 @@ impl SectionResultant {
             moment,
             eccentricity_ratio: moment / (normal * thickness),
             thickness,
-        }
-    }
-
-    /// This section seen in a mirror: the part before it is then after it.
-    #[must_use]
-    pub fn mirrored(self) -> Self {
-        Self {
-            tangential: -self.tangential,
-            ..self
         }
     }
 }
@@ -116,17 +107,13 @@ impl ResultantLine {
             load.momentum_to(profile, mechanism.hinges_rad[hinge])
                 .about(points[hinge])
         });
-        let start = matrix
-            .lu()
-            .solve(&moments)
-            .expect("three hinges of an admissible mechanism are not on one line");
+        let start = matrix.lu().solve(&moments);
+        let start = start.expect("three hinges of an admissible mechanism are not on one line");
+        let (linear, angular) = (start.xy(), start.z);
         Self {
             profile: profile.shared(),
             load,
-            start: Momentum {
-                linear: start.xy(),
-                angular: start.z,
-            },
+            start: Momentum { linear, angular },
         }
     }
 
@@ -146,28 +133,19 @@ impl ResultantLine {
     /// which are rigid: there the line may leave the ring between joints.
     #[must_use]
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
-        let smallest_normal = self.largest(sites, &|section| -section.normal);
-        let normal = Extremum {
-            value: -smallest_normal.value,
-            ..smallest_normal
-        };
-        if normal.value <= 0.0 {
-            let infinite = Extremum {
+        let mut normal = self.largest(sites, &|section| -section.normal);
+        normal.value = -normal.value;
+        let of_pressed = |of: &dyn Fn(&SectionResultant) -> f64| match normal {
+            Extremum { value, angle_rad } if value <= 0.0 => Extremum {
                 value: f64::INFINITY,
-                ..normal
-            };
-            return Extremes {
-                eccentricity_ratio: infinite,
-                normal,
-                friction_ratio: infinite,
-            };
-        }
+                angle_rad,
+            },
+            _ => self.largest(sites, of),
+        };
         Extremes {
-            eccentricity_ratio: self.largest(sites, &|section| section.eccentricity_ratio.abs()),
+            eccentricity_ratio: of_pressed(&|section| section.eccentricity_ratio.abs()),
             normal,
-            friction_ratio: self.largest(sites, &|section| {
-                (section.tangential / section.normal).abs()
-            }),
+            friction_ratio: of_pressed(&|section| (section.tangential / section.normal).abs()),
         }
     }
 
@@ -195,12 +173,11 @@ impl ResultantLine {
             let near = &samples[i.saturating_sub(1)..(i + 2).min(samples.len())];
             near.iter().all(|other| other.value <= samples[i].value)
         };
-        let refined = (1..samples.len())
-            .filter(|i| is_top(i - 1) || is_top(*i))
-            .map(|i| {
-                let (from, to) = (samples[i - 1].angle_rad, samples[i].angle_rad);
-                climb(from, to, TOP_ACCURACY_RAD, &at)
-            });
+        let near_tops = (1..samples.len()).filter(|i| is_top(i - 1) || is_top(*i));
+        let refined = near_tops.map(|i| {
+            let (from, to) = (samples[i - 1].angle_rad, samples[i].angle_rad);
+            climb(from, to, TOP_ACCURACY_RAD, &at)
+        });
         top(refined.chain(samples.iter().copied()))
     }
 
@@ -234,9 +211,8 @@ const TOP_ACCURACY_RAD: f64 = 1e-9;
 
 /// The largest.
 fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
-    values
-        .max_by(|a, b| a.value.total_cmp(&b.value))
-        .expect("a ring has sections")
+    let largest = values.max_by(|a, b| a.value.total_cmp(&b.value));
+    largest.expect("a ring has sections")
 }
 
 /// The maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by

@@ -35,6 +35,10 @@ pub(crate) struct Lattice {
 /// Lattice indices of the hinges A, B, C, D.
 pub(crate) type Quadruple = [usize; 4];
 
+/// The value of a mechanism of a lattice, by its opening rotations and its indices; minus infinity where it does not count.
+pub(crate) trait Score: Fn(&[f64; 4], &Quadruple) -> f64 {}
+impl<F: Fn(&[f64; 4], &Quadruple) -> f64> Score for F {}
+
 impl Lattice {
     /// The lattice for the given sites: a fixed number of equal intervals, or the joints.
     pub fn new(profile: &dyn Profile, sites: HingeSites) -> Self {
@@ -48,13 +52,13 @@ impl Lattice {
             sections_rad.insert(1, near);
             sections_rad.insert(intervals + 1, profile.end() - near);
         }
+        let edges = [Edge::Intrados, Edge::Extrados];
         let points = sections_rad
             .iter()
-            .map(|angle| [Edge::Intrados, Edge::Extrados].map(|edge| profile.point(*angle, edge)))
-            .collect();
+            .map(|at| edges.map(|edge| profile.point(*at, edge)));
         Self {
+            points: points.collect(),
             sections_rad,
-            points,
             stride,
         }
     }
@@ -63,17 +67,11 @@ impl Lattice {
         std::array::from_fn(|i| self.points[quadruple[i]][EDGES[i] as usize])
     }
 
-    /// Local maxima of `score` (of opening rotations and lattice indices), best first.
-    ///
-    /// `score` gives minus infinity where the mechanism does not count.
-    pub(crate) fn maxima(&self, score: &impl Fn(&[f64; 4], &Quadruple) -> f64) -> Vec<Quadruple> {
-        let coarse: Vec<usize> = (0..self.points.len()).step_by(self.stride).collect();
-        let coarse = match coarse.last() {
-            Some(last) if last + 1 < self.points.len() => {
-                [coarse.as_slice(), &[self.points.len() - 1]].concat()
-            }
-            _ => coarse,
-        };
+    /// Local maxima of `score`, best first.
+    pub(crate) fn maxima(&self, score: &impl Score) -> Vec<Quadruple> {
+        let last = self.points.len() - 1;
+        let mut coarse: Vec<usize> = (0..last).step_by(self.stride).collect();
+        coarse.push(last);
         let mut maxima = self.best_by_inner_pair(&coarse, score);
         if self.stride > 1 {
             for (value, quadruple) in &mut maxima {
@@ -84,59 +82,40 @@ impl Lattice {
         maxima.into_iter().map(|(_, quadruple)| quadruple).collect()
     }
 
-    fn evaluate(
-        &self,
-        quadruple: &Quadruple,
-        score: &impl Fn(&[f64; 4], &Quadruple) -> f64,
-    ) -> f64 {
+    fn evaluate(&self, quadruple: &Quadruple, score: &impl Score) -> f64 {
         openings(&self.hinge_points(quadruple))
             .map_or(f64::NEG_INFINITY, |rotations| score(&rotations, quadruple))
     }
 
     /// For each pair (B, C) the best A and D; of these the pairs that no neighbouring pair beats.
-    fn best_by_inner_pair(
-        &self,
-        sections: &[usize],
-        score: &impl Fn(&[f64; 4], &Quadruple) -> f64,
-    ) -> Vec<(f64, Quadruple)> {
+    fn best_by_inner_pair(&self, sections: &[usize], score: &impl Score) -> Vec<(f64, Quadruple)> {
         let count = sections.len();
+        let inner = (1..count - 2).flat_map(|b| (b + 1..count - 1).map(move |c| [b, c]));
         let mut best = vec![(f64::NEG_INFINITY, [0; 4]); count * count];
-        for b in 1..count - 2 {
-            for c in b + 1..count - 1 {
-                let top = &mut best[b * count + c];
-                for a in 0..b {
-                    for d in c + 1..count {
-                        let quadruple = [sections[a], sections[b], sections[c], sections[d]];
-                        let value = self.evaluate(&quadruple, score);
-                        if value > top.0 {
-                            *top = (value, quadruple);
-                        }
+        for [b, c] in inner.clone() {
+            let top = &mut best[b * count + c];
+            for a in 0..b {
+                for d in c + 1..count {
+                    let quadruple = [sections[a], sections[b], sections[c], sections[d]];
+                    let value = self.evaluate(&quadruple, score);
+                    if value > top.0 {
+                        *top = (value, quadruple);
                     }
                 }
             }
         }
-        let mut maxima = Vec::new();
-        for b in 1..count - 2 {
-            for c in b + 1..count - 1 {
-                let (value, quadruple) = best[b * count + c];
-                let beaten = (b - 1..=b + 1)
-                    .flat_map(|i| (c - 1..=c + 1).map(move |j| i * count + j))
-                    .any(|neighbour| best[neighbour].0 > value);
-                if value > f64::NEG_INFINITY && !beaten {
-                    maxima.push((value, quadruple));
-                }
-            }
-        }
-        maxima
+        let maxima = inner.filter_map(|[b, c]| {
+            let top = best[b * count + c];
+            let mut near =
+                (b - 1..=b + 1).flat_map(|i| &best[i * count + c - 1..=i * count + c + 1]);
+            let beaten = near.any(|other| other.0 > top.0);
+            (top.0 > f64::NEG_INFINITY && !beaten).then_some(top)
+        });
+        maxima.collect()
     }
 
     /// Steps of `stride` joints, then ever shorter ones, to a quadruple that no neighbour beats.
-    fn climb(
-        &self,
-        value: &mut f64,
-        quadruple: &mut Quadruple,
-        score: &impl Fn(&[f64; 4], &Quadruple) -> f64,
-    ) {
+    fn climb(&self, value: &mut f64, quadruple: &mut Quadruple, score: &impl Score) {
         let last = self.points.len() - 1;
         let mut step = self.stride;
         while step > 0 {
@@ -145,16 +124,11 @@ impl Lattice {
                 // The digits of `code` in base three: each hinge steps back, stays, or steps on.
                 let moved = |i: u32| (code / 3_usize.pow(i) % 3) * step + center[i as usize];
                 let neighbour = [moved(0), moved(1), moved(2), moved(3)];
-                if neighbour
-                    .iter()
-                    .any(|joint| *joint < step || joint - step > last)
-                {
+                let is_sorted = neighbour.is_sorted_by(|a, b| a < b);
+                if !is_sorted || neighbour[0] < step || neighbour[3] - step > last {
                     continue;
                 }
                 let neighbour = neighbour.map(|joint| joint - step);
-                if !neighbour.is_sorted_by(|a, b| a < b) {
-                    continue;
-                }
                 let score = self.evaluate(&neighbour, score);
                 if score > *value {
                     (*value, *quadruple) = (score, neighbour);
@@ -170,9 +144,9 @@ impl Lattice {
 /// A function of a mechanism that is to be made as large as possible.
 pub(crate) trait Objective {
     /// Sections where the gradient may jump, in radians.
-    fn kinks_rad(&self) -> &[f64];
-    /// The value.
-    fn value(&self, mechanism: &FourLink) -> f64;
+    fn kinks_rad(&self) -> &[f64] {
+        &[]
+    }
     /// The value, and its derivatives with respect to the sections of the hinges. Where the derivatives
     /// to either side differ, `above` chooses for each hinge that towards larger angles.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]);
@@ -184,23 +158,20 @@ pub(crate) fn best_mechanism(
     profile: &dyn Profile,
     sites: HingeSites,
     lattice: &Lattice,
-    score: &impl Fn(&[f64; 4], &Quadruple) -> f64,
+    score: &impl Score,
     objective: &impl Objective,
 ) -> Option<(f64, FourLink)> {
-    let starts = lattice
-        .maxima(score)
-        .into_iter()
-        .map(|quadruple| quadruple.map(|i| lattice.sections_rad[i]));
+    let maxima = lattice.maxima(score).into_iter();
+    let mut starts = maxima.map(|quadruple| quadruple.map(|i| lattice.sections_rad[i]));
     if let HingeSites::Voussoirs(_) = sites {
-        let mechanism = FourLink::new(profile, starts.into_iter().next()?)?;
-        return Some((objective.value(&mechanism), mechanism));
+        let mechanism = FourLink::new(profile, starts.next()?)?;
+        return Some((objective.evaluate(&mechanism, [false; 4]).0, mechanism));
     }
     let mut ends = [objective.kinks_rad(), &[0.0, profile.end()]].concat();
     ends.sort_by(f64::total_cmp);
     ends.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    starts
-        .filter_map(|start| ascend_all_sides(profile, &ends, start, objective))
-        .max_by(|(a, _), (b, _)| a.total_cmp(b))
+    let tops = starts.filter_map(|start| ascend_all_sides(profile, &ends, start, objective));
+    tops.max_by(|(a, _), (b, _)| a.total_cmp(b))
 }
 
 /// Relative differences of values below this are rounding.
@@ -254,10 +225,8 @@ fn ascend_all_sides(
                 (distance > 0.0 && distance <= interval).then_some(twin)
             })
         });
-        let best = twins
-            .filter_map(|twin| ascend(profile, ends, twin, objective))
-            .max_by(|(a, _), (b, _)| a.total_cmp(b));
-        match best {
+        let tops = twins.filter_map(|twin| ascend(profile, ends, twin, objective));
+        match tops.max_by(|(a, _), (b, _)| a.total_cmp(b)) {
             Some(best) if best.0 > top.0 + ROUNDING * top.0.abs() => top = best,
             _ => return Some(top),
         }
@@ -288,11 +257,8 @@ impl Cell {
     }
 
     fn containing(ends: &[f64], angle: f64) -> Self {
-        let index = ends
-            .partition_point(|end| *end <= angle)
-            .clamp(1, ends.len() - 1)
-            - 1;
-        Self::new(ends, index)
+        let after = ends.partition_point(|end| *end <= angle);
+        Self::new(ends, after.clamp(1, ends.len() - 1) - 1)
     }
 
     /// Whether a hinge at `angle` that wants to move along `slope` is stopped by an end.
@@ -318,14 +284,10 @@ impl<O: Objective> Climber<'_, O> {
 
     /// The interval in which a hinge may move while the others stay: in its cell, and on its side of its neighbours.
     fn range(&self, angles: &[f64; 4], i: usize) -> (f64, f64) {
-        let cell = self.cells[i];
-        let before = i
-            .checked_sub(1)
-            .map_or(cell.low, |j| angles[j] + MIN_BODY_RAD);
-        let after = angles
-            .get(i + 1)
-            .map_or(cell.high, |angle| angle - MIN_BODY_RAD);
-        (cell.low.max(before), cell.high.min(after))
+        let (cell, before, after) = (self.cells[i], i.checked_sub(1), angles.get(i + 1));
+        let low = before.map_or(cell.low, |before| angles[before] + MIN_BODY_RAD);
+        let high = after.map_or(cell.high, |angle| angle - MIN_BODY_RAD);
+        (cell.low.max(low), cell.high.min(high))
     }
 
     /// Whether a hinge that wants to move along `slope` is stopped by an end of its cell, or by a neighbour
@@ -339,9 +301,8 @@ impl<O: Objective> Climber<'_, O> {
     fn step(&self, mechanism: &FourLink) -> Option<FourLink> {
         let angles = mechanism.hinges_rad;
         let (value, gradient) = self.evaluate(mechanism);
-        let free: Vec<usize> = (0..4)
-            .filter(|i| !self.is_stopped(&angles, *i, gradient[*i]))
-            .collect();
+        let goes = |i: &usize| !self.is_stopped(&angles, *i, gradient[*i]);
+        let free: Vec<usize> = (0..4).filter(goes).collect();
         let slope = free.iter().map(|i| gradient[*i].abs()).fold(0.0, f64::max);
         if slope <= 1e-15 * value.abs() {
             return None;
@@ -370,11 +331,9 @@ impl<O: Objective> Climber<'_, O> {
             }
             if let Some(candidate) = FourLink::new(self.profile, moved) {
                 let (trial, trial_gradient) = self.evaluate(&candidate);
-                let trial_slope = free
-                    .iter()
-                    .filter(|i| !self.is_stopped(&moved, **i, trial_gradient[**i]))
-                    .map(|i| trial_gradient[*i].abs())
-                    .fold(0.0, f64::max);
+                let goes = |i: &&usize| !self.is_stopped(&moved, **i, trial_gradient[**i]);
+                let slopes = free.iter().filter(goes).map(|i| trial_gradient[*i].abs());
+                let trial_slope = slopes.fold(0.0, f64::max);
                 // Near the maximum the value is flat to rounding, and the slope decides.
                 let level = trial >= value - ROUNDING * value.abs();
                 if trial > value + ROUNDING * value.abs() || (level && trial_slope < 0.5 * slope) {

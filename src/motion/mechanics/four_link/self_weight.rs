@@ -29,9 +29,8 @@ use crate::mechanics::geometry::ring::{Edge, Ring};
 /// Whether the ring stands under its own weight.
 #[must_use]
 pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
-    SymmetricLines::new(ring, sites)
-        .largest_margin()
-        .is_none_or(|margin| margin > 0.0)
+    let margin = SymmetricLines::new(ring, sites).largest_margin();
+    margin.is_none_or(|margin| margin > 0.0)
 }
 
 /// Thrust lines of a ring under its own weight that are their own mirror images.
@@ -88,10 +87,9 @@ impl SymmetricLines {
             HingeSites::Voussoirs(_) => None,
         };
         let sections = self.sections_rad.iter().copied().chain(inside);
-        sections
-            .map(|angle| self.touching(Edge::Intrados, h, angle))
-            .max_by(|a, b| a.value.total_cmp(&b.value))
-            .expect("a ring has a springing")
+        let bounds = sections.map(|angle| self.touching(Edge::Intrados, h, angle));
+        let least = bounds.max_by(|a, b| a.value.total_cmp(&b.value));
+        least.expect("a ring has a springing")
     }
 
     /// The largest `k` of a line of thrust `h` that is nowhere above the extrados.
@@ -100,10 +98,9 @@ impl SymmetricLines {
     /// [`Self::haunch_rad`]): it is least at one of the two.
     fn largest(&self, h: f64) -> Bound {
         let sections = self.sections_rad.iter();
-        sections
-            .map(|angle| self.touching(Edge::Extrados, h, *angle))
-            .min_by(|a, b| a.value.total_cmp(&b.value))
-            .expect("a ring has a springing")
+        let bounds = sections.map(|angle| self.touching(Edge::Extrados, h, *angle));
+        let largest = bounds.min_by(|a, b| a.value.total_cmp(&b.value));
+        largest.expect("a ring has a springing")
     }
 
     /// The section of a continuous ring at which a line of thrust `h` that stays above the intrados touches it:

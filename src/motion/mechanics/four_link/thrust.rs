@@ -53,9 +53,10 @@ impl Demand {
         let least = LEAST_LOAD * weight;
         let normal = section.normal.max(least);
         let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
+        let counts = section.normal >= least;
         Self {
             excess_ratio: beyond / (normal * thickness),
-            friction: if section.normal >= least {
+            friction: if counts {
                 section.tangential.abs() / normal
             } else {
                 0.0
@@ -65,14 +66,12 @@ impl Demand {
 
     /// The larger of both demands, an excess only where it is more than rounding.
     fn max(self, other: Self) -> Self {
-        Self {
-            excess_ratio: if other.excess_ratio > ROUNDING {
-                self.excess_ratio.max(other.excess_ratio)
-            } else {
-                self.excess_ratio
-            },
-            friction: self.friction.max(other.friction),
+        let mut larger = self;
+        larger.friction = self.friction.max(other.friction);
+        if other.excess_ratio > ROUNDING {
+            larger.excess_ratio = self.excess_ratio.max(other.excess_ratio);
         }
+        larger
     }
 }
 
@@ -189,27 +188,16 @@ impl ThrustLine {
         body_force_g: Vector2<f64>,
     ) -> Self {
         let right = to_right.thrust_line.at(0.0);
-        let end = to_left.thrust_line.at(profile.end());
+        let mut left = to_left.thrust_line.at(profile.end());
         // In the mirror the parts before and after the section change places, and with them the sign.
-        let left = Momentum {
-            linear: Vector2::new(end.linear.x, -end.linear.y),
-            angular: end.angular,
-        };
+        left.linear.y = -left.linear.y;
         let both_g = to_right.acceleration_g + to_left.acceleration_g;
         let (weight, push) = (-body_force_g.y, body_force_g.x / both_g);
         let shares = [to_left, to_right].map(|onset| 2.0 * onset.acceleration_g / both_g);
-        Self::new(
-            profile,
-            vec![Part::new(
-                profile,
-                profile.end(),
-                Load::uniform(body_force_g),
-                (
-                    0.0,
-                    (right * shares[0] + left * shares[1]) * (0.5 * weight) + (right - left) * push,
-                ),
-            )],
-        )
+        let start = (right * shares[0] + left * shares[1]) * (0.5 * weight) + (right - left) * push;
+        let load = Load::uniform(body_force_g);
+        let part = Part::new(profile, profile.end(), load, (0.0, start));
+        Self::new(profile, vec![part])
     }
 
     /// The resultant at a section; where two parts meet, as the first of them sees it.
@@ -232,9 +220,9 @@ impl ThrustLine {
         let sections = sections_rad
             .iter()
             .map(|angle_rad| self.section(*angle_rad));
-        sections
-            .map(|section| (section.normal > 0.0).then_some(section.eccentricity_ratio))
-            .collect()
+        let pressed =
+            sections.map(|section| (section.normal > 0.0).then_some(section.eccentricity_ratio));
+        pressed.collect()
     }
 
     /// The largest demands over the joints, or over all sections of a continuous ring.
@@ -248,18 +236,18 @@ impl ThrustLine {
             }
             HingeSites::Anywhere => {
                 let starts = std::iter::once(0.0).chain(self.parts.iter().map(|part| part.end_rad));
-                starts
-                    .zip(&self.parts)
-                    .filter(|(start, part)| *start < part.end_rad)
-                    .fold(Demand::default(), |demand, (start, part)| {
-                        let at = |angle_rad: f64| {
-                            let resultant = part.at(&*self.profile, angle_rad);
-                            let section =
-                                SectionResultant::new(&*self.profile, angle_rad, &resultant);
-                            Demand::of_section(&section, weight)
-                        };
-                        largest(demand, start, part.end_rad, &at)
-                    })
+                let mut demand = Demand::default();
+                for (start, part) in starts.zip(&self.parts) {
+                    let at = |angle_rad: f64| {
+                        let resultant = part.at(&*self.profile, angle_rad);
+                        let section = SectionResultant::new(&*self.profile, angle_rad, &resultant);
+                        Demand::of_section(&section, weight)
+                    };
+                    if start < part.end_rad {
+                        demand = largest(demand, start, part.end_rad, &at);
+                    }
+                }
+                demand
             }
         }
     }
@@ -271,21 +259,18 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()
         .max(4.0);
-    let samples: Vec<(f64, Demand)> = (0..=intervals as u32)
-        .map(|i| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals))
-        .map(|angle_rad| (angle_rad, at(angle_rad)))
-        .collect();
-    let mut demand = samples
-        .iter()
-        .fold(known, |demand, (_, sample)| demand.max(*sample));
+    let part = |i: u32| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals);
+    let samples = (0..=intervals as u32).map(|i| (part(i), at(part(i))));
+    let samples: Vec<(f64, Demand)> = samples.collect();
+    let demands = samples.iter().map(|(_, sample)| *sample);
+    let mut demand = demands.fold(known, Demand::max);
     for i in 0..samples.len() {
         let floor = demand.excess_ratio.max(ROUNDING);
         let excess_ratio = top_near(i, &samples, floor, at, |d| d.excess_ratio);
         let friction = top_near(i, &samples, demand.friction, at, |d| d.friction);
-        let edge = samples
-            .get(i + 1)
-            .map(|next| load_edge(&samples[i], next, at));
-        demand.friction = demand.friction.max(edge.unwrap_or(0.0));
+        let next = samples.get(i + 1);
+        let edge = next.map_or(0.0, |next| load_edge(&samples[i], next, at));
+        demand.friction = demand.friction.max(edge);
         demand = demand.max(Demand {
             excess_ratio: excess_ratio.unwrap_or(0.0),
             friction: friction.unwrap_or(0.0),

@@ -41,10 +41,8 @@ pub enum Curve {
         centre: Vector2<f64>,
         /// Its radius.
         radius: f64,
-        /// Angle at the start, anticlockwise from the x axis, in radians.
-        from_rad: f64,
-        /// Angle at the end.
-        to_rad: f64,
+        /// Angles at its start and its end, anticlockwise from the x axis, in radians.
+        angles_rad: [f64; 2],
     },
     /// A curve at a constant distance from an ellipse about the origin.
     Ellipse {
@@ -52,10 +50,8 @@ pub enum Curve {
         semi_axes: Vector2<f64>,
         /// Distance from the ellipse, positive outwards.
         offset: f64,
-        /// Eccentric anomaly at the start, in radians.
-        from_rad: f64,
-        /// Eccentric anomaly at the end.
-        to_rad: f64,
+        /// Eccentric anomalies at its start and its end, in radians.
+        angles_rad: [f64; 2],
     },
 }
 
@@ -68,8 +64,7 @@ impl Curve {
             Self::Arc {
                 centre,
                 radius,
-                from_rad,
-                to_rad,
+                angles_rad: [from_rad, to_rad],
             } => {
                 let (sin, cos) = (from_rad + (to_rad - from_rad) * part).sin_cos();
                 let arm = Vector2::new(cos, sin) * radius;
@@ -78,8 +73,7 @@ impl Curve {
             Self::Ellipse {
                 semi_axes,
                 offset,
-                from_rad,
-                to_rad,
+                angles_rad: [from_rad, to_rad],
             } => {
                 let (sin, cos) = (from_rad + (to_rad - from_rad) * part).sin_cos();
                 let on_ellipse = Vector2::new(semi_axes.x * cos, semi_axes.y * sin);
@@ -111,14 +105,9 @@ impl Curve {
                 from: start,
                 to: end,
             } => (*start, *end) = (self.point(from), self.point(to)),
-            Self::Arc {
-                from_rad, to_rad, ..
-            }
-            | Self::Ellipse {
-                from_rad, to_rad, ..
-            } => {
-                let at = |part: f64| *from_rad + (*to_rad - *from_rad) * part;
-                (*from_rad, *to_rad) = (at(from), at(to));
+            Self::Arc { angles_rad, .. } | Self::Ellipse { angles_rad, .. } => {
+                let [start, end] = *angles_rad;
+                *angles_rad = [from, to].map(|part| start + (end - start) * part);
             }
         }
         piece
@@ -136,12 +125,9 @@ impl Curve {
         let mut image = self.reversed();
         match &mut image {
             Self::Line { from, to } => (*from, *to) = (mirrored(*from), mirrored(*to)),
-            Self::Arc {
-                from_rad, to_rad, ..
+            Self::Arc { angles_rad, .. } | Self::Ellipse { angles_rad, .. } => {
+                *angles_rad = angles_rad.map(|angle_rad| PI - angle_rad);
             }
-            | Self::Ellipse {
-                from_rad, to_rad, ..
-            } => (*from_rad, *to_rad) = (PI - *from_rad, PI - *to_rad),
         }
         if let Self::Arc { centre, .. } = &mut image {
             *centre = mirrored(*centre);
@@ -177,8 +163,7 @@ impl Curve {
             Self::Line { from, to } => (to - from).norm(),
             Self::Arc {
                 radius,
-                from_rad,
-                to_rad,
+                angles_rad: [from_rad, to_rad],
                 ..
             } => radius * (to_rad - from_rad).abs(),
             Self::Ellipse { .. } => self.integral(|_, derivative| derivative.norm()),
@@ -254,8 +239,7 @@ mod tests {
         Curve::Arc {
             centre: Vector2::zeros(),
             radius,
-            from_rad,
-            to_rad,
+            angles_rad: [from_rad, to_rad],
         }
     }
 
@@ -311,8 +295,7 @@ mod tests {
         let ellipse = |offset| Curve::Ellipse {
             semi_axes: Vector2::new(3.0, 2.0),
             offset,
-            from_rad: 0.0,
-            to_rad: FRAC_PI_2,
+            angles_rad: [0.0, FRAC_PI_2],
         };
         let quarter = ellipse(0.0).swept(Vector2::zeros());
         assert!((quarter.mass - 1.5 * PI).abs() < 1e-13);
@@ -331,8 +314,7 @@ mod tests {
         let ellipse = |semi_axes| Curve::Ellipse {
             semi_axes,
             offset: 0.3,
-            from_rad: 2.8,
-            to_rad: 0.4,
+            angles_rad: [2.8, 0.4],
         };
         let circle = arc(2.3, 2.8, 0.4);
         for part in [0.1, 0.5, 0.8] {

@@ -77,13 +77,9 @@ impl Field {
     /// The mirror image about the vertical axis of the profile.
     #[must_use]
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
+        let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
         Self {
-            cuts_rad: self
-                .cuts_rad
-                .iter()
-                .rev()
-                .map(|cut| profile.end() - cut)
-                .collect(),
+            cuts_rad: cuts_rad.collect(),
             twists: self.twists.iter().rev().map(Twist::mirrored).collect(),
         }
     }
@@ -95,10 +91,8 @@ impl Field {
         cuts_rad.sort_by(f64::total_cmp);
         cuts_rad.dedup();
         let after = |cut: f64| self.at(cut, Side::After) - other.at(cut, Side::After);
-        let twists = std::iter::once(f64::NEG_INFINITY)
-            .chain(cuts_rad.iter().copied())
-            .map(after)
-            .collect();
+        let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts_rad.iter().copied());
+        let twists = starts.map(after).collect();
         Self { cuts_rad, twists }
     }
 
@@ -106,19 +100,18 @@ impl Field {
     fn sectors(&self, end: f64) -> impl Iterator<Item = (f64, f64, Twist)> {
         let starts = std::iter::once(0.0).chain(self.cuts_rad.iter().copied());
         let ends = self.cuts_rad.iter().copied().chain(std::iter::once(end));
-        starts
-            .zip(ends)
-            .zip(&self.twists)
-            .map(|((start, end), twist)| (start, end, *twist))
+        let sectors = starts.zip(ends).zip(&self.twists);
+        sectors.map(|((start, end), twist)| (start, end, *twist))
     }
 
     /// Momentum of the part of the profile from the left springing to `angle_rad`.
     #[must_use]
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
-        self.sectors(profile.end())
-            .take_while(|(start, ..)| *start < angle_rad)
-            .map(|(start, end, twist)| twist.momentum(&profile.sector(start, end.min(angle_rad))))
-            .fold(Momentum::ZERO, Add::add)
+        let sectors = self.sectors(profile.end());
+        let before = sectors.take_while(|(start, ..)| *start < angle_rad);
+        let momenta = before
+            .map(|(start, end, twist)| twist.momentum(&profile.sector(start, end.min(angle_rad))));
+        momenta.fold(Momentum::ZERO, Add::add)
     }
 
     /// The scalar product with another field: the integral of `rho v . w` over the ring, cut at the

@@ -7,10 +7,10 @@
 use std::f64::consts::PI;
 
 use nalgebra::Vector2;
-use thiserror::Error;
 
 pub use super::rigid::MassMoments;
 use super::rigid::turned;
+use crate::argument::{ArgumentError, allow};
 
 named! {
     /// Edge of the ring on which a hinge sits.
@@ -36,17 +36,6 @@ impl Edge {
 /// Longest straight line with which an arc of an outline is drawn.
 const OUTLINE_STEP_RAD: f64 = 3.0 * PI / 180.0;
 
-/// Why a ring cannot be built.
-#[derive(Clone, Copy, Debug, PartialEq, Error)]
-pub enum RingError {
-    /// The thickness must leave a hole: `0 < t/R < 2`.
-    #[error("thickness ratio {0:?} is outside (0, 2)")]
-    Thickness(f64),
-    /// The embrace angle must be in `(0, pi]`.
-    #[error("embrace angle {0:?} rad is outside (0, pi]")]
-    Embrace(f64),
-}
-
 /// A circular ring segment, symmetric about the vertical, of unit mean radius and density.
 ///
 /// Sections are radial cuts, named by their angle from the left springing (0) to the right one
@@ -64,17 +53,13 @@ impl Ring {
     /// Ring of thickness `thickness_ratio` (in mean radii) and embrace angle `embrace_rad`.
     ///
     /// # Errors
-    /// When the thickness is not in `(0, 2)` or the angle not in `(0, pi]`.
-    pub fn new(thickness_ratio: f64, embrace_rad: f64) -> Result<Self, RingError> {
-        if !(thickness_ratio > 0.0 && thickness_ratio < 2.0) {
-            return Err(RingError::Thickness(thickness_ratio));
-        }
-        if !(embrace_rad > 0.0 && embrace_rad <= PI) {
-            return Err(RingError::Embrace(embrace_rad));
-        }
+    /// When the thickness is not in `(0, 2)`, so that it leaves a hole, or the angle not in `(0, pi]`.
+    pub fn new(thickness_ratio: f64, embrace_rad: f64) -> Result<Self, ArgumentError> {
+        let has_hole = thickness_ratio > 0.0 && thickness_ratio < 2.0;
+        let is_arch = embrace_rad > 0.0 && embrace_rad <= PI;
         Ok(Self {
-            thickness_ratio,
-            embrace_rad,
+            thickness_ratio: allow(has_hole, "thickness_ratio", thickness_ratio, "in (0, 2)")?,
+            embrace_rad: allow(is_arch, "embrace_rad", embrace_rad, "in (0, pi]")?,
         })
     }
 
@@ -124,9 +109,8 @@ impl Ring {
     /// The sections that cut the ring into `parts` equal parts, springings included, in radians.
     #[must_use]
     pub fn sections(&self, parts: usize) -> Vec<f64> {
-        (0..=parts)
-            .map(|i| self.embrace_rad * (i as f64 / parts as f64))
-            .collect()
+        let part = |i: usize| i as f64 / parts as f64;
+        (0..=parts).map(|i| self.embrace_rad * part(i)).collect()
     }
 
     /// Mass moments of the part from the left springing to `angle_rad`.

@@ -34,13 +34,11 @@ impl CutArch {
     /// Its joints, springings included.
     pub fn joints(&self) -> Vec<Joint> {
         let point = |edge: &[Curve], place: Place| edge[place.piece].point(place.part);
-        self.joints
-            .iter()
-            .map(|[intrados, extrados]| Joint {
-                intrados_m: point(&self.intrados, *intrados),
-                extrados_m: point(&self.extrados, *extrados),
-            })
-            .collect()
+        let joints = self.joints.iter().map(|[intrados, extrados]| Joint {
+            intrados_m: point(&self.intrados, *intrados),
+            extrados_m: point(&self.extrados, *extrados),
+        });
+        joints.collect()
     }
 
     /// The extrados of a voussoir from left to right.
@@ -75,13 +73,11 @@ impl CutArch {
     /// Its voussoirs as rigid blocks.
     pub fn blocks(&self, material: Material) -> Vec<Block> {
         let joints = self.joints();
-        (0..self.voussoirs())
-            .map(|voussoir| {
-                let pole_m = joints[voussoir].middle_m();
-                let outline = self.outline(voussoir);
-                Block::bounded(outline, pole_m, material.depth_m, material.density_kg_m3)
-            })
-            .collect()
+        let block = |voussoir: usize| {
+            let (outline, pole_m) = (self.outline(voussoir), joints[voussoir].middle_m());
+            Block::bounded(outline, pole_m, material.depth_m, material.density_kg_m3)
+        };
+        (0..self.voussoirs()).map(block).collect()
     }
 
     /// Corners of polygons that look like the voussoirs.
@@ -91,13 +87,12 @@ impl CutArch {
                 Curve::Line { .. } => 1,
                 Curve::Arc { .. } | Curve::Ellipse { .. } => DRAWN_POINTS,
             };
-            (0..points)
-                .map(|i| curve.point(f64::from(i) / f64::from(points)))
-                .collect::<Vec<_>>()
+            let point = |i: u32| curve.point(f64::from(i) / f64::from(points));
+            (0..points).map(point).collect::<Vec<_>>()
         };
-        (0..self.voussoirs())
-            .map(|voussoir| self.outline(voussoir).iter().flat_map(drawn).collect())
-            .collect()
+        let outlines = (0..self.voussoirs()).map(|voussoir| self.outline(voussoir));
+        let corners = outlines.map(|outline| outline.iter().flat_map(drawn).collect());
+        corners.collect()
     }
 }
 
@@ -112,13 +107,10 @@ pub(super) fn top(piece: &Curve) -> f64 {
 }
 
 fn pieces_between(edge: &[Curve], [from, to]: [Place; 2]) -> Vec<Curve> {
-    (from.piece..=to.piece)
-        .map(|piece| {
-            let start = if piece == from.piece { from.part } else { 0.0 };
-            let end = if piece == to.piece { to.part } else { 1.0 };
-            (piece, start, end)
-        })
-        .filter(|(_, start, end)| start < end)
-        .map(|(piece, start, end)| edge[piece].between(start, end))
-        .collect()
+    let pieces = (from.piece..=to.piece).filter_map(|piece| {
+        let start = if piece == from.piece { from.part } else { 0.0 };
+        let end = if piece == to.piece { to.part } else { 1.0 };
+        (start < end).then(|| edge[piece].between(start, end))
+    });
+    pieces.collect()
 }

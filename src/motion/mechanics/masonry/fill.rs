@@ -45,26 +45,23 @@ impl Fill {
         within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
         let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
-            let below = arch
-                .extrados_of(voussoir)
-                .iter()
-                .flat_map(|piece| below(piece, level_m))
+            let pieces = arch.extrados_of(voussoir).into_iter();
+            let columns = pieces
+                .flat_map(|piece| below(&piece, level_m))
                 .map(|piece| {
                     let (from, to) = (piece.point(0.0), piece.point(1.0));
-                    let line = |from, to| Curve::Line { from, to };
-                    let corners = [Vector2::new(to.x, level_m), Vector2::new(from.x, level_m)];
-                    let outline = [
-                        piece,
-                        line(to, corners[0]),
-                        line(corners[0], corners[1]),
-                        line(corners[1], from),
-                    ];
+                    let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));
+                    let ends = [to, corners[0], corners[1], from];
+                    let sides = ends.windows(2).map(|ends| Curve::Line {
+                        from: ends[0],
+                        to: ends[1],
+                    });
+                    let outline = [piece].into_iter().chain(sides);
                     Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
-                })
-                // Slivers, as at a level joint, weigh nothing.
-                .filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0)
-                .reduce(|sum, next| sum.with(&next));
-            if let Some(below) = below {
+                });
+            // Slivers, as at a level joint, weigh nothing.
+            let heavy = columns.filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0);
+            if let Some(below) = heavy.reduce(|sum, next| sum.with(&next)) {
                 *extra = Some(extra.map_or(below, |known| known.with(&below)));
             }
         }
@@ -101,9 +98,7 @@ impl Fill {
         let columns = (0..arch.voussoirs()).flat_map(|voussoir| {
             let pieces = arch.extrados_of(voussoir).into_iter();
             let below = pieces.flat_map(|piece| below(&piece, level_m));
-            below
-                .map(|piece| (voussoir, outline(&piece)))
-                .collect::<Vec<_>>()
+            below.map(move |piece| (voussoir, outline(&piece)))
         });
         Ok(columns.collect())
     }

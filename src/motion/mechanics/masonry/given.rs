@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use super::cut::{CutArch, Place};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
 use crate::mechanics::geometry::curve::{Curve, distance, sides};
@@ -64,14 +64,9 @@ impl GivenBlocks {
         }
         let blocks = self.joints.len().saturating_sub(1);
         let densities = self.density_kg_m3.len();
-        if blocks > 0 && (densities == 1 || densities == blocks) {
-            return Ok(());
-        }
-        Err(ArgumentError {
-            argument: "density_kg_m3",
-            value: densities as f64,
-            allowed: format!("one number, or one for each of the {blocks} blocks"),
-        })
+        let fits = blocks > 0 && (densities == 1 || densities == blocks);
+        let allowed = format_args!("one number, or one for each of the {blocks} blocks");
+        allow(fits, "density_kg_m3", densities as f64, allowed).map(|_| ())
     }
 
     /// Checks the outline of a block: its sides do not cross, and the corners of its joints are on them.
@@ -115,9 +110,8 @@ impl GivenBlocks {
     /// The outline of every block.
     pub(super) fn outlines_m(&self) -> Vec<Vec<Vector2<f64>>> {
         let pairs = self.joints.windows(2);
-        let mut outlines: Vec<_> = pairs
-            .map(|pair| pair[0].outline_m(&pair[1]).to_vec())
-            .collect();
+        let between = pairs.map(|pair| pair[0].outline_m(&pair[1]).to_vec());
+        let mut outlines: Vec<_> = between.collect();
         for (block, outline) in &self.outlines {
             if let Some(known) = outlines.get_mut(*block) {
                 known.clone_from(outline);
@@ -132,9 +126,8 @@ impl GivenBlocks {
             let own = self.density_kg_m3.get(block);
             own.or(self.density_kg_m3.first()).copied().unwrap_or(0.0)
         };
+        let outlines = outlines.iter().enumerate();
         outlines
-            .iter()
-            .enumerate()
             .map(|(block, outline)| Block::prism(outline, self.depth_m, density(block)))
             .collect()
     }
@@ -149,10 +142,9 @@ impl GivenBlocks {
         };
         let last = self.joints.len() - 1;
         let place = |joint: usize| {
-            let (piece, part) = if joint < last {
-                (joint, 0.0)
-            } else {
-                (joint - 1, 1.0)
+            let (piece, part) = match joint < last {
+                true => (joint, 0.0),
+                false => (joint - 1, 1.0),
             };
             [Place { piece, part }; 2]
         };

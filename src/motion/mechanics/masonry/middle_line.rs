@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::cut::{CutArch, Place};
 use super::{Dimensions, Material};
-use crate::argument::{ArgumentError, above};
+use crate::argument::{ArgumentError, above, allow};
 use crate::mechanics::arch::Arch;
 use crate::mechanics::geometry::curve::Curve;
 
@@ -48,10 +48,9 @@ fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
 /// Cuts at equal lengths of the middle line.
 fn cut_equally(middle: &[Curve], dimensions: &Dimensions) -> CutArch {
     let whole_m: f64 = middle.iter().map(Curve::length).sum();
-    let at_m: Vec<f64> = (0..=dimensions.voussoirs)
-        .map(|joint| whole_m * part(joint, dimensions.voussoirs))
-        .collect();
-    cut(middle, dimensions.thickness_m, &at_m)
+    let at_m = |joint| whole_m * part(joint, dimensions.voussoirs);
+    let joints_m: Vec<f64> = (0..=dimensions.voussoirs).map(at_m).collect();
+    cut(middle, dimensions.thickness_m, &joints_m)
 }
 
 pub(super) fn part(index: usize, count: usize) -> f64 {
@@ -76,40 +75,20 @@ impl CircularArch {
     /// # Errors
     /// When it has neither, or both, or the angles do not rise from zero to the embrace angle.
     pub fn new(arch: Arch, joints_deg: Option<Vec<f64>>) -> Result<Self, ArgumentError> {
-        match (&joints_deg, arch.voussoirs) {
-            (None, Some(_)) => {}
-            (None, None) | (Some(_), Some(_)) => {
-                return Err(ArgumentError {
-                    argument: "voussoirs",
-                    value: 0.0,
-                    allowed: "given, or else `joints_deg`, for a row of blocks".to_owned(),
-                });
-            }
-            (Some(joints_deg), None) => {
-                let wrong = |value: f64, allowed: String| ArgumentError {
-                    argument: "joints_deg",
-                    value,
-                    allowed,
-                };
-                let embrace_deg = arch.embrace_deg;
-                let [first, .., last] = joints_deg[..] else {
-                    let allowed = "at least the two springings".to_owned();
-                    return Err(wrong(f64::NAN, allowed));
-                };
-                if first != 0.0 {
-                    return Err(wrong(first, "0 first, the left springing".to_owned()));
-                }
-                if last != embrace_deg {
-                    let allowed = format!("{embrace_deg:?} last, the right springing");
-                    return Err(wrong(last, allowed));
-                }
-                let rises = |pair: &&[f64]| pair[0] < pair[1];
-                if let Some(pair) = joints_deg.windows(2).find(|pair| !rises(pair)) {
-                    return Err(wrong(
-                        pair[1],
-                        format!("above the one before, {:?}", pair[0]),
-                    ));
-                }
+        let allowed = "given, or else `joints_deg`, for a row of blocks";
+        let is_given_once = joints_deg.is_some() != arch.voussoirs.is_some();
+        allow(is_given_once, "voussoirs", 0.0, allowed)?;
+        if let Some(joints_deg) = &joints_deg {
+            let (name, embrace_deg) = ("joints_deg", arch.embrace_deg);
+            let count = joints_deg.len();
+            allow(count >= 2, name, f64::NAN, "at least the two springings")?;
+            let (first, last) = (joints_deg[0], joints_deg[count - 1]);
+            allow(first == 0.0, name, first, "0 first, the left springing")?;
+            let right = format_args!("{embrace_deg:?} last, the right springing");
+            allow(last == embrace_deg, name, last, right)?;
+            for pair in joints_deg.windows(2) {
+                let above = format_args!("above the one before, {:?}", pair[0]);
+                allow(pair[0] < pair[1], name, pair[1], above)?;
             }
         }
         Ok(Self { arch, joints_deg })
@@ -127,14 +106,13 @@ impl CircularArch {
         let middle = Curve::Arc {
             centre: Vector2::zeros(),
             radius,
-            from_rad: FRAC_PI_2 + 0.5 * embrace_rad,
-            to_rad: FRAC_PI_2 - 0.5 * embrace_rad,
+            angles_rad: [0.5, -0.5].map(|part| FRAC_PI_2 + part * embrace_rad),
         };
         let at_m = match (&self.joints_deg, self.arch.voussoirs) {
-            (Some(joints_deg), _) => joints_deg
-                .iter()
-                .map(|deg| deg.to_radians() * radius)
-                .collect(),
+            (Some(joints_deg), _) => {
+                let joints_rad = joints_deg.iter().map(|deg| deg.to_radians());
+                joints_rad.map(|angle_rad| angle_rad * radius).collect()
+            }
             (None, voussoirs) => {
                 let voussoirs = voussoirs.unwrap_or(1);
                 let at = |joint| embrace_rad * radius * part(joint, voussoirs);
@@ -154,8 +132,7 @@ pub(super) fn cut_elliptic(dimensions: &Dimensions) -> Result<CutArch, ArgumentE
     let middle = Curve::Ellipse {
         semi_axes: Vector2::new(half_m, rise_m),
         offset: 0.0,
-        from_rad: PI,
-        to_rad: 0.0,
+        angles_rad: [PI, 0.0],
     };
     Ok(cut_equally(&[middle], dimensions))
 }
@@ -185,29 +162,22 @@ impl BasketArch {
         let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
         let aside_m = (half_m - rise_m) / (1.0 - (0.5 * half_rad).tan());
         let outer_m = half_m - aside_m;
-        if !(aside_m >= 0.0 && outer_m > 0.0) {
-            return Err(ArgumentError {
-                argument: "rise_m",
-                value: rise_m,
-                allowed: format!(
-                    "above {:.6} and at most {half_m:?}, half the span, for three arcs with {:?} degrees at the crown",
-                    half_m * (0.5 * half_rad).tan(),
-                    self.crown_deg
-                ),
-            });
-        }
+        let allowed = format_args!(
+            "above {:.6} and at most {half_m:?}, half the span, for three arcs with {:?} degrees at the crown",
+            half_m * (0.5 * half_rad).tan(),
+            self.crown_deg
+        );
+        allow(aside_m >= 0.0 && outer_m > 0.0, "rise_m", rise_m, allowed)?;
         dimensions.check_curvature(outer_m)?;
         let crown = Curve::Arc {
             centre: Vector2::new(0.0, -aside_m / half_rad.tan()),
             radius: outer_m + aside_m / half_rad.sin(),
-            from_rad: FRAC_PI_2 + half_rad,
-            to_rad: FRAC_PI_2 - half_rad,
+            angles_rad: [FRAC_PI_2 + half_rad, FRAC_PI_2 - half_rad],
         };
         let left = Curve::Arc {
             centre: Vector2::new(-aside_m, 0.0),
             radius: outer_m,
-            from_rad: PI,
-            to_rad: FRAC_PI_2 + half_rad,
+            angles_rad: [PI, FRAC_PI_2 + half_rad],
         };
         Ok(cut_equally(&[left, crown, left.mirrored()], dimensions))
     }

@@ -21,7 +21,7 @@ use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
 use super::stability::falls;
 use super::tie::{Tie, TieError};
-use crate::argument::{ArgumentError, counted, within};
+use crate::argument::{ArgumentError, allow, counted, within};
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::sway::Sway;
 use cut::CutArch;
@@ -89,17 +89,10 @@ impl Dimensions {
 
     /// The intrados must not turn back on itself where the middle line is curved most.
     fn check_curvature(&self, least_radius_m: f64) -> Result<(), ArgumentError> {
-        if 0.5 * self.thickness_m < least_radius_m {
-            return Ok(());
-        }
-        Err(ArgumentError {
-            argument: "thickness_m",
-            value: self.thickness_m,
-            allowed: format!(
-                "below {:.6}, twice the least radius of the middle line",
-                2.0 * least_radius_m
-            ),
-        })
+        let fits = 0.5 * self.thickness_m < least_radius_m;
+        let most_m = 2.0 * least_radius_m;
+        let allowed = format_args!("below {most_m:.6}, twice the least radius of the middle line");
+        allow(fits, "thickness_m", self.thickness_m, allowed).map(|_| ())
     }
 }
 
@@ -262,7 +255,11 @@ impl Masonry {
     ) -> Result<Self, MasonryError> {
         let arch = shape.cut()?;
         let mut extra = vec![None; arch.voussoirs()];
-        if matches!(shape, Shape::Blocks(_)) && (!piers.are_none() || fill.is_some()) {
+        let given = match &shape {
+            Shape::Blocks(given) => Some(given),
+            _ => None,
+        };
+        if given.is_some() && (!piers.are_none() || fill.is_some()) {
             return Err(MasonryError::Blocks);
         }
         let material = shape.material();
@@ -274,22 +271,16 @@ impl Masonry {
             load.add_to(&mut extra, &arch)
                 .map_err(|error| MasonryError::Load { index, error })?;
         }
-        let mut courses = match &shape {
-            Shape::Blocks(given) => Courses {
-                blocks: given.blocks(),
-                joints: arch.joints(),
-                outlines_m: given.outlines_m(),
-            },
-            _ => Courses {
-                blocks: arch.blocks(material),
-                joints: arch.joints(),
-                outlines_m: arch.outlines_for_drawing(),
-            },
+        let (blocks, outlines_m) = match given {
+            Some(given) => (given.blocks(), given.outlines_m()),
+            None => (arch.blocks(material), arch.outlines_for_drawing()),
         };
-        let supports = match &shape {
-            Shape::Blocks(given) => given.supports,
-            _ => Supports::Both,
+        let mut courses = Courses {
+            blocks,
+            joints: arch.joints(),
+            outlines_m,
         };
+        let supports = given.map_or(Supports::Both, |given| given.supports);
         if supports == Supports::Left {
             courses.joints.pop();
         }
@@ -299,10 +290,10 @@ impl Masonry {
             }
         }
         let first = piers.left.map_or(0, |pier| pier.blocks);
-        let on_ground = match &shape {
-            Shape::Blocks(given) => given.on_ground(),
-            _ => [piers.left, piers.right].map(|pier| pier.is_some_and(|pier| !pier.pedestal)),
-        };
+        let on_ground = given.map_or_else(
+            || [piers.left, piers.right].map(|pier| pier.is_some_and(|pier| !pier.pedestal)),
+            GivenBlocks::on_ground,
+        );
         let mut row = Row::new(courses.blocks, courses.joints, supports, shape.size_m())?
             .with_outlines_m(courses.outlines_m)
             .with_supports_that_extend(on_ground);

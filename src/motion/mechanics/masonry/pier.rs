@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::{MasonryError, Material};
-use crate::argument::{ArgumentError, counted, within};
+use crate::argument::{ArgumentError, allow, counted, within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS, RowError};
 use crate::mechanics::sway::Sway;
@@ -68,9 +68,8 @@ impl Courses {
             Sway::Right => self.joints.last(),
         };
         let springing = springing.ok_or(RowError::Count(0))?;
-        let courses = pier
-            .courses(springing, side, material)
-            .map_err(|error| MasonryError::Pier { side, error })?;
+        let courses = pier.courses(springing, side, material);
+        let courses = courses.map_err(|error| MasonryError::Pier { side, error })?;
         let count = self.blocks.len() + courses.blocks.len();
         if count > MAX_BLOCKS {
             return Err(MasonryError::Count(count));
@@ -91,16 +90,10 @@ impl Pier {
         }
         counted("blocks", self.blocks, 1..=MAX_BLOCKS)?;
         let springing_m = (springing.extrados_m.x - springing.intrados_m.x).abs();
-        if self.width_m < springing_m * (1.0 - 1e-12) {
-            return Err(ArgumentError {
-                argument: "width_m",
-                value: self.width_m,
-                allowed: format!(
-                    "at least {springing_m:.6}, the width of the springing that it carries"
-                ),
-            });
-        }
-        Ok(())
+        let fits = self.width_m >= springing_m * (1.0 - 1e-12);
+        let allowed =
+            format_args!("at least {springing_m:.6}, the width of the springing that it carries");
+        allow(fits, "width_m", self.width_m, allowed).map(|_| ())
     }
 
     /// Its blocks, with its joints but the springing: upwards at the left, downwards at the right.

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::Dimensions;
 use super::cut::{CutArch, Place};
 use super::middle_line::part;
-use crate::argument::ArgumentError;
+use crate::argument::{ArgumentError, allow};
 use crate::mechanics::geometry::curve::Curve;
 
 /// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths; an even number
@@ -18,33 +18,27 @@ use crate::mechanics::geometry::curve::Curve;
 pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
     dimensions.check()?;
     let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
-    if rise_m < 0.5 * span_m {
-        return Err(ArgumentError {
-            argument: "rise_m",
-            value: rise_m,
-            allowed: format!(
-                "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
-                0.5 * span_m
-            ),
-        });
-    }
+    let allowed = format_args!(
+        "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
+        0.5 * span_m
+    );
+    allow(rise_m >= 0.5 * span_m, "rise_m", rise_m, allowed)?;
     let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
     // The centre of the left arc lies to the right of the middle.
     let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
     let inner_m = radius_m - 0.5 * dimensions.thickness_m;
-    if inner_m <= centre.x {
-        return Err(ArgumentError {
-            argument: "thickness_m",
-            value: dimensions.thickness_m,
-            allowed: format!("below the span of {span_m:?}"),
-        });
-    }
+    let allowed = format_args!("below the span of {span_m:?}");
+    allow(
+        inner_m > centre.x,
+        "thickness_m",
+        dimensions.thickness_m,
+        allowed,
+    )?;
     let arc = |radius: f64| Curve::Arc {
         centre,
         radius,
-        from_rad: PI,
-        // Where it reaches the middle.
-        to_rad: (-centre.x / radius).acos(),
+        // To where it reaches the middle.
+        angles_rad: [PI, (-centre.x / radius).acos()],
     };
     let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
     let outer_m = inner_m + dimensions.thickness_m;

@@ -67,12 +67,9 @@ impl Shape {
 
 /// The least factor with which the masonry stands, rounded up to four decimals; `None` if that is above four.
 fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
-    let high = [1.25, 1.5, 2.0, 3.0, 4.0]
-        .into_iter()
-        .find(|factor| stands(*factor) == Some(true))?;
-    let (_, least) = try_bisect(1.0, high, Width::Absolute(1e-5), |factor| {
-        stands(factor).ok_or(())
-    })
-    .ok()?;
+    let mut factors = [1.25, 1.5, 2.0, 3.0, 4.0].into_iter();
+    let high = factors.find(|factor| stands(*factor) == Some(true))?;
+    let holds = |factor| stands(factor).ok_or(());
+    let (_, least) = try_bisect(1.0, high, Width::Absolute(1e-5), holds).ok()?;
     Some((least * 1e4).ceil() / 1e4)
 }

@@ -20,7 +20,7 @@ use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::stance::Stance;
-use crate::mechanics::tie::{TieLine, pull_blocks};
+use crate::mechanics::tie::TieLine;
 
 /// Velocities below this part of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
@@ -95,10 +95,8 @@ impl<'a> Step<'a> {
 pub(super) struct Descent<'a> {
     row: &'a Row,
     program: Program,
+    load: Load,
     closer: Closer,
-    free: Vec<Twist>,
-    jumps: Vec<Twist>,
-    touching: Vec<[bool; 2]>,
     /// Force of each tie over gravity, and by how much that lengthens it for each kg.
     ties_kg: Vec<f64>,
     ties_m_kg: Vec<f64>,
@@ -106,20 +104,15 @@ pub(super) struct Descent<'a> {
 
 impl<'a> Descent<'a> {
     pub fn new(row: &'a Row) -> Self {
-        let joints = row.joints.len();
+        let ties = row.ties.iter();
+        let m_kg = ties.map(|tie| row.gravity_m_s2 / tie.stiffness_n_m);
         Self {
             row,
             program: Program::new(row),
+            load: Load::none(row),
             closer: Closer::new(row),
-            free: vec![Twist::ZERO; row.blocks.len()],
-            jumps: vec![Twist::ZERO; joints],
-            touching: vec![[true; 2]; joints],
             ties_kg: vec![0.0; row.ties.len()],
-            ties_m_kg: row
-                .ties
-                .iter()
-                .map(|tie| row.gravity_m_s2 / tie.stiffness_n_m)
-                .collect(),
+            ties_m_kg: m_kg.collect(),
         }
     }
 
@@ -140,7 +133,7 @@ impl<'a> Descent<'a> {
         self.program.reset();
         self.program.place(&stance.placement);
         let mut lines = self.nudge(stance, from, to, force_g)?;
-        self.jumps.fill(Twist::ZERO);
+        self.load.jumps.fill(Twist::ZERO);
         let start_m = stance.placement.centres_m.to_vec();
         let turns = |stance: &Stance| {
             let poses = stance.placement.poses.iter();
@@ -210,15 +203,16 @@ impl<'a> Descent<'a> {
     ) -> Result<Vec<TieLine>, ContactError> {
         let mut lines: Vec<TieLine> = stance.lines(self.row).collect();
         let mut here = from.supports;
-        let last = self.jumps.len() - 1;
+        let last = self.row.joints.len() - 1;
         for _ in 0..=2 * last {
             if here == to.supports {
                 break;
             }
             let moved = [0, 1].map(|side| between(&here[side], &to.supports[side]));
-            self.jumps.fill(Twist::ZERO);
-            self.jumps[0] = moved[0];
-            self.jumps[last] = self.jumps[last] - moved[1];
+            let jumps = &mut self.load.jumps;
+            jumps.fill(Twist::ZERO);
+            jumps[0] = moved[0];
+            jumps[last] = jumps[last] - moved[1];
             self.solve(stance, &lines, force_g, self.row.size_m)?;
             let (part, shut) = self.first_shut(&stance.placement, 1.0);
             here = match shut {
@@ -240,29 +234,9 @@ impl<'a> Descent<'a> {
         times: f64,
     ) -> Result<f64, ContactError> {
         let placement = &stance.placement;
-        self.free.fill(Twist::translation(force_g * times));
-        let (blocks, centres_m) = (&self.row.blocks, &placement.centres_m);
-        let pulls_kg = self.ties_kg.iter().map(|kg| kg * times);
-        pull_blocks(
-            blocks,
-            centres_m,
-            lines.iter().zip(pulls_kg),
-            &mut self.free,
-        );
-        for (touching, gaps) in self.touching.iter_mut().zip(&placement.gaps_m) {
-            *touching = gaps.map(|gap| gap == 0.0);
-        }
-        self.program.solve(&Load {
-            free: &self.free,
-            jumps: &self.jumps,
-            touching: &self.touching,
-        })?;
-        let velocities = self.program.velocities.iter();
-        let speeds = velocities.zip(&placement.centres_m).map(|(twist, centre)| {
-            let turning = twist.rate.abs() * self.row.size_m;
-            twist.at(*centre).norm().max(turning)
-        });
-        Ok(speeds.fold(0.0, f64::max))
+        let ties = lines.iter().zip(self.ties_kg.iter().map(|kg| kg * times));
+        self.load.push(self.row, placement, force_g * times, ties);
+        self.program.fastest(&self.load, self.row, placement)
     }
 
     /// The fastest velocity with ties that pull as at the end of a step, at most as long as this one, in which no point goes too far.
@@ -424,7 +398,8 @@ impl<'a> Descent<'a> {
             }
             let size = product(&motion, &motion).sqrt();
             // A response that is no number adds nothing either.
-            if size.is_nan() || size <= NO_MOTION * product(&self.free, &self.free).sqrt() {
+            if size.is_nan() || size <= NO_MOTION * product(&self.load.free, &self.load.free).sqrt()
+            {
                 break;
             }
             for twist in &mut motion {
@@ -439,16 +414,10 @@ impl<'a> Descent<'a> {
 
     /// Velocities that ties alone give the row while the same corners press, each with so much over gravity.
     fn respond(&mut self, step: &Step<'_>, mut kg: impl FnMut(usize) -> f64) {
-        let centres_m = &step.stance.placement.centres_m;
-        self.free.fill(Twist::ZERO);
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
-        pull_blocks(&self.row.blocks, centres_m, ties, &mut self.free);
-        self.program.solve_alike(&Load {
-            free: &self.free,
-            jumps: &self.jumps,
-            touching: &self.touching,
-        });
+        (self.load).push(self.row, &step.stance.placement, Vector2::zeros(), ties);
+        self.program.solve_alike(&self.load);
     }
 
     /// By how much less the ties lack, each times its part of a way, for the whole of that way.

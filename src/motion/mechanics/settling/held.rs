@@ -126,9 +126,8 @@ impl<'a> Held<'a> {
         let poses = self.poses(q_rad).expect("its bodies meet on its way");
         let push_g = self.bears_g(q_rad).expect("its bodies meet on its way");
         let condition = self.condition(push_g);
-        let state = self
-            .pins
-            .state_at(self.row, &condition, &poses, self.before(q_rad));
+        let before = self.before(q_rad);
+        let state = self.pins.state_at(self.row, &condition, &poses, before);
         Displaced {
             q_rad,
             // A tie that breaks may take all strength at once.
@@ -142,21 +141,18 @@ impl<'a> Held<'a> {
     /// The parts of its way at which each tie yields and breaks. A broken tie yields no more.
     #[must_use]
     pub fn ties_give_way(&self) -> Vec<GivesWay> {
-        let ties = self.row.ties.iter().enumerate();
-        ties.map(|(index, tie)| {
+        let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;
             let yields = self.first(index, |memory| {
                 memory.yielded_m.0[0] > 0.0 || memory.stretch_m.0[0] >= yields_m
             });
             let breaks = self.first(index, TieMemory::is_broken);
-            let yields = yields.map(|[_, yields]| yields);
-            let in_time = |yields: &f64| breaks.is_none_or(|[_, broken]| *yields < broken);
-            GivesWay {
-                yields: yields.filter(in_time),
-                breaks,
-            }
-        })
-        .collect()
+            let in_time =
+                |[_, yields]: &[f64; 2]| breaks.is_none_or(|[_, broken]| *yields < broken);
+            let yields = yields.filter(in_time).map(|[_, yields]| yields);
+            GivesWay { yields, breaks }
+        });
+        ties.collect()
     }
 
     /// The parts of its way between which a tie does for the first time what it does not undo: neighbouring numbers, or both the start.
@@ -179,8 +175,8 @@ impl<'a> Held<'a> {
         let first = Pose::about(pins_m[0], pins_m[0], self.sense * q_rad);
         match pins_m[1..] {
             [second, third, last] => {
-                let others =
-                    two_bodies([second, third, last], &[first, built], side(&pins_m[1..]))?;
+                let ends = [first, built];
+                let others = two_bodies([second, third, last], &ends, side(&pins_m[1..]))?;
                 Some(vec![built, first, others[0], others[1], built])
             }
             _ => Some(vec![built, first]),
@@ -216,10 +212,8 @@ impl<'a> Held<'a> {
     fn bears_g(&self, q_rad: f64) -> Option<f64> {
         let (row, poses) = (self.row, self.poses(q_rad)?);
         let (_, pulls) = self.pulls(q_rad, &poses);
-        let held = self
-            .pins
-            .loads(row, &poses, Vector2::new(0.0, -1.0), &pulls);
-        let push = Vector2::new(self.sway.sign(), 0.0);
+        let (push, weight) = (Vector2::new(self.sway.sign(), 0.0), Vector2::new(0.0, -1.0));
+        let held = self.pins.loads(row, &poses, weight, &pulls);
         let pushed = self.pins.loads(row, &poses, push, &[]);
         let pins_m = self.pins.at_m(&poses);
         let joint = |hinge: usize| self.pins.hinges[hinge].joint;
@@ -245,14 +239,11 @@ impl<'a> Held<'a> {
 
 /// The hinges that a push opens, if these are a mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
-    let hinges: Vec<Pin> = onset
-        .openings
-        .iter()
-        .filter_map(|opening| {
-            let (joint, edge) = (opening.joint, opening.hinge?);
-            Some(Pin { joint, edge })
-        })
-        .collect();
+    let hinges = onset.openings.iter().filter_map(|opening| {
+        let (joint, edge) = (opening.joint, opening.hinge?);
+        Some(Pin { joint, edge })
+    });
+    let hinges: Vec<Pin> = hinges.collect();
     let due = match row.supports {
         Supports::Left => 1,
         Supports::Both => 4,

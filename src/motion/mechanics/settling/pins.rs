@@ -3,12 +3,13 @@
 //! With more than three hinges the bodies rest where the potential energy of their weight and of the ties is least, of all places in which
 //! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
 
-use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Vector2, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 use serde::Serialize;
 
 use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::LEAST_LOAD;
+use crate::mechanics::contact::lower;
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -78,8 +79,7 @@ impl State {
         let forces = self.pressing().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
         // A margin that is not a number counts as none.
-        let least = |least: f64, next: f64| if least <= next { least } else { next };
-        openings.chain(forces).fold(f64::INFINITY, least)
+        openings.chain(forces).fold(f64::INFINITY, lower)
     }
 
     /// Whether its hinges hold the row, but for this slack.
@@ -106,13 +106,11 @@ impl State {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
             let hinge = self.hinges.iter().find(|hinge| hinge.joint == joint);
-            Edge::ALL
-                .iter()
-                .zip(*forces)
-                .filter_map(move |(&edge, force)| {
-                    let there = hinge.is_none_or(|hinge| hinge.edge == edge);
-                    there.then_some((Pin { joint, edge }, force))
-                })
+            let edges = Edge::ALL.iter().zip(*forces);
+            edges.filter_map(move |(&edge, force)| {
+                let there = hinge.is_none_or(|hinge| hinge.edge == edge);
+                there.then_some((Pin { joint, edge }, force))
+            })
         })
     }
 }
@@ -121,11 +119,9 @@ impl Pins {
     /// These hinges of a row, three or more from left to right.
     #[must_use]
     pub fn new(row: &Row, hinges: Vec<Pin>) -> Self {
-        let pins = hinges.iter();
+        let pin_m = |hinge: &Pin| row.joints[hinge.joint].corner_m(hinge.edge);
         Self {
-            pins_m: pins
-                .map(|hinge| row.joints[hinge.joint].corner_m(hinge.edge))
-                .collect(),
+            pins_m: hinges.iter().map(pin_m).collect(),
             hinges,
         }
     }
@@ -149,10 +145,9 @@ impl Pins {
     /// These hinges with others exchanged: those already present leave, new ones are added; `None` if that leaves less than three, or a joint would open at
     /// both edges.
     pub(super) fn exchanged(&self, row: &Row, others: &[Pin]) -> Option<Self> {
-        let stays = |hinge: &&Pin| !others.contains(hinge);
-        let mut hinges: Vec<Pin> = self.hinges.iter().filter(stays).copied().collect();
+        let stay = self.hinges.iter().filter(|hinge| !others.contains(hinge));
         let new = others.iter().filter(|hinge| !self.hinges.contains(hinge));
-        hinges.extend(new);
+        let mut hinges: Vec<Pin> = stay.chain(new).copied().collect();
         hinges.sort_by_key(|hinge| hinge.joint);
         let apart = hinges.windows(2).all(|pair| pair[0].joint < pair[1].joint);
         (hinges.len() >= 3 && apart).then(|| Self::new(row, hinges))
@@ -212,10 +207,8 @@ impl Pins {
     ) -> Option<State> {
         let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
         let body_of = |block: usize| self.part_of(block);
-        let pairs = poses.windows(2);
-        let turns_rad: Vec<f64> = pairs
-            .map(|pair| pair[1].rotation_rad() - pair[0].rotation_rad())
-            .collect();
+        let turn = |pair: &[Pose]| pair[1].rotation_rad() - pair[0].rotation_rad();
+        let turns_rad: Vec<f64> = poses.windows(2).map(turn).collect();
         let mut openings_rad = turns_rad.clone();
         for (opening, hinge) in openings_rad.iter_mut().zip(&self.hinges) {
             let inside = hinge.edge == Edge::Intrados;
@@ -246,14 +239,11 @@ impl Pins {
             // Either face of a shut joint, and the corner of a hinge, are where the block after it is.
             let pose = poses[body_of(index)];
             let hinge = self.hinges.iter().position(|hinge| hinge.joint == index);
-            let along = match hinge {
+            let mut along = pose.turned(joint.along());
+            if let Some(index) = hinge {
                 // At the mean angle of its faces.
-                Some(index) => {
-                    let half = Pose::new(-0.5 * turns_rad[index], Vector2::zeros());
-                    half.turned(pose.turned(joint.along()))
-                }
-                None => pose.turned(joint.along()),
-            };
+                along = Pose::new(-0.5 * turns_rad[index], Vector2::zeros()).turned(along);
+            }
             let normal = turned(along) * row.handedness;
             let pressed = force.linear.dot(&normal);
             if pressed >= LEAST_LOAD {
@@ -269,22 +259,19 @@ impl Pins {
                 }
             });
         }
+        let rotations = (0..blocks).map(|block| poses[body_of(block)].rotation_rad());
         Some(State {
             hinges: self.hinges.clone(),
             turns_rad,
             openings_rad,
-            rotations_rad: (0..blocks)
-                .map(|block| poses[body_of(block)].rotation_rad())
-                .collect(),
+            rotations_rad: rotations.collect(),
             corners,
             right_reaction: (start + loads[blocks]) * -1.0,
             friction,
             ties,
         })
     }
-}
 
-impl Pins {
     /// Memory and forces of the ties of a row whose parts have these poses.
     pub(super) fn pulls(
         &self,
@@ -415,6 +402,7 @@ impl Bar {
 
 /// The effect of ties between two bodies, each described by the place of its first pin and its rotation: slopes of their energy, and
 /// curvatures. Ends count as if a tie pulled both bodies the same way.
+#[derive(Default)]
 struct Between {
     force: Vector2<f64>,
     moments: Vector2<f64>,
@@ -428,14 +416,7 @@ struct Between {
 impl Between {
     /// Sums the forces of ties between two bodies at these poses; `pins_m` are the first pins of the bodies.
     fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
-        let mut all = Self {
-            force: Vector2::zeros(),
-            moments: Vector2::zeros(),
-            along: Vector2::zeros(),
-            places: Matrix2::zeros(),
-            mixed: Matrix2::zeros(),
-            rotations: Matrix2::zeros(),
-        };
+        let mut all = Self::default();
         for bar in bars {
             let ends_m = [0, 1].map(|end| poses[end].of(bar.ends_m[end]));
             let by_m = (ends_m[1] - bar.ends_m[1]) - (ends_m[0] - bar.ends_m[0]);
@@ -500,11 +481,8 @@ impl Unbalanced {
 impl<'a> Chain<'a> {
     fn new(pins: &'a Pins, row: &'a Row, condition: &'a Condition, before: &'a Stance) -> Self {
         let count = pins.hinges.len() - 1;
-        let arms_m: Vec<_> = pins
-            .pins_m
-            .windows(2)
-            .map(|pair| pair[1] - pair[0])
-            .collect();
+        let pairs = pins.pins_m.windows(2);
+        let arms_m: Vec<_> = pairs.map(|pair| pair[1] - pair[0]).collect();
         let per_mass = 1.0 / row.mass_kg();
         let mut moments_m = vec![Vector2::zeros(); count];
         for (body, moment) in moments_m.iter_mut().enumerate() {
@@ -521,13 +499,12 @@ impl<'a> Chain<'a> {
         }
         let poses = &before.placement.poses;
         let bodies = pins.hinges.iter().take(count);
-        let support = |anchor: &Anchor| anchor.support(row.feet_m()) * (count + 1);
         let parts: Vec<usize> = (0..row.blocks.len())
             .map(|block| pins.part_of(block))
             .collect();
-        let part = |anchor: Anchor| {
-            let block = anchor.block;
-            block.map_or_else(|| support(&anchor), |block| parts[block])
+        let part = |anchor: Anchor| match anchor.block {
+            Some(block) => parts[block],
+            None => anchor.support(row.feet_m()) * (count + 1),
         };
         let weight_n = row.mass_kg() * row.gravity_m_s2;
         let ties = row.ties.iter().zip(&before.ties);
@@ -536,10 +513,9 @@ impl<'a> Chain<'a> {
             let yielded_m = memory.yielded_m.0[0];
             Bar::new(tie, tie.ends.map(part), yielded_m, weight_n)
         });
+        let rotations = bodies.map(|hinge| poses[hinge.joint].rotation_rad());
         Self {
-            rotations_rad: bodies
-                .map(|hinge| poses[hinge.joint].rotation_rad())
-                .collect(),
+            rotations_rad: rotations.collect(),
             bars: bars.collect(),
             pins,
             row,
@@ -570,10 +546,7 @@ impl<'a> Chain<'a> {
         let mut curvature = DMatrix::zeros(count, count);
         let mut reach = DMatrix::zeros(2, count);
         for (body, pose) in poses.iter().enumerate() {
-            let (arm, moment) = (
-                pose.turned(self.arms_m[body]),
-                pose.turned(self.moments_m[body]),
-            );
+            let [arm, moment] = [&self.arms_m, &self.moments_m].map(|of| pose.turned(of[body]));
             let force = self.condition.force_g;
             slopes[body] -= force.dot(&turned(moment));
             curvature[(body, body)] += force.dot(&moment);
@@ -614,18 +587,10 @@ impl<'a> Chain<'a> {
                 stiffnesses[(3 * first + 2, 3 * first + 2)] -= ENDS[one] * all.along[one];
                 for (other, second) in body.iter().enumerate() {
                     let Some(second) = second else { continue };
-                    let [places, mixed] = [&all.places, &all.mixed];
-                    let between = Matrix3::new(
-                        places.m11,
-                        places.m12,
-                        mixed[(0, other)],
-                        places.m21,
-                        places.m22,
-                        mixed[(1, other)],
-                        mixed[(0, one)],
-                        mixed[(1, one)],
-                        all.rotations[(one, other)],
-                    );
+                    let mut between = all.places.to_homogeneous();
+                    (between.fixed_view_mut::<2, 1>(0, 2)).copy_from(&all.mixed.column(other));
+                    (between.fixed_view_mut::<1, 2>(2, 0)).tr_copy_from(&all.mixed.column(one));
+                    between.m33 = all.rotations[(one, other)];
                     let mut stiffnesses = stiffnesses.fixed_view_mut::<3, 3>(3 * first, 3 * second);
                     stiffnesses += between * (ENDS[one] * ENDS[other]);
                 }
@@ -666,18 +631,11 @@ impl<'a> Chain<'a> {
             if slopes < rounding && left.parted.amax() < BALANCED * size_m {
                 return Some(self.poses());
             }
-            let mut matrix = DMatrix::zeros(count + 2, count + 2);
-            matrix
-                .view_mut((0, 0), (count, count))
-                .copy_from(&left.curvature);
-            matrix
-                .view_mut((count, 0), (2, count))
-                .copy_from(&left.reach);
-            let across = -left.reach.transpose();
-            matrix.view_mut((0, count), (count, 2)).copy_from(&across);
-            let mut right = DVector::zeros(count + 2);
-            right.rows_mut(0, count).copy_from(&-left.slopes);
-            right.rows_mut(count, 2).copy_from(&-left.parted);
+            let mut matrix = left.curvature.resize(count + 2, count + 2, 0.0);
+            (matrix.view_mut((count, 0), (2, count))).copy_from(&left.reach);
+            (matrix.view_mut((0, count), (count, 2))).copy_from(&-left.reach.transpose());
+            let unbalanced = left.slopes.iter().chain(&left.parted).map(|part| -part);
+            let right = DVector::from_iterator(count + 2, unbalanced);
             let step = matrix.lu().solve(&right)?;
             for (rotation_rad, by) in self.rotations_rad.iter_mut().zip(step.iter()) {
                 *rotation_rad += by;

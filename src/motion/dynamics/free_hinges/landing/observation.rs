@@ -118,7 +118,7 @@ impl LandingStepper<'_> {
         let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
         shut.clear();
         opened.clear();
-        for joint in 0..self.touching.len() {
+        for joint in 0..self.load.touching.len() {
             if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) {
                 let edge = only(self.closed[joint].map(|closed| !closed));
                 shut.push(Hinge::Joint { joint, edge });
@@ -176,7 +176,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.course.longest_step_s);
         self.touch_shut();
-        self.closed.copy_from_slice(&self.touching);
+        self.closed.copy_from_slice(&self.load.touching);
         let from_s = self.course.time;
         let taken_before = self.course.of_row.energy_taken_j;
         self.landing.fill([0.0; 2]);
@@ -187,7 +187,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let step = self.solve_to_landing(longest)?;
         self.account(&step);
         self.drift(&step)?;
-        let mut joints = 0..self.touching.len();
+        let mut joints = 0..self.load.touching.len();
         let landed = joints.any(|joint| (0..2).any(|edge| self.has_landed(joint, edge)));
         if landed {
             self.impact()?;

@@ -120,7 +120,7 @@ impl LandingStepper<'_> {
                     gap_m: gaps[edge],
                     rate_m_s: rates[edge],
                 };
-                let falls = !self.touching[joint][edge] && fall.rate_m_s < 0.0;
+                let falls = !self.load.touching[joint][edge] && fall.rate_m_s < 0.0;
                 if falls && first.is_none_or(|first| fall.duration_s() < first.duration_s()) {
                     first = Some(fall);
                 }
@@ -147,7 +147,7 @@ impl LandingStepper<'_> {
                     let rate = rates[edge] + self.landing[joint][edge];
                     let thickness = self.placement.frames[joint].thickness_m;
                     let lands = gaps[edge] + step * rate < -SHUT_RATIO * thickness;
-                    if !self.touching[joint][edge] && lands {
+                    if !self.load.touching[joint][edge] && lands {
                         self.landed.push((joint, edge));
                     }
                 }
@@ -159,17 +159,17 @@ impl LandingStepper<'_> {
             if round >= LANDING_ROUNDS {
                 let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
                 let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));
-                for (touching, gaps) in self.touching.iter_mut().zip(&self.placement.gaps_m) {
+                for (touching, gaps) in self.load.touching.iter_mut().zip(&self.placement.gaps_m) {
                     for edge in 0..2 {
                         touching[edge] |= gaps[edge] < step * fastest;
                     }
                 }
             }
             for (joint, edge) in &self.landed {
-                self.touching[*joint][*edge] = true;
+                self.load.touching[*joint][*edge] = true;
                 self.program.press(*joint, *edge);
             }
-            for (joint, touching) in self.touching.iter().enumerate() {
+            for (joint, touching) in self.load.touching.iter().enumerate() {
                 let rates = self.placement.gaps_m[joint].map(|gap| -gap / step);
                 self.landing[joint] = match touching {
                     [true, true] => rates,
