@@ -39,9 +39,7 @@ impl fmt::Display for FallEnd {
 
 /// Whether a fall ends with this sample, and why.
 pub(super) fn end_at(sample: &Sample) -> Option<FallEnd> {
-    let most_rad = sample
-        .rotations_rad
-        .iter()
-        .fold(0.0_f64, |most, rotation_rad| most.max(rotation_rad.abs()));
-    (most_rad >= TURNED_RAD).then_some(FallEnd::Turned)
+    let turned = |rotation_rad: &f64| rotation_rad.abs() >= TURNED_RAD;
+    let any = sample.rotations_rad.iter().any(turned);
+    any.then_some(FallEnd::Turned)
 }

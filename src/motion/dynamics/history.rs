@@ -380,7 +380,7 @@ impl Event {
 ///
 /// The mechanism after is the one that the impact leads to, with its rates just after, even where these are so
 /// small that the structure comes to rest.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Impact {
     /// Sway of the mechanism that closed.
     pub sway_before: Sway,
@@ -500,11 +500,9 @@ impl Summary {
     #[must_use]
     pub fn largest_body(&self) -> usize {
         let most_rad = self.largest_rotation_rad();
-        let peaks_rad = self.peak_rotations_rad.iter();
-        peaks_rad
-            .rev()
-            .position(|peak_rad| *peak_rad == most_rad)
-            .map_or(0, |before| self.peak_rotations_rad.len() - 1 - before)
+        let mut peaks_rad = self.peak_rotations_rad.iter();
+        let last = peaks_rad.rposition(|peak_rad| *peak_rad == most_rad);
+        last.unwrap_or(0)
     }
 
     /// Number of impacts; `None` for elastic joints, whose contact lasts.
@@ -602,7 +600,7 @@ const fn is_infinite(number: &f64) -> bool {
 }
 
 /// A half cycle: from one passage of the centre of gravity through its undeformed place to the next.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HalfCycle {
     /// To which side.
     pub sway: Sway,

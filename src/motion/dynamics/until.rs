@@ -33,6 +33,7 @@ const DECAYED: f64 = 0.1;
 const HALF_CYCLES_LEFT: f64 = 40.0;
 
 /// Ends a history that cannot overturn any more.
+#[derive(Default)]
 pub(super) struct UntilSafe {
     /// From when on the ground is quiet, in seconds.
     quiet_s: f64,
@@ -59,10 +60,7 @@ impl UntilSafe {
         Some(Self {
             quiet_s: ground.end_s(),
             rest_by_s,
-            sways: None,
-            half_cycle_s: 0.0,
-            largest_ratio: 0.0,
-            has_ended: false,
+            ..Self::default()
         })
     }
 

@@ -32,16 +32,14 @@ pub(super) struct Running(JoinHandle<Result<Summary, SimulationError>>);
 impl Running {
     pub(super) fn start(model: Box<dyn Model>, ground: &GroundMotion, request: &Request) -> Self {
         let (ground, request) = (ground.clone(), *request);
-        Self(thread::spawn(move || {
-            model.simulate(&ground, &request, None)
-        }))
+        let simulate = move || model.simulate(&ground, &request, None);
+        Self(thread::spawn(simulate))
     }
 
     /// Waits for it. A panic of its thread continues here.
     pub(super) fn ended(self) -> Result<Summary, SimulationError> {
-        self.0
-            .join()
-            .unwrap_or_else(|panicked| panic::resume_unwind(panicked))
+        let joined = self.0.join();
+        joined.unwrap_or_else(|panicked| panic::resume_unwind(panicked))
     }
 }
 
@@ -53,12 +51,8 @@ impl Variations {
     /// Starts them.
     #[must_use]
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
-        let start = |Variation { name, model }| {
-            (
-                name,
-                model.map(|model| Running::start(model, ground, request)),
-            )
-        };
+        let running = |model| Running::start(model, ground, request);
+        let start = |variation: Variation| (variation.name, variation.model.map(running));
         Self(variations.into_iter().map(start).collect())
     }
 

@@ -358,10 +358,11 @@ impl ElasticJoints {
         let Details::Elastic(row, elastic) = &mut summary.details else {
             unreachable!("its joints are elastic");
         };
+        let (joint, ratio) = rest.largest_eccentricity(&self.structure);
         (
             elastic.rest_eccentricity_joint,
             elastic.rest_eccentricity_ratio,
-        ) = rest.largest_eccentricity(&self.structure);
+        ) = (joint, ratio);
         // Stacks have no first mechanism with one degree of freedom and a known barrier; the energy to push them over is known.
         if row.energy_error > LARGEST_ENERGY_ERROR
             && self.barrier_j(gravity_m_s2).is_none()

@@ -129,8 +129,6 @@ pub struct Happens {
 /// A support along whose joint the whole structure may slide.
 pub struct Slide {
     pub joint: usize,
-    /// 0 of the left support, 1 of the right one.
-    pub support: usize,
     /// 1 where the structure is after the joint, -1 where it is before.
     pub sense: f64,
     /// Whether the support extends beyond the joint.
@@ -164,6 +162,10 @@ remembered!(Observed {
 impl<'a, const L: usize> Motion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let joints = structure.joints.len();
+        let ties = structure
+            .ties
+            .iter()
+            .map(|bound| TieMemory::undeformed(&bound.tie));
         let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
@@ -175,11 +177,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             memories: vec![Memory::none(); joints],
             bearing: [Bearing::none(); TOGETHER],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
-            ties: structure
-                .ties
-                .iter()
-                .map(|bound| TieMemory::undeformed(&bound.tie))
-                .collect(),
+            ties: ties.collect(),
             spent: Spent::none(),
         }
     }
@@ -386,7 +384,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             for slide in slides {
                 let along = structure.joints[slide.joint].link.along;
                 let slid = self.memories[slide.joint].slipped_m * slide.sense;
-                let gone = self.gone(slide.support);
+                let gone = self.gone(usize::from(slide.joint > 0));
                 let beside = [
                     x - datum[0] - gone[0] - slid * along[0],
                     y - datum[1] - gone[1] - slid * along[1],

@@ -195,16 +195,15 @@ impl<'a, const L: usize> Group<'a, L> {
         let [left, right] = row.supports_extend;
         let last = row.joints.len() - 1;
         // At the right support the block is the left one.
-        let slides = match row.supports {
-            Supports::Left => vec![(0, 1.0, left, 1.0)],
-            Supports::Both => vec![(0, 1.0, left, 0.5), (last, -1.0, right, 0.5)],
-        };
-        let slide = |(joint, sense, goes_on, part): (usize, f64, bool, f64)| Slide {
+        let slide = |joint: usize, sense: f64, goes_on: bool, part: f64| Slide {
             joint,
-            support: usize::from(joint > 0),
             sense,
             goes_on,
             along_x: part * sense * row.joints[joint].along().x,
+        };
+        let slides = match row.supports {
+            Supports::Left => vec![slide(0, 1.0, left, 1.0)],
+            Supports::Both => vec![slide(0, 1.0, left, 0.5), slide(last, -1.0, right, 0.5)],
         };
         Self {
             row,
@@ -214,7 +213,7 @@ impl<'a, const L: usize> Group<'a, L> {
             motion: Motion::new(structure, gravity_m_s2),
             lanes: [const { None }; L],
             barrier_j: OnceCell::new(),
-            slides: slides.into_iter().map(slide).collect(),
+            slides,
         }
     }
 
@@ -228,14 +227,11 @@ impl<'a, const L: usize> Group<'a, L> {
     ) {
         self.motion.start(lane, self.rest);
         let mut begun = Lane::new(task, until, recorder);
-        let moved_m = |moved: &[f64; 3]| moved[0].hypot(moved[1]);
         let weighted = self.row.blocks.iter().zip(&self.rest.bent);
-        let moved_kg_m: f64 = weighted
-            .map(|(block, moved)| block.mass_kg * moved_m(moved))
-            .sum();
-        let structure = self.structure;
-        begun.course.of_row.sliding =
-            (structure.slips()).then(|| Sliding::none(structure.joints.len()));
+        let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
+        let moved_kg_m: f64 = moved.sum();
+        let none = || Sliding::none(self.structure.joints.len());
+        begun.course.of_row.sliding = self.structure.slips().then(none);
         begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
         let seen = self.motion.observe(&Step::none(), &self.slides);
@@ -552,7 +548,8 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         if stood && course.moved {
             let (time_s, energy_j) = (course.time, course.potential);
             course.opened.clear();
-            self.report_uplift(time_s, energy_j, |stepper| stepper.turns().unzip());
+            let turns = self.turns().unzip();
+            self.report_uplift(time_s, energy_j, turns);
         }
         let happened = std::mem::take(&mut self.lane_mut().happened);
         self.report_ties(happened);

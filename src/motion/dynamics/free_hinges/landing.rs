@@ -22,7 +22,7 @@ use std::ops::Range;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-use super::rest::Rest;
+use super::rest::{Rest, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
@@ -209,12 +209,9 @@ impl<'a> LandingStepper<'a> {
             )));
         }
         self.closer.close(&mut self.placement);
-        let gaps = self.placement.gaps_m.iter();
-        let active: Vec<Corners> = gaps.map(|gaps| gaps.map(|gap| gap == 0.0)).collect();
-        let open = active
-            .iter()
-            .filter(|corners| **corners != [true; 2])
-            .count();
+        let active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
+        let is_open = |corners: &&Corners| **corners != [true; 2];
+        let open = active.iter().filter(is_open).count();
         // Fewer than three hinges do not hold an arch: then the initial active set stays.
         if self.row.supports == Supports::Left || open >= 3 {
             self.program.start_from(&active);
@@ -274,10 +271,8 @@ impl<'a> LandingStepper<'a> {
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         let ground = self.velocity.at(to_s) - self.velocity.at(from_s);
-        (
-            -ground - Vector2::new(0.0, self.gravity * (to_s - from_s)),
-            ground,
-        )
+        let fall = Vector2::new(0.0, self.gravity * (to_s - from_s));
+        (-ground - fall, ground)
     }
 
     /// Applies the rest of the last kick, up to the instant of the positions, with the corners that touch there. Returns the
@@ -556,11 +551,8 @@ impl<'a> LandingStepper<'a> {
         self.take_pieces();
         self.kicked_s = self.course.time;
         self.course.impacts += 1;
-        let (first_s, within_s) = (
-            self.crowd.first_s,
-            self.course.task.settings.shortest_step_s,
-        );
-        if self.crowd.impacts == 0 || self.course.time - first_s > within_s {
+        let crowd_s = self.course.time - self.crowd.first_s;
+        if self.crowd.impacts == 0 || crowd_s > self.course.task.settings.shortest_step_s {
             self.crowd.first_s = self.course.time;
             self.crowd.impacts = 0;
         }

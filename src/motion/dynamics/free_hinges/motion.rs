@@ -47,15 +47,7 @@ pub fn motion(
     let Some(coefficient) = task.settings.friction_coefficient else {
         return stepper::run(released(recorder)?);
     };
-    let placement = match initial_rad {
-        Some(_) => released(None)?.placement,
-        None => standing.placement.clone(),
-    };
-    stepper::run(SlidingStepper::new(
-        standing,
-        &placement,
-        task,
-        coefficient,
-        recorder,
-    ))
+    let placement = released(None)?.placement;
+    let stepper = SlidingStepper::new(standing, &placement, task, coefficient, recorder);
+    stepper::run(stepper)
 }

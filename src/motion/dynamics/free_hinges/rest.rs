@@ -71,6 +71,7 @@ impl<'a> Rest<'a> {
     }
 }
 
-fn touching(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
+/// Corners that touch, of joints with these gaps.
+pub(super) fn touching(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
     gaps_m.iter().map(|gaps| gaps.map(|gap| gap == 0.0))
 }

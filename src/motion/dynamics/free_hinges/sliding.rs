@@ -260,11 +260,8 @@ impl<'a> SlidingStepper<'a> {
         self.right.step(self.course.time, step);
         self.lag(step);
         self.load(kick, to_s);
-        let fastest = self
-            .velocities
-            .iter()
-            .map(|v| v.x.abs() + v.y.abs())
-            .fold(0.0, f64::max);
+        let speeds = self.velocities.iter().map(|v| v.x.abs() + v.y.abs());
+        let fastest = speeds.fold(0.0, f64::max);
         let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
         let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
         let mut passes = solution.passes;
@@ -391,32 +388,21 @@ impl<'a> SlidingStepper<'a> {
     /// Returns the kinetic energy there.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
+        self.right.stop_at(self.course.time);
+        let rates_at_gaps = |joint: usize| {
+            let [intrados, extrados] = self.gaps(joint).map(|gap| gap / self.last_step);
+            Vector3::new(intrados, extrados, 0.0)
+        };
+        let mut apart: Vec<_> = (0..self.faces.len()).map(rates_at_gaps).collect();
+        let last = apart.len() - 1;
+        apart[last] += self.carried(last, self.right.next_m_s);
         mem::swap(&mut self.program, &mut self.auxiliary);
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
         self.program.start_from(&self.auxiliary, 0.5);
         self.load(kick, self.course.time);
-        self.right.stop_at(self.course.time);
-        let last = self.faces.len() - 1;
-        let parting = self.carried(last, self.right.next_m_s);
-        let (modes, contacts, step) = (&self.auxiliary.modes, &self.contacts, self.last_step);
-        let apart = |joint: usize| {
-            let gap = |end: usize| {
-                if modes[joint].pressed[end] {
-                    0.0
-                } else {
-                    contacts[joint].coordinates_m[end].max(0.0) / step
-                }
-            };
-            let apart = Vector3::new(gap(0), gap(1), 0.0);
-            if joint == last {
-                apart + parting
-            } else {
-                apart
-            }
-        };
-        self.program
-            .solve(apart, RATE_TOLERANCE * self.gravity * step);
+        let tolerance = RATE_TOLERANCE * self.gravity * self.last_step;
+        self.program.solve(|joint| apart[joint], tolerance);
         mem::swap(&mut self.program, &mut self.auxiliary);
         0.5 * self.auxiliary.twice_kinetic_j()
     }
@@ -437,17 +423,14 @@ impl<'a> SlidingStepper<'a> {
             self.stands &= !is_open;
         }
         if !self.stands {
-            self.report_uplift(from_s, energy_j, |_| turns.into_iter().unzip());
+            self.report_uplift(from_s, energy_j, turns.into_iter().unzip());
         }
     }
 
     /// True if the corners press that pressed at the initial position.
     fn touches_as_it_stood(&self) -> bool {
-        let modes = self.program.modes.iter().zip(&self.rest.touching);
-        modes
-            .into_iter()
-            .all(|(mode, stood)| mode.pressed == *stood)
-            && !self.right_support_is_gone()
+        let mut modes = self.program.modes.iter().zip(&self.rest.touching);
+        modes.all(|(mode, stood)| mode.pressed == *stood) && !self.right_support_is_gone()
     }
 
     /// True if the right support has moved relative to the left one.
@@ -608,23 +591,17 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         blocks.map(|(block, v)| v.xy() * block.mass_kg).sum()
     }
 
-    fn slips(&self) -> bool {
-        let mut modes = self.program.modes.iter();
-        modes.any(|mode| matches!(mode.along, Along::Slip(_)))
-    }
-
     fn stands(&self, sample: &Sample) -> bool {
-        let joints = 0..self.faces.len();
         let stood = &self.rest.touching;
-        let lies = joints
-            .into_iter()
-            .all(|joint| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint]);
+        let touches = |joint: usize| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint];
         let lies = if self.right_support_is_gone() {
             self.course.is_quiet(self.course.quiet_since_s)
         } else {
-            lies
+            (0..self.faces.len()).all(touches)
         };
-        (lies && !self.slips()) || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
+        let slips = |mode: &Mode| matches!(mode.along, Along::Slip(_));
+        (lies && !self.program.modes.iter().any(slips))
+            || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
     fn rests_since(&self) -> Option<f64> {

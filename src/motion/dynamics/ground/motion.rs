@@ -97,6 +97,12 @@ impl GroundMotion {
         self.pieces.first().map_or(0.0, |piece| piece.start_s)
     }
 
+    /// The index of the piece of a time that is not before the start; at a corner, of the later one.
+    pub(in crate::dynamics) fn piece_at(&self, time_s: f64) -> usize {
+        let starts = |piece: &Piece| piece.start_s <= time_s;
+        self.pieces.partition_point(starts).max(1) - 1
+    }
+
     /// Adds quiet ground before the motion, from `start_s` on, which is not later than its start.
     fn quiet_from(mut self, start_s: f64) -> Self {
         match self.pieces.first_mut() {

@@ -37,10 +37,8 @@ impl<'a> GroundVelocity<'a> {
     /// before the start.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
-        let pieces = &self.ground.pieces;
-        let after = pieces.partition_point(|piece| piece.start_s <= time_s);
-        let index = after.max(1) - 1;
-        self.at_starts_m_s[index] + pieces[index].velocity_gained_m_s(time_s)
+        let index = self.ground.piece_at(time_s);
+        self.at_starts_m_s[index] + self.ground.pieces[index].velocity_gained_m_s(time_s)
     }
 
     /// Displacements of the ground at these times, which ascend from the start on, in m from its position at the start.

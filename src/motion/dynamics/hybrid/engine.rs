@@ -235,17 +235,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
         return Ok(event.map(|(guard, _)| guard));
     }
     let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
-    let (first_step_s, longest_step_s) = system.step_sizes_s(&from, settings.relative_tolerance);
-    let task = Task {
-        start_s: from.time_s,
-        end_s,
-        start: from.state,
-        start_slope: system.slope(&from),
-        scale: system.scale(&from),
-        relative_tolerance: settings.relative_tolerance,
-        first_step_s,
-        longest_step_s,
-    };
+    let task = task(system, &from, end_s, settings.relative_tolerance);
     finish.cost.evaluations += 1;
     let mut event = None;
     let mut stopped_s = None;
@@ -273,6 +263,26 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     finish.now = from.at(landed.end_s, &landed.end);
     finish.stopped = observer.step(&from, &landed).is_break();
     Ok(Some(guard))
+}
+
+/// The integration of the motion from a moment in its mode, on its piece, up to a time.
+pub(super) fn task<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    from: &Moment<S::Mode, N>,
+    end_s: f64,
+    relative_tolerance: f64,
+) -> Task<N> {
+    let (first_step_s, longest_step_s) = system.step_sizes_s(from, relative_tolerance);
+    Task {
+        start_s: from.time_s,
+        end_s,
+        start: from.state,
+        start_slope: system.slope(from),
+        scale: system.scale(from),
+        relative_tolerance,
+        first_step_s,
+        longest_step_s,
+    }
 }
 
 /// The step again, cut off where the guard fires.

@@ -192,14 +192,12 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// Thrust excess and friction demand.
     #[must_use]
     pub fn demand(&self, now: &Moment<'a, C::Mechanism>) -> Demand {
-        match now.mode.swing() {
-            None => self
-                .chain
-                .demand_at_rest(self.body_force_g(Sway::Right, now)),
-            Some(swing) => self
-                .chain
-                .demand(&swing.link.mechanism, &self.motion(swing, now)),
-        }
+        let Some(swing) = now.mode.swing() else {
+            let body_force_g = self.body_force_g(Sway::Right, now);
+            return self.chain.demand_at_rest(body_force_g);
+        };
+        let motion = self.motion(swing, now);
+        self.chain.demand(&swing.link.mechanism, &motion)
     }
 
     /// The line of thrust over the sections from left to right: see
@@ -294,11 +292,8 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let coefficients = link.mechanism.coefficients(q);
         let push = ground_m_s2.x * coefficients.s_x + ground_m_s2.y * coefficients.s_y;
         let work = -push * rate / self.chain.length_m();
-        RockingState::new(
-            rate,
-            self.acceleration(&coefficients, rate, ground_m_s2),
-            work,
-        )
+        let acceleration = self.acceleration(&coefficients, rate, ground_m_s2);
+        RockingState::new(rate, acceleration, work)
     }
 
     fn between(&self, step: &Step<3>, time_s: f64) -> RockingState {

@@ -5,8 +5,8 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 
-use super::engine::HybridSystem;
-use super::integrator::{Step, Task, integrate};
+use super::engine::{HybridSystem, task};
+use super::integrator::{Step, integrate};
 use super::posture::{Now, posture, state};
 use super::rocking::{Moment, Phase, Rocking, RockingState};
 use crate::dynamics::fall::{self, FallEnd};
@@ -64,10 +64,8 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
         let moving = sample.state != State::Rest;
         self.thrust.note(sample.time_s, moving, &sample.demand);
-        if sample
-            .rotation_over_critical
-            .is_some_and(|rotation| rotation.abs() < 1.0)
-        {
+        let comes_back = |rotation: f64| rotation.abs() < 1.0;
+        if sample.rotation_over_critical.is_some_and(comes_back) {
             self.thrust_before_critical = self.thrust;
         }
         self.recorder.sample(sample)
@@ -131,8 +129,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
 
     /// The last sample, at the end of the simulation.
     pub(super) fn finish(&mut self, now: &Now<'a, C>) -> ControlFlow<()> {
-        let pieces = &self.rocking.ground.pieces;
-        let piece = pieces.partition_point(|piece| piece.start_s <= now.time_s) - 1;
+        let piece = self.rocking.ground.piece_at(now.time_s);
         let last = self.sample(&Moment { piece, ..*now });
         // A sample that differs from the end by rounding only is replaced.
         if let Some(held) = self.held.take()
@@ -168,17 +165,8 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
                 continue;
             }
             now.piece = piece;
-            let (first_step_s, longest_step_s) = rocking.step_sizes_s(&now, FALL_TOLERANCE);
-            let task = Task {
-                start_s: now.time_s,
-                end_s: motion.end_s.min(until_s),
-                start: now.state,
-                start_slope: rocking.slope(&now),
-                scale: rocking.scale(&now),
-                relative_tolerance: FALL_TOLERANCE,
-                first_step_s,
-                longest_step_s,
-            };
+            let end_s = motion.end_s.min(until_s);
+            let task = task(rocking, &now, end_s, FALL_TOLERANCE);
             let overturned = Moment { piece, ..*from };
             let watch = |step: &Step<3>| {
                 while self.next_s() <= step.end_s {
@@ -197,13 +185,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
                 ControlFlow::Continue(())
             };
             let slope = |time_s: f64, state: &RockingState| rocking.slope(&now.at(time_s, state));
-            match integrate(&task, slope, watch, &mut Cost::default()) {
-                Ok(last) => now = now.at(task.end_s, &last),
-                Err(_) => {
-                    end = FallEnd::Model("its links reach no farther".to_owned());
-                    break;
-                }
-            }
+            let Ok(last) = integrate(&task, slope, watch, &mut Cost::default()) else {
+                end = FallEnd::Model("its links reach no farther".to_owned());
+                break;
+            };
+            now = now.at(end_s, &last);
         }
         self.recorder.fell(end);
     }

@@ -4,13 +4,15 @@ use std::ops::ControlFlow;
 
 use super::engine::{HybridSystem, Observer, Settings, Transition, falling_root, simulate};
 use super::integrator::Step;
-use super::posture::{Now, Rotations, posture, seen_from_ground, state};
+use super::posture::{Now, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::Sampler;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Details, Event, EventKind, Impact, Outcome, Summary};
-use crate::dynamics::model::{MechanismModel, Model, Recorder, Request, SimulationError, check};
+use crate::dynamics::model::{
+    Initial, MechanismModel, Model, Recorder, Request, SimulationError, check,
+};
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
@@ -110,21 +112,28 @@ fn history_of<C: MechanismChain + MechanismModel>(
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, SimulationError> {
     let rocking = checked(chain, ground, request)?;
-    let (mode, state) = match request.initial {
-        Some(initial) => (
-            rocking.released(initial.sway),
-            RockingState::new(initial.rotation_rad, 0.0, 0.0),
-        ),
-        None => (Phase::Rest, RockingState::zeros()),
-    };
+    let mode = |initial: Initial| rocking.released(initial.sway);
+    let mode = request.initial.map_or(Phase::Rest, mode);
+    let q_rad = request.initial.map_or(0.0, |initial| initial.rotation_rad);
+    let state = RockingState::new(q_rad, 0.0, 0.0);
     let settings = Settings {
         end_s: request.end_s,
         relative_tolerance: request.relative_tolerance,
         max_transitions: MAX_TRANSITIONS,
     };
-    let mut tally = Tally::new(&rocking, mode, &state);
-    tally.sampler =
-        recorder.map(|recorder| Sampler::new(&rocking, request.output_step_s, recorder));
+    let every_s = request.output_step_s;
+    let energy = |swing: Swing<'_, C::Mechanism>| rocking.energy(swing.link, &state);
+    let mut tally = Tally {
+        rocking: &rocking,
+        sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
+        impacts: 0,
+        peaks: (vec![0.0; C::Mechanism::BODIES.len()], 0.0),
+        last_passage: None,
+        last_rest_s: None,
+        energy_without_work: mode.swing().map_or(0.0, energy),
+        largest_defect: 0.0,
+    };
+    tally.note_peak(mode, &state);
     let finish = simulate(&rocking, mode, state, &settings, &mut tally);
     let finish = finish.map_err(SimulationError::computation)?;
     let now = &finish.now;
@@ -146,7 +155,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         Phase::Rest if tally.last_rest_s.is_some() => Outcome::Rest,
         Phase::Rest => Outcome::NeverMoved,
     };
-    let (mut outcome_time_s, mut peaks) = (now.time_s, tally.peaks());
+    let (mut outcome_time_s, mut peaks) = (now.time_s, tally.peaks);
     match (now.mode, tally.last_passage, tally.last_rest_s) {
         (Phase::Overturned(_), Some(passage), _) => (outcome_time_s, peaks) = passage,
         (Phase::Rest, _, Some(time_s)) => outcome_time_s = time_s,
@@ -226,22 +235,15 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
     if ground.right_foot().is_some() {
         return Err(SimulationError::Feet);
     }
-    Ok(Rocking::new(
-        chain,
-        ground,
-        request.gravity_m_s2,
-        request.rest_energy_ratio,
-    ))
+    let (gravity_m_s2, rest_energy_ratio) = (request.gravity_m_s2, request.rest_energy_ratio);
+    Ok(Rocking::new(chain, ground, gravity_m_s2, rest_energy_ratio))
 }
 
 type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
 
 /// A mechanism that closes, and what follows.
 struct Closing<'a, C: MechanismChain> {
-    sway: Sway,
-    /// Impacts since the structure last left rest, this one included: index of the next link.
-    impacts: usize,
-    before: &'a Link<C::Mechanism>,
+    before: Swing<'a, C::Mechanism>,
     /// `None` if the impact stops the structure because no mechanism can follow.
     after: Option<&'a Link<C::Mechanism>>,
     /// Rate of `q` just before, negative.
@@ -253,23 +255,14 @@ struct Closing<'a, C: MechanismChain> {
 impl<'a, C: MechanismChain> Closing<'a, C> {
     /// `None` if the transition is of another kind.
     fn of(chain: &'a C, transition: &RockingTransition<'a, C>) -> Option<Self> {
-        let Phase::Rocking(Swing {
-            sway,
-            impacts,
-            link,
-        }) = transition.from
-        else {
+        let (Guard::Closing, Phase::Rocking(before)) = (transition.guard, transition.from) else {
             return None;
         };
-        if transition.guard != Guard::Closing {
-            return None;
-        }
-        let after = chain.link_from(sway.before(impacts), impacts + 1);
+        let impacts = before.impacts;
+        let after = chain.link_from(before.sway.before(impacts), impacts + 1);
         let rate_before_rad_s = transition.before[1].min(0.0);
         Some(Self {
-            sway,
-            impacts: impacts + 1,
-            before: link,
+            before,
             after,
             rate_before_rad_s,
             rate_after_rad_s: after.map_or(0.0, |link| -rate_before_rad_s * link.rate_ratio),
@@ -280,10 +273,9 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
     fn energies(&self) -> (f64, f64) {
         let kinetic =
             |link: &Link<C::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
-        let after = self
-            .after
-            .map_or(0.0, |link| kinetic(link, self.rate_after_rad_s));
-        (kinetic(self.before, self.rate_before_rad_s), after)
+        let after = |link| kinetic(link, self.rate_after_rad_s);
+        let before = kinetic(self.before.link, self.rate_before_rad_s);
+        (before, self.after.map_or(0.0, after))
     }
 
     fn impact(&self, chain: &C) -> Impact {
@@ -294,23 +286,21 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
                 .as_ref()
                 .to_vec()
         };
-        let sway_after = self.sway.opposite();
+        let (sway, impacts) = (self.before.sway, self.before.impacts);
+        let (link, sway_after) = (self.before.link, sway.opposite());
+        let after = self.after.unwrap_or(link);
         let unit_n_s = chain.mass_unit_kg() * chain.length_m() * self.rate_before_rad_s.abs();
-        let impulses = chain.hinge_impulses(self.impacts, sway_after);
+        let impulses = chain.hinge_impulses(impacts + 1, sway_after);
         Impact {
-            sway_before: self.sway,
+            sway_before: sway,
             restitution: self.after.map_or(0.0, |link| link.restitution),
             energy_before_j: energy_before * joule,
             energy_after_j: energy_after * joule,
             friction_j: None,
-            rates_before_rad_s: rates(self.before, self.sway, self.rate_before_rad_s),
-            rates_after_rad_s: rates(
-                self.after.unwrap_or(self.before),
-                sway_after,
-                self.rate_after_rad_s,
-            ),
-            closed: chain.hinges(self.impacts - 1, self.sway),
-            opened: chain.hinges(self.impacts, sway_after),
+            rates_before_rad_s: rates(link, sway, self.rate_before_rad_s),
+            rates_after_rad_s: rates(after, sway_after, self.rate_after_rad_s),
+            closed: chain.hinges(impacts, sway),
+            opened: chain.hinges(impacts + 1, sway_after),
             impulses_n_s: impulses.into_iter().map(|i| i * unit_n_s).collect(),
         }
     }
@@ -321,8 +311,8 @@ struct Tally<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
     sampler: Option<Sampler<'r, 'a, C>>,
     impacts: usize,
-    peak_rotations_rad: Rotations<C>,
-    peak_over_critical: f64,
+    /// The largest rotations of the bodies, and over the critical one.
+    peaks: (Vec<f64>, f64),
     /// When it last passed the unstable equilibrium outwards, and the peaks up to then.
     last_passage: Option<(f64, (Vec<f64>, f64))>,
     last_rest_s: Option<f64>,
@@ -331,47 +321,17 @@ struct Tally<'r, 'a, C: MechanismChain> {
     largest_defect: f64,
 }
 
-impl<'r, 'a, C: MechanismChain> Tally<'r, 'a, C> {
-    fn new(
-        rocking: &'r Rocking<'a, C>,
-        mode: Mode<'a, C::Mechanism>,
-        state: &RockingState,
-    ) -> Self {
-        let (none, _) = posture(rocking, Phase::Rest, state);
-        let mut tally = Self {
-            rocking,
-            sampler: None,
-            impacts: 0,
-            peak_rotations_rad: none,
-            peak_over_critical: 0.0,
-            last_passage: None,
-            last_rest_s: None,
-            energy_without_work: match mode {
-                Phase::Rocking(swing) => rocking.energy(swing.link, state),
-                Phase::Rest | Phase::Overturned(_) => 0.0,
-            },
-            largest_defect: 0.0,
-        };
-        tally.note_peak(mode, state);
-        tally
-    }
-
+impl<C: MechanismChain> Tally<'_, '_, C> {
     /// All rotations grow with `q`: the largest are at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {
             let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
-            let peaks = self.peak_rotations_rad.as_mut().iter_mut();
-            for (peak, rotation) in peaks.zip(rotations.as_ref()) {
+            let (peaks, over_critical) = &mut self.peaks;
+            for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
-            self.peak_over_critical = self.peak_over_critical.max(state[0] / link.critical_rad);
+            *over_critical = over_critical.max(state[0] / link.critical_rad);
         }
-    }
-
-    /// The largest rotations so far, and over the critical one.
-    fn peaks(&self) -> (Vec<f64>, f64) {
-        let peaks_rad = self.peak_rotations_rad.as_ref().to_vec();
-        (peaks_rad, self.peak_over_critical)
     }
 
     fn check_energy(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
@@ -403,7 +363,7 @@ impl<'r, 'a, C: MechanismChain> Tally<'r, 'a, C> {
                 (link.critical_rad - state[0], -state[1])
             });
             self.note_peak(mode, &rocking.between(step, passage_s));
-            self.last_passage = Some((passage_s, self.peaks()));
+            self.last_passage = Some((passage_s, self.peaks.clone()));
         }
     }
 }

@@ -4,7 +4,6 @@ use std::mem;
 
 use super::error::RowMotionError;
 use super::task::Task;
-use crate::dynamics::ground::Piece;
 use crate::dynamics::history::{
     Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Outcome, RowSummary, Sample, State,
     Stress, Summary, TieSummary,
@@ -90,11 +89,9 @@ pub struct Course<'a> {
     rising: bool,
     highest_s: f64,
     pub(super) recorder: Option<&'a mut dyn Recorder>,
-    /// The largest kinetic energies in the last two spans of time, the earlier one first, and when the later one began and how long it
-    /// lasts.
+    /// The largest kinetic energies in the last two spans of time, the earlier one first, and when the later one began.
     recent_j: [f64; 2],
     recent_from_s: f64,
-    recent_s: f64,
     /// True once the row certainly cannot overturn any more.
     is_safe: bool,
     /// Whether nobody follows it any further.
@@ -103,8 +100,6 @@ pub struct Course<'a> {
     pub(super) falls: bool,
     /// The sample, reused each time.
     pub(super) sample: Sample,
-    /// The motion of the ground from the last sample on.
-    pieces: &'a [Piece],
     phase: usize,
     /// Later events, while an impact is awaited.
     later: Option<Vec<Event>>,
@@ -157,7 +152,6 @@ impl<'a> Course<'a> {
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let Task { row, settings, .. } = task;
-        let joints = row.joints.len();
         let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m;
         let start_s = task.ground.start_s();
         Self {
@@ -169,8 +163,8 @@ impl<'a> Course<'a> {
             rocks: None,
             least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
             energy_unit,
-            shut: Vec::with_capacity(joints),
-            opened: Vec::with_capacity(joints),
+            shut: Vec::new(),
+            opened: Vec::new(),
             longest_step_s: settings.longest_step_s,
             task,
             summit: Summit::new(0.0, start_s),
@@ -189,12 +183,10 @@ impl<'a> Course<'a> {
             recorder,
             recent_j: [0.0; 2],
             recent_from_s: start_s,
-            recent_s: RECENT_RATIO * (row.size_m / task.gravity_m_s2).sqrt(),
             is_safe: false,
             stopped: false,
             falls: false,
             sample: Sample::default(),
-            pieces: &task.ground.pieces,
             phase: 0,
             later: None,
             thrust: ThrustRecord::default(),
@@ -358,7 +350,8 @@ impl<'a> Course<'a> {
         let of_row = &mut self.of_row;
         of_row.largest_potential_j = of_row.largest_potential_j.max(potential);
         of_row.largest_kinetic_j = of_row.largest_kinetic_j.max(kinetic);
-        if self.time - self.recent_from_s > self.recent_s {
+        let recent_s = RECENT_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt();
+        if self.time - self.recent_from_s > recent_s {
             self.recent_from_s = self.time;
             self.recent_j = [self.recent_j[1], 0.0];
         }
@@ -370,10 +363,8 @@ impl<'a> Course<'a> {
                 self.cycle = Some(HalfCycle {
                     sway: side,
                     start_s: self.time,
-                    duration_s: 0.0,
-                    peak_rad: 0.0,
                     peak_time_s: self.time,
-                    energy_ratio: None,
+                    ..HalfCycle::default()
                 });
             }
         }
@@ -529,18 +520,12 @@ impl<'a> Course<'a> {
     /// The sample to write to, complete except for blocks and joints, and whether it needs the line of thrust.
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::take(&mut self.sample);
-        while let [_, rest @ ..] = self.pieces
-            && rest.first().is_some_and(|next| next.start_s <= self.time)
-        {
-            self.pieces = rest;
-        }
-        let (ground_m_s2, _) = self.pieces[0].at(self.time);
+        let ground = self.task.ground;
+        let (ground_m_s2, _) = ground.pieces[ground.piece_at(self.time)].at(self.time);
         sample.begin(self.time, ground_m_s2, self.phase);
         let recorder = self.recorder.as_ref();
-        (
-            sample,
-            recorder.is_some_and(|recorder| recorder.wants_thrust_line()),
-        )
+        let thrust_line = recorder.is_some_and(|recorder| recorder.wants_thrust_line());
+        (sample, thrust_line)
     }
 
     /// Passes on a complete sample.

@@ -32,23 +32,12 @@ pub trait Stepper<'a>: Sized {
     /// The place at which a joint is pressed, or was last pressed, on the given edge.
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
     fn momentum(&self) -> Vector2<f64>;
-    /// Whether a joint slips.
-    fn slips(&self) -> bool {
-        false
-    }
     /// A joint as a hinge, if it is open.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         open_hinge(joint, self.gaps(joint))
     }
     /// Whether a row with these hinges and rotations stands.
-    fn stands(&self, sample: &Sample) -> bool {
-        let shut = sample.hinges.is_empty() && !self.slips();
-        shut || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
-    }
-    /// Whether a row with these rotations lies where it stood before it moved.
-    fn lies_where_it_stood(&self, rotations_rad: &[f64]) -> bool {
-        rotations_rad.iter().all(|angle| *angle == 0.0)
-    }
+    fn stands(&self, sample: &Sample) -> bool;
     /// Since when it stands still for good, once the ground is still.
     fn rests_since(&self) -> Option<f64>;
     /// When the row passed its last point of return, once it has overturned.
@@ -74,16 +63,11 @@ pub trait Stepper<'a>: Sized {
 
     /// Reports that all joints were shut before this time, with this energy, rotations and rates, and that some have opened
     /// since.
-    fn report_uplift(
-        &mut self,
-        time_s: f64,
-        energy_j: f64,
-        turns: impl FnOnce(&Self) -> (Vec<f64>, Vec<f64>),
-    ) {
+    fn report_uplift(&mut self, time_s: f64, energy_j: f64, turns: (Vec<f64>, Vec<f64>)) {
         if !self.course().is_followed() {
             return;
         }
-        let (rotations_rad, rates_rad_s) = turns(self);
+        let (rotations_rad, rates_rad_s) = turns;
         let event = Event {
             rotations_rad,
             rates_rad_s,
@@ -94,11 +78,11 @@ pub trait Stepper<'a>: Sized {
         self.course_mut().report(&event);
     }
 
-    /// Reports that corners have landed: whether the row moves on, the kinetic energy before and the part taken, and how much of
-    /// that friction took.
+    /// Reports that corners have landed: whether the row moves on, whether it lies where it stood before it moved, the kinetic energy before
+    /// and the part taken, and how much of that friction took.
     fn report_impact(
         &mut self,
-        moves: bool,
+        [moves, stood]: [bool; 2],
         [energy_before_j, taken_j]: [f64; 2],
         friction_j: Option<f64>,
     ) {
@@ -116,7 +100,6 @@ pub trait Stepper<'a>: Sized {
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let event = self.event(EventKind::Impact, moves);
         // A row that lands where it stood came from the other side.
-        let stood = self.lies_where_it_stood(&event.rotations_rad);
         let sway = if moves { self.heading() } else { Sway::Right };
         let restitution = energy_after_j / energy_before_j;
         let impact = Impact {
@@ -129,11 +112,10 @@ pub trait Stepper<'a>: Sized {
             energy_before_j,
             energy_after_j,
             friction_j,
-            rates_before_rad_s: Vec::new(),
             rates_after_rad_s: event.rates_rad_s.clone(),
             closed: course.shut.clone(),
             opened: course.opened.clone(),
-            impulses_n_s: Vec::new(),
+            ..Impact::default()
         };
         let event = Event {
             energy_j: energy_after_j + course.potential,

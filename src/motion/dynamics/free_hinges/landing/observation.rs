@@ -124,11 +124,8 @@ impl LandingStepper<'_> {
                 shut.push(Hinge::Joint { joint, edge });
             }
         }
-        let fastest = self
-            .program
-            .open_joints()
-            .flat_map(|(_, rates)| rates)
-            .fold(0.0, f64::max);
+        let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
+        let fastest = rates.fold(0.0, f64::max);
         for (joint, rates) in self.program.open_joints() {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
             let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
@@ -140,7 +137,8 @@ impl LandingStepper<'_> {
         let taken_j = self.course.of_row.energy_taken_j - taken_before;
         self.stands = self.course.opened.is_empty() && self.lies_at_rest();
         let before_j = kinetic(&self.pieces) + taken_j;
-        self.report_impact(!self.stands, [before_j, taken_j], None);
+        let lies = self.lies_at_rest();
+        self.report_impact([!self.stands, lies], [before_j, taken_j], None);
     }
 
     /// Reports the joints that opened in a step from the initial position; the step began at this time.
@@ -156,8 +154,8 @@ impl LandingStepper<'_> {
         self.stands = opened.is_empty() && !self.right_support_is_gone();
         if !self.stands {
             // Until then it stood still.
-            let blocks = self.row.blocks.len();
-            self.report_uplift(from_s, 0.0, |_| (vec![0.0; blocks], vec![0.0; blocks]));
+            let still = vec![0.0; self.row.blocks.len()];
+            self.report_uplift(from_s, 0.0, (still.clone(), still));
         }
     }
 }
@@ -265,10 +263,6 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let quiet = || self.course.is_quiet(self.course.quiet_since_s);
         let lies = self.lies_at_rest() || (self.may_end_on_hinges() && quiet());
         lies || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
-    }
-
-    fn lies_where_it_stood(&self, _: &[f64]) -> bool {
-        self.lies_at_rest()
     }
 
     fn rests_since(&self) -> Option<f64> {

@@ -39,10 +39,8 @@ impl SlidingStepper<'_> {
     pub(super) fn find_landing(&self, step: f64) -> Option<Landing> {
         let (before, after) = (&self.modes_before, &self.program.modes);
         let lands = |joint: usize| {
-            let (gaps, rates) = (
-                &self.contacts[joint].coordinates_m,
-                &self.rates_before[joint],
-            );
+            let gaps = &self.contacts[joint].coordinates_m;
+            let rates = &self.rates_before[joint];
             let least = APART_RATIO * self.faces[joint].thickness_m;
             [0, 1].map(|end| {
                 // A corner that reached its face just as the last step ended lands in this one.
@@ -150,6 +148,8 @@ impl SlidingStepper<'_> {
         self.course.shut = landing.shut;
         let sticks = |mode: &Mode| mode.along == Along::Stick;
         let moves = !(self.touches_as_it_stood() && self.program.modes.iter().all(sticks));
-        self.report_impact(moves, [landing.energy_before_j, total_j], Some(friction_j));
+        let stood = self.turns().all(|(rotation_rad, _)| rotation_rad == 0.0);
+        let energies_j = [landing.energy_before_j, total_j];
+        self.report_impact([moves, stood], energies_j, Some(friction_j));
     }
 }
