@@ -196,7 +196,7 @@ impl<'a> View<'a> {
     fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_masses: bool) {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.loads(self.hinges);
-        loads.sort_by(|a, b| a.1.at_m.x.total_cmp(&b.1.at_m.x));
+        loads.sort_by(|a, b| a.0.at_m.x.total_cmp(&b.0.at_m.x));
         for (mark, load) in loads {
             let foot = self.px(&mark);
             let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);

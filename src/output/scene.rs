@@ -8,7 +8,7 @@ use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::masonry::FillColumn;
+use crate::mechanics::masonry::{FillColumn, PlacedLoad};
 use crate::mechanics::parts::{Outline, Parts, Section};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Anchor, Tie};
@@ -29,23 +29,10 @@ pub struct Scene {
     ties: Vec<Tie>,
     /// The fill on blocks: blocks and outlines.
     pub fill_m: Vec<FillColumn>,
-    /// The masses on blocks.
-    pub loads: Vec<Load>,
+    /// The masses on blocks, each with its block and the place of its middle in the undeformed structure, in metres.
+    loads: Vec<((usize, Vector2<f64>), PlacedLoad)>,
     /// The dimensions of the structure.
     pub dimensions: Vec<Dimension>,
-}
-
-/// A mass on a block.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
-    /// Its block.
-    pub block: usize,
-    /// The place of its middle in the undeformed structure, in metres.
-    pub at_m: Vector2<f64>,
-    /// The mass in kg.
-    pub mass_kg: f64,
-    /// The width over which it is distributed, in metres; zero: a point.
-    pub width_m: f64,
 }
 
 /// The compressed part of a joint, from the intrados to the extrados.
@@ -140,15 +127,8 @@ impl Scene {
         self.dimensions = structure.dimensions();
         if let Some((carried, loads)) = structure.carries() {
             self.fill_m.clone_from(&carried.fill_m);
-            let loads = loads.iter().zip(&carried.loads_m);
-            self.loads = loads
-                .map(|(load, (block, at_m))| Load {
-                    block: *block,
-                    at_m: *at_m,
-                    mass_kg: load.mass_kg,
-                    width_m: load.width_m,
-                })
-                .collect();
+            let places_m = carried.loads_m.iter().copied();
+            self.loads = places_m.zip(loads.iter().copied()).collect();
         }
         self
     }
@@ -250,7 +230,7 @@ impl Scene {
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
         let (fill, loads) = (self.fill(&[]), self.loads.iter());
         let built = fill.iter().flat_map(|piece| piece.outline_m.clone());
-        let built = built.chain(loads.map(|load| load.at_m));
+        let built = built.chain(loads.map(|((_, at_m), _)| *at_m));
         let all = self.pieces(&[]).into_iter().chain(fill.clone());
         let there = all.flat_map(|piece| piece.moved(&self.stands.0, 1.0));
         widened(self.bounds_m(), built.chain(there))
@@ -268,10 +248,10 @@ impl Scene {
 
     /// The masses on the bodies when these hinges are open, each with the place of its middle.
     #[must_use]
-    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, Load)> {
-        let loads = self.loads.iter().map(|load| {
-            let (body, at_m) = (self.body_of(load.block, hinges), load.at_m);
-            (Mark { body, at_m }, *load)
+    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, &PlacedLoad)> {
+        let loads = self.loads.iter().map(|((block, at_m), load)| {
+            let (body, at_m) = (self.body_of(*block, hinges), *at_m);
+            (Mark { body, at_m }, load)
         });
         loads.collect()
     }
@@ -282,7 +262,7 @@ impl Scene {
         let lengths = self.dimensions.iter();
         let lengths = lengths.map(|dimension| dimension.words.clone());
         let loads = self.loads.iter();
-        let loads = loads.map(|load| format!("load {} kg", metres(load.mass_kg)));
+        let loads = loads.map(|(_, load)| format!("load {} kg", metres(load.mass_kg)));
         lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 

@@ -89,17 +89,12 @@ impl<'a> LinkImpact<'a> {
 
     /// This impact by the models that obey the momentum theorems, and by the model of the scenario.
     fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
-        let mut models = vec![
-            ImpactModel::MaxRestitution,
-            ImpactModel::SameSections,
-            ImpactModel::Mirrored,
-        ];
-        if !models.contains(&own) {
-            models.push(own);
-        }
+        use ImpactModel::{MaxRestitution, Mirrored, SameSections};
+        let known = [MaxRestitution, SameSections, Mirrored];
+        let own = Some(own).filter(|own| !known.contains(own));
         let (profile, sites) = (self.profile(), self.chain().sites);
+        let models = known.into_iter().chain(own);
         models
-            .into_iter()
             .map(|model| (model, impact_by(before, profile, sites, model)))
             .collect()
     }
@@ -161,7 +156,7 @@ pub fn four_links_answer(
         true => &[impact.first][..],
         false => Sway::ALL,
     };
-    let impacts = |side| chain_of_four_links(model, side, count);
+    let impacts = |first| chain_of_four_links(&LinkImpact { first, ..*impact }, count);
     let mut summary = Summary::new(scenario, model, (sides, count), impacts);
     summary.chosen = format!("impact {}{}", impact.index, impact.after_first());
     if let Some(before) = impact.before().map(|link| &link.mechanism) {

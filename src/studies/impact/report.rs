@@ -14,7 +14,6 @@ use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -208,8 +207,8 @@ pub struct OpenedJoint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Zone {
     edge: Edge,
-    from: f64,
-    to: f64,
+    /// Their first and last section.
+    ends: [f64; 2],
     /// Sum of their rotation rates.
     rate: f64,
     /// The last of these joints.
@@ -240,18 +239,10 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Chain
 }
 
 /// Those of four links, with their impulses.
-pub(super) fn chain_of_four_links(
-    model: &FourLinks,
-    first: Sway,
-    count: usize,
-) -> Vec<ChainImpact> {
-    let mut impacts = chain(model, first, count);
+pub(super) fn chain_of_four_links(one: &LinkImpact<'_>, count: usize) -> Vec<ChainImpact> {
+    let mut impacts = chain(one.model, one.first, count);
     for (index, impact) in (1..).zip(&mut impacts) {
-        let link = LinkImpact {
-            model,
-            first,
-            index,
-        };
+        let link = LinkImpact { index, ..*one };
         impact.impulses = Some(Impulses::of(&link, link.line()));
     }
     impacts
@@ -330,29 +321,22 @@ impl LineExtremes {
     }
 
     fn verdict(&self) -> String {
-        if self.admissible {
-            "admissible".to_owned()
-        } else if self.is_in_tension() {
-            "in tension".to_owned()
-        } else {
-            format!("leaves the {}", self.whole())
+        match (self.admissible, self.is_in_tension()) {
+            (true, _) => "admissible".to_owned(),
+            (false, true) => "in tension".to_owned(),
+            (false, false) => format!("leaves the {}", self.whole()),
         }
     }
 }
 
 impl ByModel {
     pub(super) fn of(impact: &LinkImpact<'_>, model: ImpactModel, found: Option<&Impact>) -> Self {
-        let sway = impact.sway();
+        let (sway, profile) = (impact.sway(), impact.profile());
         let found = found.map(|found| {
-            let hinges = found
-                .mechanism
-                .named_hinges_from_left(impact.profile(), sway);
+            let hinges = found.mechanism.named_hinges_from_left(profile, sway).into();
             ModelImpact {
                 restitution: found.restitution,
-                after: Stance {
-                    sway,
-                    hinges: hinges.to_vec(),
-                },
+                after: Stance { sway, hinges },
                 impulses: Impulses::of(impact, found.impulse_line.as_ref()),
             }
         });
@@ -379,28 +363,25 @@ impl Certificate {
         let mut zones: Vec<Zone> = Vec::new();
         for (joint, edge, rate) in projection.opened() {
             let section = from_left(joint);
-            let continues = |zone: &&mut Zone| {
-                impact.chain().sites == HingeSites::Anywhere
-                    && zone.edge == edge
-                    && zone.joint + 1 == joint
-            };
+            let is_ring = impact.chain().sites == HingeSites::Anywhere;
+            let continues =
+                |zone: &&mut Zone| is_ring && (zone.edge, zone.joint + 1) == (edge, joint);
             match zones.iter_mut().find(continues) {
                 Some(zone) => {
-                    zone.from = zone.from.min(section);
-                    zone.to = zone.to.max(section);
+                    let [from, to] = zone.ends;
+                    zone.ends = [from.min(section), to.max(section)];
                     zone.rate += rate;
                     zone.joint = joint;
                 }
                 None => zones.push(Zone {
                     edge,
-                    from: section,
-                    to: section,
+                    ends: [section; 2],
                     rate,
                     joint,
                 }),
             }
         }
-        zones.sort_by(|a, b| a.from.total_cmp(&b.from));
+        zones.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));
         let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
         let line = impact.line().map(|line| LineExtremes::of(impact, line));
         Self {
@@ -420,13 +401,12 @@ impl Certificate {
     /// The sections of a zone.
     fn sections(&self, zone: &Zone) -> String {
         let section = |section: f64| match self.is_row {
-            true => format!("{section}"),
+            true => section.to_string(),
             false => fixed(section.to_degrees(), 3),
         };
-        if zone.from == zone.to {
-            section(zone.from)
-        } else {
-            format!("{} to {}", section(zone.from), section(zone.to))
+        match zone.ends {
+            [from, to] if from == to => section(from),
+            [from, to] => format!("{} to {}", section(from), section(to)),
         }
     }
 }
@@ -533,15 +513,10 @@ pub(super) fn line_table(
     let at = |section: &f64| line.section_from_left(*section, sway);
     let columns = [
         column(
-            match profile.joint(0.0) {
-                Some(_) => "joint",
-                None => "angle_deg",
-            },
-            |section: &f64| match Place::of(profile, *section) {
-                Place {
-                    joint: Some(joint), ..
-                } => Cell::from(joint),
-                place => Cell::from(place.angle_deg),
+            profile.joint(0.0).map_or("angle_deg", |_| "joint"),
+            |section: &f64| {
+                let Place { joint, angle_deg } = Place::of(profile, *section);
+                joint.map_or_else(|| Cell::from(angle_deg), Cell::from)
             },
         ),
         column("eccentricity_ratio", |place| {

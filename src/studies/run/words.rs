@@ -54,21 +54,12 @@ impl VerdictLine<'_> {
     }
 
     fn other_verdicts(&self, repeated: &Repeatability) -> String {
-        self.others(repeated, |own, other| {
-            Verdict::from(own) != Verdict::from(other)
-        })
+        let verdict = |outcome: Outcome| Verdict::from(outcome);
+        self.others(repeated, |own, other| verdict(own) != verdict(other))
     }
 
     fn other_sides(&self, repeated: &Repeatability) -> String {
         self.others(repeated, |own, other| own != other)
-    }
-
-    fn no_verdict(&self) -> String {
-        caveats::no_verdict(self.0.scenario, self.0.history).unwrap_or_default()
-    }
-
-    fn four_links(&self) -> Option<String> {
-        caveats::four_links(self.0.scenario, self.0.history)
     }
 
     /// The conditions of the outcome: friction that stone may not have, and properties that change the ending.
@@ -163,17 +154,11 @@ impl<'a> Words<'a> {
     fn notable(&self) -> [Option<&'a (f64, Impact)>; 2] {
         let until_s = self.evidence.history.overturned_s();
         let until_s = until_s.unwrap_or(f64::INFINITY);
-        let before = || {
-            self.impacts
-                .0
-                .iter()
-                .filter(|(time_s, _)| *time_s <= until_s)
-        };
+        let Notable(impacts) = self.impacts;
+        let before = || impacts.iter().filter(|(time_s, _)| *time_s <= until_s);
         let hardest = before().next_back().filter(|_| before().count() > 1);
-        [
-            before().next(),
-            hardest.filter(|_| self.summary.row.is_some()),
-        ]
+        let hardest = hardest.filter(|_| self.summary.row.is_some());
+        [before().next(), hardest]
     }
 
     /// The part of the energy that an impact keeps. It is printed as 1.0000 only if the impact takes no energy.

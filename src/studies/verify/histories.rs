@@ -204,36 +204,28 @@ pub(super) fn histories(
             ..history_side(&peaks, [capacity_m, d0_m], basis.settings.confidence_factor)
         }
     });
-    let periods_s = sides
-        .values()
-        .filter_map(|side| Some(side.displacement?.period_s));
-    let periods_s = [FROM_S, periods_s.fold(2.0 * FROM_S, f64::max)];
-    let samples = series
-        .iter()
-        .map(|series| series.accelerations_m_s2(gravity_m_s2));
-    let ratios = spectrum_ratios(
-        &samples.collect::<Vec<_>>(),
-        spectrum,
-        periods_s,
-        gravity_m_s2,
-    );
+    let reached = sides.values().filter_map(|side| side.displacement);
+    let to_s = reached.map(|reached| reached.period_s);
+    let [from_s, to_s] = [FROM_S, to_s.fold(2.0 * FROM_S, f64::max)];
+    let samples = series.iter();
+    let samples = samples.map(|series| series.accelerations_m_s2(gravity_m_s2));
+    let samples: Vec<_> = samples.collect();
+    let ratios = spectrum_ratios(&samples, spectrum, [from_s, to_s], gravity_m_s2);
     let [least, largest] = SPECTRUM_MARGIN;
-    let is_mean = records.len() >= FOR_THE_MEAN;
     let is_incomplete =
         |one: &&RecordPeaks| one.peaks.right.incomplete || one.peaks.left.incomplete;
     Ok(Some(Histories {
-        demand: if is_mean {
-            Counted::Mean
-        } else {
-            Counted::Largest
+        demand: match records.len() >= FOR_THE_MEAN {
+            true => Counted::Mean,
+            false => Counted::Largest,
         },
         passed: both_pass(&results, |side| side.passed),
         passed_over_fc: both_pass(&results, |side| side.passed_over_fc),
         incomplete: records.iter().filter(is_incomplete).count(),
         records,
         mean_spectrum: MeanSpectrum {
-            from_s: periods_s[0],
-            to_s: periods_s[1],
+            from_s,
+            to_s,
             least_ratio: ratios.map(|ratios| ratios[0]),
             largest_ratio: ratios.map(|ratios| ratios[1]),
             fits: ratios.map(|ratios| ratios[0] >= least && ratios[1] <= largest),
@@ -303,7 +295,7 @@ fn history_side(
         });
         interval(means.collect())
     });
-    let [as_is, over_fc] = [1.0, confidence_factor].map(|divisor| {
+    let [(beyond, passed), (beyond_fc, passed_fc)] = [1.0, confidence_factor].map(|divisor| {
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
         let exceeded = peaks.iter().filter(exceeds).count();
         let passes = !overturned && exceeded == 0 && least_m <= capacity_m / divisor;
@@ -317,10 +309,10 @@ fn history_side(
         capacity_m,
         capacity_over_fc_m: capacity_m / confidence_factor,
         d0_m,
-        records_beyond_d0: as_is.0,
-        records_beyond_d0_over_fc: over_fc.0,
-        passed: as_is.1,
-        passed_over_fc: over_fc.1,
+        records_beyond_d0: beyond,
+        records_beyond_d0_over_fc: beyond_fc,
+        passed,
+        passed_over_fc: passed_fc,
         overturned,
     }
 }
@@ -335,35 +327,27 @@ fn peaks(
     let history = model.history(ground, request)?;
     // The chain of mechanisms is the one that begins with the side of the latest uplift.
     let mut first = Sway::Right;
-    let links: Vec<Option<(Sway, usize)>> = history
-        .events
-        .iter()
-        .map(|event| {
-            if event.kind == EventKind::Uplift {
-                first = event.state.sway().unwrap_or(first);
-            }
-            Some((first, event.mechanism?))
-        })
-        .collect();
+    let links = history.events.iter().map(|event| {
+        if event.kind == EventKind::Uplift {
+            first = event.state.sway().unwrap_or(first);
+        }
+        Some((first, event.mechanism?))
+    });
+    let links: Vec<Option<(Sway, usize)>> = links.collect();
     let mut peaks = Sides::<Peak>::default();
     for sample in history.samples.iter() {
         let State::Rocking(sway) = sample.state else {
             continue;
         };
-        let link = sample
-            .phase
-            .checked_sub(1)
-            .and_then(|event| *links.get(event)?);
-        let carrier = match sway {
-            Sway::Right => sample.rotations_rad.first(),
-            Sway::Left => sample.rotations_rad.last(),
+        let shift = || {
+            let (first, impacts) = (*links.get(sample.phase.checked_sub(1)?)?)?;
+            let rotation_rad = match sway {
+                Sway::Right => sample.rotations_rad.first()?,
+                Sway::Left => sample.rotations_rad.last()?,
+            };
+            model.shift_kg_m(first, impacts, rotation_rad.abs())
         };
-        let shift = link
-            .zip(carrier)
-            .and_then(|((first, impacts), rotation_rad)| {
-                model.shift_kg_m(first, impacts, rotation_rad.abs())
-            });
-        let displacement_m = shift.unwrap_or_default() / participating_kg.to(sway);
+        let displacement_m = shift().unwrap_or_default() / participating_kg.to(sway);
         let peak = peaks.to_mut(sway);
         peak.displacement_m = peak.displacement_m.max(displacement_m);
     }

@@ -210,25 +210,38 @@ impl Method {
     }
 }
 
-impl ByDisplacement {
-    /// The method whose result counts.
-    const fn method(&self) -> Method {
-        if self.activation_governs {
-            Method::Activation
-        } else {
-            Method::Displacement
-        }
-    }
-}
+/// A result of a method, with the capacity and the demand that it compares, in a unit.
+type Compared = (Method, Margin, Option<([f64; 2], &'static str)>);
 
 impl SideCheck {
-    /// The check that governs: by displacements, if there is a curve, or the activation if it is later.
+    /// The results, the one that governs first: by displacements, if there is a curve, or the activation if it is later.
+    fn results(&self) -> impl Iterator<Item = Compared> {
+        let displacement = self.displacement.map(|one| {
+            let start = one.activation_ag_g.zip(one.margin.ag_g);
+            let compared = match start {
+                Some((start_g, ag_g)) => ([start_g, ag_g], "g"),
+                None => ([one.capacity_m, one.demand_m], "m"),
+            };
+            let method = match one.activation_governs {
+                true => Method::Activation,
+                false => Method::Displacement,
+            };
+            (method, one.margin, Some(compared))
+        });
+        let simplified = self.simplified;
+        let simplified = simplified.map(|one| (Method::Simplified, one.margin, None));
+        let activation = self.activation.map(|one| {
+            let compared = ([one.capacity_g, one.demand_g], "g");
+            (Method::Activation, one.margin, Some(compared))
+        });
+        [displacement, simplified, activation].into_iter().flatten()
+    }
+
+    /// The check that governs.
     #[must_use]
     pub fn governing(&self) -> Option<(Method, Margin)> {
-        let displacement = self.displacement.map(|one| (one.method(), one.margin));
-        let simplified = self.simplified.map(|one| (Method::Simplified, one.margin));
-        let activation = self.activation.map(|one| (Method::Activation, one.margin));
-        displacement.or(simplified).or(activation)
+        let (method, margin, _) = self.results().next()?;
+        Some((method, margin))
     }
 }
 

@@ -120,37 +120,27 @@ pub(super) fn capacity(
     mechanism: &Mechanism,
 ) -> Option<String> {
     let (curve, end_m) = (mechanism.curve_m_g.as_ref()?, mechanism.d0_m?);
-    let curve = curve
-        .iter()
-        .map(|[d_m, a_g]| (*d_m, a_g / check.confidence_factor));
-    let curve: Vec<(f64, f64)> = curve.collect();
+    let divided = |[d_m, a_g]: &[f64; 2]| (*d_m, a_g / check.confidence_factor);
+    let curve: Vec<(f64, f64)> = curve.iter().map(divided).collect();
     let sides = check.states.iter().filter_map(|(state, one)| {
         let side = one.sides.get(&sway)?;
         Some(((state, one), side.displacement?, one.rule?))
     });
     let sides: Vec<_> = sides.zip(&CURVES[1..]).collect();
-    let farthest_m = sides.iter().map(|((_, side, _), _)| 1.15 * side.demand_m);
-    let farthest_m = farthest_m.fold(1.05 * end_m, f64::max);
-    let highest_g = sides
-        .iter()
-        .map(|((_, side, _), _)| 1.3 * side.demand_acceleration_g);
-    let highest_g = highest_g.fold(1.6 * curve[0].1, f64::max);
-    let x = Scale::around([0.0, farthest_m], figure.ticks(8));
-    let y = Scale::around([0.0, highest_g], 5);
+    let demands = || sides.iter().map(|((_, side, _), _)| side);
+    let farthest_m = demands().map(|side| 1.15 * side.demand_m);
+    let x = farthest_m.chain([0.0, 1.05 * end_m]);
+    let highest_g = demands().map(|side| 1.3 * side.demand_acceleration_g);
+    let y = highest_g.chain([0.0, 1.6 * curve[0].1]);
+    let (x, y) = (Scale::around(x, figure.ticks(8)), Scale::around(y, 5));
     let mut keys = vec![Key::line("capacity, a/FC", CURVES[0])];
     let (mut below, mut above) = (Vec::new(), Vec::new());
     for (((state, one), side, rule), stroke) in &sides {
-        let name = state.name().to_uppercase();
-        keys.push(Key::line(
-            format!("{name}, {} %", rule.damping_percent),
-            **stroke,
-        ));
+        let (name, percent) = (state.name().to_uppercase(), rule.damping_percent);
+        keys.push(Key::line(format!("{name}, {percent} %"), **stroke));
         let points = (1..=600).filter_map(|step| {
             let period_s = 0.01 * f64::from(step);
-            let acceleration_g = one
-                .demand
-                .acceleration_g(period_s, rule.damping_percent)
-                .ok()?;
+            let acceleration_g = one.demand.acceleration_g(period_s, percent).ok()?;
             let circular = period_s / (2.0 * PI);
             let own_m = acceleration_g * check.gravity_m_s2 * circular * circular;
             Some((own_m, acceleration_g))
@@ -176,14 +166,14 @@ pub(super) fn capacity(
     }
     below.push(Mark::curve("capacity", CURVES[0], curve));
     below.extend(above);
-    let axes = [
+    let (x, y) = (
         ("spectral displacement (m)", x),
         ("spectral acceleration (g)", y),
-    ];
+    );
     let chart = Chart {
         keys,
         marks: vec![Mark::clipped(below)],
-        ..Chart::new(400.0, axes[0], axes[1])
+        ..Chart::new(400.0, x, y)
     };
     Some(chart.draw(figure, ""))
 }

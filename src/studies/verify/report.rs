@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{
-    Decision, FRICTION, Histories, Mechanism, Method, PlacedHinge, SideCheck, Spectrum, StateCheck,
-    Summary, Verdict, alike, picture,
+    Decision, FRICTION, Histories, Mechanism, Method, PlacedHinge, Spectrum, StateCheck, Summary,
+    Verdict, alike, picture,
 };
 use crate::dynamics::demand::damping_factor;
 use crate::mechanics::chain::Hinge;
@@ -124,42 +124,11 @@ struct Drawn<'a> {
     curve: Option<String>,
 }
 
-/// A row of the table of results: a method with the values that it compares.
-struct Row {
-    method: Method,
-    margin: super::Margin,
-    compared: Option<([f64; 2], &'static str)>,
-}
-
-impl SideCheck {
-    fn rows(&self) -> impl Iterator<Item = Row> {
-        let activation = self.activation.map(|one| Row {
-            method: Method::Activation,
-            margin: one.margin,
-            compared: Some(([one.capacity_g, one.demand_g], "g")),
-        });
-        let displacement = self.displacement.map(|one| Row {
-            method: one.method(),
-            margin: one.margin,
-            compared: Some(match one.activation_ag_g.zip(one.margin.ag_g) {
-                Some((start_g, ag_g)) => ([start_g, ag_g], "g"),
-                None => ([one.capacity_m, one.demand_m], "m"),
-            }),
-        });
-        let simplified = self.simplified.map(|one| Row {
-            method: Method::Simplified,
-            margin: one.margin,
-            compared: None,
-        });
-        [activation, displacement, simplified].into_iter().flatten()
-    }
-}
-
 impl StateCheck {
-    /// Whether a row of a side is in bold.
-    fn counts(&self, sway: &Sway, row: &Row) -> bool {
+    /// Whether the result of a method to a side is in bold.
+    fn counts(&self, sway: &Sway, method: &Method) -> bool {
         let side = self.side.map_or("", super::GoverningSide::name);
-        self.method == Some(row.method) && ["either", sway.name()].contains(&side)
+        self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
     }
 
     /// Dampings that are probably fractions instead of per cent, with their owners.
