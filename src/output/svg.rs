@@ -58,15 +58,16 @@ impl Stroke {
     }
 }
 
-/// Alignment of a text to its point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Anchor {
-    /// It begins at the point.
-    Start,
-    /// Its middle is at the point.
-    Middle,
-    /// It ends at the point.
-    End,
+named! {
+    /// Alignment of a text to its point.
+    pub enum Anchor {
+        /// It begins at the point.
+        Start = "start",
+        /// Its middle is at the point.
+        Middle = "middle",
+        /// It ends at the point.
+        End = "end",
+    }
 }
 
 /// A rectangle in pixels, y downwards.
@@ -175,12 +176,8 @@ impl Drawing {
 
     /// A path in SVG's own notation.
     pub fn path(&mut self, name: &str, path: &str, fill: &str, stroke: Stroke) {
-        let name = name_attribute(name);
-        let dash = if stroke.dash.is_empty() {
-            String::new()
-        } else {
-            format!(" stroke-dasharray=\"{}\"", stroke.dash)
-        };
+        let name = attribute("data-name", name);
+        let dash = attribute("stroke-dasharray", stroke.dash);
         let _ = writeln!(
             self.0,
             "<path{name} d=\"{path}\" fill=\"{fill}\" stroke=\"{}\" stroke-width=\"{}\"{dash} \
@@ -200,7 +197,7 @@ impl Drawing {
             self.0,
             "<circle{} cx=\"{:.3}\" cy=\"{:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
              stroke=\"{}\" stroke-width=\"{}\"/>",
-            name_attribute(name),
+            attribute("data-name", name),
             center.x,
             center.y,
             stroke.color,
@@ -214,7 +211,7 @@ impl Drawing {
             self.0,
             "<rect{} x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
              fill=\"{fill}\" fill-opacity=\"{opacity}\"/>",
-            name_attribute(name),
+            attribute("data-name", name),
             frame.left,
             frame.top,
             frame.width,
@@ -242,28 +239,18 @@ impl Drawing {
         turn_deg: f64,
         text: impl Into<Text>,
     ) {
-        let text = text.into();
-        let anchor = match anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
-        };
-        let turn = if turn_deg == 0.0 {
-            String::new()
-        } else {
-            format!(
-                " transform=\"rotate({} {:.2} {:.2})\"",
-                -turn_deg, at.x, at.y
-            )
-        };
+        let (text, anchor) = (text.into(), anchor.name());
+        let mut turn = String::new();
+        if turn_deg != 0.0 {
+            turn = format!("rotate({} {:.2} {:.2})", -turn_deg, at.x, at.y);
+        }
+        let turn = attribute("transform", &turn);
         // A font that is not as wide as Helvetica is fitted to the measured width.
-        let long = match text.is_measured() {
-            true => format!(
-                " textLength=\"{:.2}\" lengthAdjust=\"spacingAndGlyphs\"",
-                text.px()
-            ),
-            false => String::new(),
-        };
+        let mut long = String::new();
+        if text.is_measured() {
+            let px = text.px();
+            long = format!(" textLength=\"{px:.2}\" lengthAdjust=\"spacingAndGlyphs\"");
+        }
         let _ = writeln!(
             self.0,
             "<text x=\"{:.2}\" y=\"{:.2}\" text-anchor=\"{anchor}\"{turn}{long}>{}</text>",
@@ -284,12 +271,11 @@ impl Drawing {
     }
 }
 
-/// The attribute that names a mark for a result; empty for other marks.
-fn name_attribute(name: &str) -> String {
-    if name.is_empty() {
-        String::new()
-    } else {
-        format!(" data-name=\"{}\"", escaped(name))
+/// An attribute; nothing without value.
+fn attribute(name: &str, value: &str) -> String {
+    match value {
+        "" => String::new(),
+        value => format!(" {name}=\"{}\"", escaped(value)),
     }
 }
 

@@ -54,15 +54,16 @@ pub fn capacity(
     let structure = scenario.structure().as_parts();
     let control = control(structure, point_m)?;
     let side = |sway| {
-        let carried = carrying(&*model, sway);
-        let masses = carried_masses(structure, &carried);
-        let (place, at_m) = control;
+        let bodies = Bodies::of_model(&*model, sway);
         let displaced = |part| {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
         let gravity_m_s2 = scenario.gravity_m_s2();
-        let control = Control::point(carried(place, at_m));
+        let (masses, control) = (
+            bodies.masses(structure),
+            Control::point(bodies.carry(control)),
+        );
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2).map_err(NoCapacity::from)
     };
     Sides::try_of(side)
@@ -87,12 +88,11 @@ fn of_row(
     point_m: Option<Vector2<f64>>,
     gravity_m_s2: f64,
 ) -> Result<Sides<Capacity>, NoCapacity> {
-    let (place, at_m) = control(row, point_m)?;
+    let control = control(row, point_m)?;
     let side = |sway| -> Result<Capacity, NoCapacity> {
         let held = Held::new(row, sway)?;
-        let carried = carried_by_held(&held);
-        let masses = carried_masses(row, &carried);
-        let control = Control::point(carried(place, at_m));
+        let bodies = Bodies::of_row(&held);
+        let (masses, control) = (bodies.masses(row), Control::point(bodies.carry(control)));
         let displaced = |part| held.displaced(part);
         let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
         Ok(capacity.with_ties(&held.ties_give_way(), displaced, gravity_m_s2))
@@ -114,66 +114,49 @@ fn control(
     }
 }
 
-/// The parts of a structure as points, each with its mass.
-fn carried_masses(
-    structure: &dyn Parts,
-    carried: impl Fn(f64, Vector2<f64>) -> Carried,
-) -> Vec<(f64, Carried)> {
-    let parts = structure.parts().into_iter();
-    parts
-        .map(|part| (part.mass_kg, carried(part.place, part.centre_m)))
-        .collect()
+/// The bodies of a mechanism, separated by hinges at places along the structure.
+pub(super) struct Bodies {
+    hinges: Vec<f64>,
+    count: usize,
 }
 
-/// The crown as a point of the first mechanism to a side.
-pub(super) fn crown_of(structure: &dyn Parts, model: &dyn MechanismModel, sway: Sway) -> Carried {
-    let (place, at_m) = structure.crown();
-    carrying(model, sway)(place, at_m)
-}
+impl Bodies {
+    /// Those of the first mechanism to a side.
+    pub(super) fn of_model(model: &dyn MechanismModel, sway: Sway) -> Self {
+        let hinges = model.hinges_after(0, sway).into_iter();
+        let hinges = hinges.map(|hinge| match hinge {
+            Hinge::Section { angle_rad, .. } => angle_rad,
+            Hinge::Joint { joint, .. } => joint as f64,
+            Hinge::Toe(_) => 0.0,
+        });
+        Self {
+            hinges: hinges.collect(),
+            count: model.bodies().len(),
+        }
+    }
 
-/// The body that carries a point in the first mechanism to a side; the point is given with its place along the structure.
-fn carrying(
-    model: &dyn MechanismModel,
-    sway: Sway,
-) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
-    let hinges = model.hinges_after(0, sway);
-    carried_by(
-        hinges.iter().map(place_of_hinge).collect(),
-        model.bodies().len(),
-    )
-}
+    /// Those of the first mechanism of a row.
+    pub(super) fn of_row(held: &Held<'_>) -> Self {
+        let hinges = held.pins.hinges.iter().map(|hinge| hinge.joint as f64);
+        Self {
+            hinges: hinges.collect(),
+            count: held.bodies(),
+        }
+    }
 
-/// The crown of a row as a point of its first mechanism.
-pub(super) fn crown_of_row(row: &Row, held: &Held<'_>) -> Carried {
-    let (place, at_m) = row.crown();
-    carried_by_held(held)(place, at_m)
-}
-
-/// Assigns points of a row to the bodies of its first mechanism.
-fn carried_by_held(held: &Held<'_>) -> impl Fn(f64, Vector2<f64>) -> Carried + use<> {
-    let hinges = held.pins.hinges.iter();
-    let places = hinges.map(|hinge| place_of_joint(hinge.joint));
-    carried_by(places.collect(), held.bodies())
-}
-
-/// Assigns points to bodies that are separated by hinges at these places.
-fn carried_by(hinges: Vec<f64>, bodies: usize) -> impl Fn(f64, Vector2<f64>) -> Carried {
-    move |place, at_m| {
-        let before = hinges.iter().filter(|hinge| **hinge < place).count();
-        let body = before.checked_sub(1).filter(|body| *body < bodies);
+    /// The body that carries a point; the point is given with its place along the structure.
+    pub(super) fn carry(&self, (place, at_m): (f64, Vector2<f64>)) -> Carried {
+        let before = self.hinges.iter().filter(|hinge| **hinge < place).count();
+        let body = before.checked_sub(1).filter(|body| *body < self.count);
         Carried { at_m, body }
     }
-}
 
-/// The place of a hinge along the structure: an angle, or the number of a joint.
-fn place_of_hinge(hinge: &Hinge) -> f64 {
-    match hinge {
-        Hinge::Section { angle_rad, .. } => *angle_rad,
-        Hinge::Joint { joint, .. } => place_of_joint(*joint),
-        Hinge::Toe(_) => 0.0,
+    /// The parts of a structure as points, each with its mass.
+    fn masses(&self, structure: &dyn Parts) -> Vec<(f64, Carried)> {
+        let parts = structure.parts().into_iter();
+        let points = parts.map(|part| (part.mass_kg, (part.place, part.centre_m)));
+        points
+            .map(|(mass_kg, at)| (mass_kg, self.carry(at)))
+            .collect()
     }
-}
-
-const fn place_of_joint(joint: usize) -> f64 {
-    joint as f64
 }

@@ -58,7 +58,6 @@ pub struct Report {
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
-    leaves: bool,
 }
 
 impl Report {
@@ -80,7 +79,6 @@ impl Report {
             energy: Envelope::of_columns(CURVE_COLUMNS),
             in_barriers: false,
             excess_ratio: Envelope::of_columns(CURVE_COLUMNS),
-            leaves: false,
         }
     }
 
@@ -91,10 +89,8 @@ impl Report {
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
-        let excess_ratio = sample.demand.excess_ratio;
-        self.leaves |= excess_ratio > 0.0;
-        self.excess_ratio
-            .push(time_s, excess_ratio.min(LARGEST_EXCESS));
+        let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
+        self.excess_ratio.push(time_s, excess_ratio);
     }
 
     /// Takes a sample of the fall after the structure has overturned.
@@ -201,7 +197,8 @@ impl Report {
             true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
             false => "Energy (J)".to_owned(),
         };
-        let excess = self.leaves.then(|| curve(self.excess_ratio.points()));
+        let leaves = self.excess_ratio.points().any(|(_, ratio)| ratio > 0.0);
+        let excess = leaves.then(|| curve(self.excess_ratio.points()));
         let end_s = frames[..fall_from]
             .last()
             .map_or(ground.start_s(), |frame| frame.time_s);

@@ -13,6 +13,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::parts::Parts as _;
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
@@ -20,7 +21,7 @@ use crate::mechanics::virtual_work::{
     MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
 use crate::scenario::{CheckedSides, Structure};
-use crate::studies::capacity;
+use crate::studies::capacity::Bodies;
 
 /// A hinge with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -168,7 +169,7 @@ impl Way {
         gravity_m_s2: f64,
     ) -> Result<Self, String> {
         let held = Held::new(row, sway).map_err(|error| error.to_string())?;
-        let crown = capacity::crown_of_row(row, &held);
+        let crown = Bodies::of_row(&held).carry(row.crown());
         let displaced = |part| held.displaced(part);
         Self::new(sway, displaced, bodies, crown, gravity_m_s2).map_err(|error| error.to_string())
     }
@@ -278,7 +279,7 @@ impl Found {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
-        let crown = capacity::crown_of(structure.as_parts(), model, sway);
+        let crown = Bodies::of_model(model, sway).carry(structure.as_parts().crown());
         let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
