@@ -26,10 +26,10 @@ const TABLE: &[&str] = &["elastic_joints"];
 const STIFFEST_GPA_M: f64 = 1000.0;
 
 const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
-const POINTS: Count = Count {
-    range: ElasticProperties::CONTACT_POINTS,
-    why: "one does not hold a block",
-};
+const POINTS: Count = Count(
+    ElasticProperties::CONTACT_POINTS,
+    "one does not hold a block",
+);
 
 /// A range in another unit.
 const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
@@ -85,7 +85,7 @@ impl ElasticTable {
             longest_step_s: table.optional("longest_step_s", &within(&ElasticOptions::STEP_S)),
             supports: Movements::default(),
         };
-        table.optional("contact", &one_of(&["continuous"], |name| name));
+        table.optional("contact", &Named(&["continuous"], |name| name));
         table.relate(RELATIONS)?;
         Ok(read)
     }

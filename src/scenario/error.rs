@@ -1,12 +1,15 @@
 //! Errors of scenarios, with their places.
 
-use std::fmt;
+use thiserror::Error;
 
 use super::assignment::Assignment;
 use super::shown;
 
 /// An error of a scenario.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Displayed as `file:line:column: message`, the form that editors follow.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}:{} {message}", shown(file), before(place.as_ref()))]
 pub struct ScenarioError {
     /// Name of the file, as the caller gave it, or the assignment after `--set`.
     pub file: String,
@@ -25,23 +28,18 @@ pub struct Place {
     pub column: usize,
 }
 
-impl fmt::Display for ScenarioError {
-    /// `file:line:column: message`, the form that editors follow.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:", shown(&self.file))?;
-        if let Some(Place { line, column }) = self.place {
-            write!(f, "{line}:{column}:")?;
-        }
-        write!(f, " {}", self.message)
-    }
+/// The place before a message.
+fn before(place: Option<&Place>) -> String {
+    place.map_or_else(String::new, |place| {
+        format!("{}:{}:", place.line, place.column)
+    })
 }
-
-impl std::error::Error for ScenarioError {}
 
 /// All errors of a scenario, at least one, in the order of the file.
 ///
 /// Displayed with one error per line.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{}", lines(.0))]
 pub struct ScenarioErrors(Vec<ScenarioError>);
 
 impl ScenarioErrors {
@@ -107,14 +105,11 @@ impl ScenarioErrors {
     }
 }
 
-impl fmt::Display for ScenarioErrors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let errors: Vec<_> = self.0.iter().map(ToString::to_string).collect();
-        f.write_str(&errors.join("\n"))
-    }
+/// The errors, one per line.
+fn lines(errors: &[ScenarioError]) -> String {
+    let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
+    lines.join("\n")
 }
-
-impl std::error::Error for ScenarioErrors {}
 
 /// An error with its byte offset in a text of the document.
 #[derive(Debug)]

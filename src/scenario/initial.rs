@@ -17,24 +17,20 @@ pub(super) fn read(
     structure: Option<&Structure>,
     hinges: Hinges,
 ) -> Reading<Initial> {
-    if !hinges.model().is_rigid {
-        return Err(table.wrong_itself(
-            "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
-             [initial] out",
-        ));
-    }
+    let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
+                 [initial] out";
+    table.refuse_all(!hinges.model().is_rigid, wrong)?;
     let initial = Initial {
-        sway: table.required("sway", &one_of(Sway::ALL, Sway::name)),
+        sway: table.required("sway", &Named(Sway::ALL, Sway::name)),
         rotation_rad: table.required("rotation_rad", &ROTATION_RAD),
     };
     table.sound()?;
     if let Some(structure) = structure {
-        let Some(limit_rad) = structure.release_limit_rad() else {
-            return Err(table.wrong_itself(
-                "releases from the first mechanism of four links, and this arch does not start as one; leave \
-                 [initial] out",
-            ));
-        };
+        let limit_rad = structure.release_limit_rad();
+        let wrong = "releases from the first mechanism of four links, and this arch does not start as one; leave \
+                     [initial] out";
+        table.refuse_all(limit_rad.is_none(), wrong)?;
+        let limit_rad = limit_rad.unwrap_or(f64::INFINITY);
         let wrong = format!(
             "is beyond the limit position of the mechanism; must be below {}",
             short(rounded_down(limit_rad))

@@ -133,11 +133,8 @@ impl Map {
         let wrong = "cannot be combined with `duration_s`, its inverse; give one of them";
         table.refuse(are_inverse, "frequency_hz", wrong)?;
         let cells = x.sequence.values().len() * y.sequence.values().len();
-        if cells > MAX_CELLS {
-            return Err(table.wrong_itself(format!(
-                "has {cells} cells; at most {MAX_CELLS} are allowed"
-            )));
-        }
+        let wrong = format!("has {cells} cells; at most {MAX_CELLS} are allowed");
+        table.refuse_all(cells > MAX_CELLS, wrong)?;
         Ok(Self { x, y, repeat })
     }
 

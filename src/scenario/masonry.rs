@@ -26,10 +26,7 @@ use crate::mechanics::masonry::{
 };
 use crate::mechanics::stability::falls;
 
-const PIER_BLOCKS: Count = Count {
-    range: 1..=MAX_BLOCKS,
-    why: "a pier of one piece",
-};
+const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 
 /// The shapes that have tables of their own.
 pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_arch", "blocks"];
@@ -68,7 +65,7 @@ fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
 fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
     let joints_file = table.required("joints", &TEXT);
     let outlines_file = table.optional("outlines", &TEXT);
-    let kinds = one_of(Supports::ALL, Supports::name);
+    let kinds = Named(Supports::ALL, Supports::name);
     let supports = table.or("supports", &kinds, Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let densities = OneOrMore(&MAGNITUDE);

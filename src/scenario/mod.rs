@@ -576,9 +576,8 @@ impl Scenario {
     #[must_use]
     pub fn to_json(&self) -> Value {
         let mut table = self.resolved();
-        if !self.as_given.contains_key("arch")
-            && let Some(arch) = table.get_mut("arch")
-        {
+        let arch = table.get_mut("arch");
+        if let Some(arch) = arch.filter(|_| !self.as_given.contains_key("arch")) {
             Circular::put_given(arch, &self.given_shape);
         }
         table
@@ -606,29 +605,23 @@ impl Scenario {
             ("uncertain", json!(self.uncertain)),
         ];
         // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
-        let place = if self.motion.hinges().has_joints() {
-            1
-        } else {
-            3
-        };
+        let has_joints = self.motion.hinges().has_joints();
+        let place = if has_joints { 1 } else { 3 };
         tables.insert(place, (self.motion.table_name(), self.motion.table()));
-        let tables = tables
-            .into_iter()
-            .map(|(key, table)| (key.to_owned(), table));
-        let title = ("title".to_owned(), json!(self.title));
-        let structure = json!(self.structure)
-            .as_object()
-            .cloned()
-            .into_iter()
-            .flatten();
-        let all = [title].into_iter().chain(structure).chain(tables);
-        given(
-            all.map(|(key, value)| match self.as_given.get(&key) {
-                Some(given) if !value.is_null() => (key, given.clone()),
-                _ => (key, value),
-            })
-            .collect(),
-        )
+        let structure = json!(self.structure);
+        let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
+        all.extend(structure.as_object().cloned().unwrap_or_default());
+        all.extend(
+            tables
+                .into_iter()
+                .map(|(key, table)| (key.to_owned(), table)),
+        );
+        for (key, table) in all.iter_mut().filter(|(_, table)| !table.is_null()) {
+            if let Some(given) = self.as_given.get(key) {
+                table.clone_from(given);
+            }
+        }
+        given(Value::Object(all))
     }
 }
 
@@ -646,25 +639,22 @@ impl Shaking {
     fn read(table: &mut Table<'_>, known: Known<'_>, statics: bool) -> Reading<Self> {
         let faults = table.faults();
         let mut right_foot = Ok(None);
-        let ground = table.given_table("ground", |table| {
+        let mut ground = table.given_table("ground", |table| {
             right_foot = table.given_table("right", |table| RightFoot::read(table, known));
             Ground::read(table, known)
         });
         let is_unread = ground.is_err() || right_foot.is_err();
+        let mut unread = None;
         if statics && is_unread && table.forgives_files(faults) {
-            return Ok(Self {
-                ground: None,
-                right_foot: None,
-                motion: GroundMotion::still(),
-                unread: table.as_given("ground"),
-            });
+            unread = table.as_given("ground");
+            (ground, right_foot) = (Ok(None), Ok(None));
         }
         let (ground, motion) = ground?.unzip();
         Ok(Self {
             ground,
             right_foot: right_foot?,
             motion: motion.unwrap_or_else(GroundMotion::still),
-            unread: None,
+            unread,
         })
     }
 }

@@ -178,25 +178,21 @@ impl<T: Serialize> Rule for Any<T> {
     }
 }
 
-/// A whole number in a range.
-pub(super) struct Count {
-    pub(super) range: RangeInclusive<usize>,
-    /// Why the range begins where it does.
-    pub(super) why: &'static str,
-}
+/// A whole number in a range, and why the range begins where it does.
+pub(super) struct Count(pub(super) RangeInclusive<usize>, pub(super) &'static str);
 
 impl Rule for Count {
     type Read = usize;
 
     fn allowed(&self) -> String {
-        let (low, high) = (self.range.start(), self.range.end());
-        format!("a whole number from {low} ({}) to {high}", self.why)
+        let (low, high) = (self.0.start(), self.0.end());
+        format!("a whole number from {low} ({}) to {high}", self.1)
     }
 
     fn read(&self, value: &Value) -> Result<usize, String> {
         let count = value.as_u64().and_then(|whole| usize::try_from(whole).ok());
         let is_whole = value.is_i64() || value.as_f64().is_some_and(|number| number.abs() > 9e18);
-        match count.filter(|count| self.range.contains(count)) {
+        match count.filter(|count| self.0.contains(count)) {
             Some(count) => Ok(count),
             None if is_whole => Err("is out of range".to_owned()),
             None => Err(is(value)),
@@ -204,24 +200,16 @@ impl Rule for Count {
     }
 
     fn schema(&self) -> Value {
-        json!({ "type": "integer", "minimum": self.range.start(), "maximum": self.range.end() })
+        json!({ "type": "integer", "minimum": self.0.start(), "maximum": self.0.end() })
     }
 }
 
-/// One of several things, each by its name.
-pub(super) struct Named<T: 'static> {
-    all: &'static [T],
-    name: fn(T) -> &'static str,
-}
-
 /// One of these things by its name.
-pub(super) const fn one_of<T>(all: &'static [T], name: fn(T) -> &'static str) -> Named<T> {
-    Named { all, name }
-}
+pub(super) struct Named<T: 'static>(pub(super) &'static [T], pub(super) fn(T) -> &'static str);
 
 impl<T: Copy> Named<T> {
     fn names(&self) -> Vec<&'static str> {
-        self.all.iter().map(|&one| (self.name)(one)).collect()
+        self.0.iter().map(|&one| (self.1)(one)).collect()
     }
 }
 
@@ -235,8 +223,8 @@ impl<T: Copy + Serialize> Rule for Named<T> {
 
     fn read(&self, value: &Value) -> Result<T, String> {
         let text = value.as_str().ok_or_else(|| is(value))?;
-        let mut all = self.all.iter().copied();
-        all.find(|&one| (self.name)(one) == text)
+        let mut all = self.0.iter().copied();
+        all.find(|&one| (self.1)(one) == text)
             .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
     }
 

@@ -64,10 +64,7 @@ fn ascend(values: &[f64]) -> bool {
 }
 
 /// How many numbers a range may have.
-const COUNT: Count = Count {
-    range: 2..=10_000,
-    why: "the ends",
-};
+const COUNT: Count = Count(2..=10_000, "the ends");
 
 impl Sequence {
     /// The numbers.
@@ -110,7 +107,7 @@ impl Sequence {
         let from = table.required("from", rule);
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);
-        let spacings = one_of(Spacing::ALL, Spacing::name);
+        let spacings = Named(Spacing::ALL, Spacing::name);
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
         table.sound()?;
         let wrong = format!("is not above `from`; must be above {}", short(from));

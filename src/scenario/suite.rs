@@ -126,15 +126,13 @@ impl Suite {
         let listing = Listing::read(table, &[(RECORDS, patterns)], format);
         related.and(table.sound())?;
         let (measure, levels) = levels.into_iter().next().ok_or(Reported)?;
-        let values = levels.values();
-        let cases = listing.len() * (1 + usize::from(both_signs)) * values.len();
-        if cases > MAX_CASES {
-            return Err(table.wrong_itself(format!(
-                "has {cases} cases, {} records at {} levels; at most {MAX_CASES} are allowed",
-                listing.len(),
-                values.len()
-            )));
-        }
+        let (values, files) = (levels.values(), listing.len());
+        let cases = files * (1 + usize::from(both_signs)) * values.len();
+        let wrong = format!(
+            "has {cases} cases, {files} records at {} levels; at most {MAX_CASES} are allowed",
+            values.len()
+        );
+        table.refuse_all(cases > MAX_CASES, wrong)?;
         let strongest = measure.scaling(values[values.len() - 1]);
         let accept = |series: &Series| suits(series, strongest, simulation);
         let records = listing.series(table, accept)?.into_iter();

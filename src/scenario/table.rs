@@ -381,6 +381,14 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
+    /// Records that the whole table is wrong, if it is.
+    pub(super) fn refuse_all(&mut self, is_wrong: bool, message: impl fmt::Display) -> Reading<()> {
+        if is_wrong {
+            return Err(self.wrong_itself(message));
+        }
+        Ok(())
+    }
+
     /// The result of work with the given value of `key`; an error continues the key and its value.
     pub(super) fn accept<T>(
         &mut self,

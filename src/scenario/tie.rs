@@ -24,10 +24,10 @@ const COORDINATE_M: Number = within(&(-1e6..=1e6));
 const STIFFEST_N_M: f64 = 1e10;
 /// The most ties of a structure.
 const MOST_TIES: usize = 200;
-const BLOCK: Count = Count {
-    range: 0..=MAX_BLOCKS,
-    why: "blocks are counted from 1, and 0 is the ground",
-};
+const BLOCK: Count = Count(
+    0..=MAX_BLOCKS,
+    "blocks are counted from 1, and 0 is the ground",
+);
 
 /// A point this far from a block, in sizes of the structure, still holds on to it where the block is named: curved sides are drawn
 /// with straight lines.
@@ -87,7 +87,7 @@ impl TieTable {
     }
 
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let names = one_of(Between::ALL, Between::name);
+        let names = Named(Between::ALL, Between::name);
         let stiffness = within(&(1e-3..=STIFFEST_N_M));
         let stress = within(&(1e-3..=1e5));
         let read = Self {

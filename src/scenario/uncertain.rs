@@ -79,14 +79,8 @@ pub struct Uncertain {
 }
 
 /// No more samples than the sequence has points.
-const SAMPLES: Count = Count {
-    range: 1..=65_536,
-    why: "one sample",
-};
-const SEED: Count = Count {
-    range: 0..=u32::MAX as usize,
-    why: "the first",
-};
+const SAMPLES: Count = Count(1..=65_536, "one sample");
+const SEED: Count = Count(0..=u32::MAX as usize, "the first");
 /// No more keys than the sequence has dimensions.
 const MAX_KEYS: usize = 256;
 const SPREAD: &str = "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
@@ -96,9 +90,9 @@ impl Spread {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
         let from = table.optional("from", &ANY_NUMBER);
         let to = table.optional("to", &ANY_NUMBER);
-        let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
+        let spacing = table.optional("spacing", &Named(Spacing::ALL, Spacing::name));
         let deviation = table.optional("deviation", &above(0.0, 1e12));
-        let distributions = one_of(Distribution::ALL, Distribution::name);
+        let distributions = Named(Distribution::ALL, Distribution::name);
         let distribution = table.optional("distribution", &distributions);
         let relations = [
             OneOf(&["from", "deviation"], Some(SPREAD)),
@@ -188,12 +182,11 @@ impl Uncertain {
             }
         }
         table.sound()?;
-        if keys.is_empty() || keys.len() > MAX_KEYS {
-            return Err(table.wrong_itself(format!(
-                "needs 1 to {MAX_KEYS} keys of other tables between quotation marks, such as \
-                 \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
-            )));
-        }
+        let wrong = format!(
+            "needs 1 to {MAX_KEYS} keys of other tables between quotation marks, such as \
+             \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"
+        );
+        table.refuse_all(!(1..=MAX_KEYS).contains(&keys.len()), wrong)?;
         let are_many = total_indices && 2 * keys.len() > MAX_KEYS;
         let wrong = format!("goes with at most {} keys", MAX_KEYS / 2);
         table.refuse(are_many, TOTAL_INDICES, wrong)?;

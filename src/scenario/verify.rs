@@ -115,7 +115,6 @@ pub struct Verify {
     /// The sides that are checked.
     pub sides: CheckedSides,
     /// If given, the structure is free to vibrate before it moves; `None`: walls hold it all along.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub free_standing: Option<FreeStanding>,
     /// Records of the dynamic route.
     #[serde(flatten)]
@@ -208,7 +207,7 @@ impl Default for Verify {
 impl Verify {
     /// Reads `[verify]`, whose files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
-        let sides = one_of(CheckedSides::ALL, CheckedSides::name);
+        let sides = Named(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
             confidence_factor: table.or("confidence_factor", &CONFIDENCE, CONFIDENCE_FACTOR),
             behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, BEHAVIOUR_FACTOR),
@@ -294,7 +293,6 @@ pub struct CodeDemand {
     #[serde(flatten)]
     pub hazards: ByState<Hazard>,
     /// Position at a height in a building; `None`: on the ground.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub height: Option<Height>,
 }
 
@@ -355,7 +353,6 @@ pub struct PointDemand {
     /// Damping of the given spectrum, in per cent.
     pub damping_percent: f64,
     /// The rule of the state; `None` for SLD, which is the onset of motion.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub state: Option<StateRule>,
     /// The points.
     #[serde(skip)]
@@ -439,11 +436,9 @@ impl Demand {
             Self::Code(CodeDemand::read(table)?)
         };
         table.sound()?;
-        if demand.states().all(|state| state == LimitState::Sld) {
-            return Err(table.wrong_itself(
-                "has nothing to check beyond damage: give [demand.slv] or [demand.slc]",
-            ));
-        }
+        let is_damage = demand.states().all(|state| state == LimitState::Sld);
+        let wrong = "has nothing to check beyond damage: give [demand.slv] or [demand.slc]";
+        table.refuse_all(is_damage, wrong)?;
         Ok(demand)
     }
 
@@ -459,8 +454,8 @@ impl Demand {
 
 impl CodeDemand {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let soil = table.required("soil", &one_of(Soil::ALL, Soil::name));
-        let categories = one_of(Topography::ALL, Topography::name);
+        let soil = table.required("soil", &Named(Soil::ALL, Soil::name));
+        let categories = Named(Topography::ALL, Topography::name);
         let category = table.optional("topography", &categories);
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
@@ -503,9 +498,7 @@ impl Height {
         let modes = table.tables("modes", BuildingMode::read);
         table.sound()?;
         let missing = "lacks `modes`: give the modes of the building, at least the first";
-        if modes.is_empty() {
-            return Err(table.wrong_itself(missing));
-        }
+        table.refuse_all(modes.is_empty(), missing)?;
         for state in LimitState::ALL {
             let lacks = |mode: &BuildingMode| !mode.states.contains_key(state);
             let checked = hazards.contains_key(state);

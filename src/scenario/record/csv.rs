@@ -119,7 +119,7 @@ struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     fn find(layout: &'a Layout, times: &Times, first: &Row<'_>) -> Parsed<Self> {
-        let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.range.end()).collect();
+        let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.0.end()).collect();
         let index = |column: &TableColumn| column.index(&names).map_err(|wrong| first.fault(wrong));
         let time = match times {
             Times::Column(column) => Some(column),

@@ -117,14 +117,8 @@ impl Layout {
     }
 }
 
-pub(super) const COLUMN_NUMBER: Count = Count {
-    range: 1..=10_000,
-    why: "the first column",
-};
-const SKIPPED: Count = Count {
-    range: 0..=10_000,
-    why: "none",
-};
+pub(super) const COLUMN_NUMBER: Count = Count(1..=10_000, "the first column");
+const SKIPPED: Count = Count(0..=10_000, "none");
 
 /// The keys that only tables have.
 const TABLE_KEYS: [&str; 6] = [
@@ -163,7 +157,7 @@ impl Format {
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
-        table.optional("format", &one_of(Self::ALL, Self::name))
+        table.optional("format", &Named(Self::ALL, Self::name))
     }
 
     /// Reads the format, or finds it from the name of the file; `report` reports a name without one.
@@ -189,8 +183,8 @@ impl Layout {
         let time_column = table.optional("time_column", &AnyColumn);
         let acceleration_column = table.optional("acceleration_column", &AnyColumn);
         let wrapped = table.or("wrapped", &SWITCH, false);
-        let decimals = one_of(Decimal::ALL, Decimal::name);
-        let quantities = one_of(Recorded::ALL, Recorded::name);
+        let decimals = Named(Decimal::ALL, Decimal::name);
+        let quantities = Named(Recorded::ALL, Recorded::name);
         let mut layout = Self {
             acceleration_column,
             wrapped,

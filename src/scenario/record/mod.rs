@@ -184,7 +184,7 @@ impl Record {
 
     /// Reads `[ground.record]` and builds its motion.
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
-        let components = one_of(Component::ALL, Component::name);
+        let components = Named(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
         let main = Series::read(table, known, start_s);

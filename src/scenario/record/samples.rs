@@ -1,6 +1,6 @@
 //! Samples as files hold them: numbers on lines, at times or at even steps.
 
-use std::fmt;
+use thiserror::Error;
 
 use super::unit::Unit;
 use crate::scenario::prelude::*;
@@ -43,7 +43,10 @@ impl Contents {
 }
 
 /// A fault on a line of a record's file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+///
+/// Displayed as `line: message`, which follows the name of the file and a colon.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{line}: {message}")]
 pub struct LineFault {
     /// Line, from 1.
     pub line: usize,
@@ -60,15 +63,6 @@ impl LineFault {
         }
     }
 }
-
-impl fmt::Display for LineFault {
-    /// `line: message`, which follows the name of the file and a colon.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.line, self.message)
-    }
-}
-
-impl std::error::Error for LineFault {}
 
 /// Numbers of a file, one after another.
 #[derive(Default)]

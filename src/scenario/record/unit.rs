@@ -90,7 +90,7 @@ impl Unit {
 /// A unit, by its name or in a spelling that files have.
 pub(super) struct AnyUnit;
 
-const NAMES: Named<Unit> = one_of(Unit::ALL, Unit::name);
+const NAMES: Named<Unit> = Named(Unit::ALL, Unit::name);
 
 impl Rule for AnyUnit {
     type Read = Unit;

@@ -73,10 +73,8 @@ impl Structure {
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.relate(&[OneOf(&tables, None)])?;
-        let read = arch
-            .or(column.map(Read::Column))
-            .or(shape)
-            .ok_or(Reported)?;
+        let read = arch.or(column.map(Read::Column)).or(shape);
+        let read = read.ok_or(Reported)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(Reported)?);
         let ties = beside.ties.clone();
         let structure = match read {
@@ -197,19 +195,12 @@ impl Structure {
     /// Release rotations must stay below this limit position of the first mechanism, in rad. `None` if that mechanism
     /// has more than one degree of freedom. Drums turn about the base as one block.
     pub(super) fn release_limit_rad(&self) -> Option<f64> {
-        match self {
-            Self::Arch(arch) => {
-                // The limit position does not depend on the impact model.
-                let arch = FourLinks::of_arch(arch, ImpactModel::MaxRestitution);
-                arch.ok().map(|arch| arch.limit_rad(Sway::Right))
-            }
-            Self::Column(_) => Some(FRAC_PI_2),
-            Self::Masonry(masonry) => {
-                let row = FourLinks::of_row(&masonry.row, ImpactModel::MaxRestitution).ok()?;
-                let sides = Sway::ALL.iter().map(|sway| row.limit_rad(*sway));
-                Some(sides.fold(f64::INFINITY, f64::min))
-            }
-        }
+        // The limit position does not depend on the impact model.
+        let Some(links) = self.four_links(ImpactModel::MaxRestitution).ok()? else {
+            return Some(FRAC_PI_2);
+        };
+        let sides = Sway::ALL.iter().map(|sway| links.limit_rad(*sway));
+        Some(sides.fold(f64::INFINITY, f64::min))
     }
 
     /// The structure as a row of blocks.
@@ -270,26 +261,21 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     let equal = "`voussoirs` are equal: give one of them";
     table.agrees(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
     let circular = circular?;
-    let arch = Arch::new(
-        circular.mean_radius_m,
-        circular.thickness_ratio,
-        circular.embrace_deg,
-    )
-    .and_then(|arch| arch.with_depth_m(depth_m))
-    .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
-    .and_then(|arch| match voussoirs {
-        Some(voussoirs) => arch.with_voussoirs(voussoirs),
-        None => Ok(arch),
-    })
-    .expect("the ranges of the keys are those of an arch")
-    .with_measured_at(circular.measured_at);
+    let (radius_m, ratio) = (circular.mean_radius_m, circular.thickness_ratio);
+    let arch = Arch::new(radius_m, ratio, circular.embrace_deg)
+        .and_then(|arch| arch.with_depth_m(depth_m))
+        .and_then(|arch| arch.with_density_kg_m3(density_kg_m3))
+        .and_then(|arch| match voussoirs {
+            Some(voussoirs) => arch.with_voussoirs(voussoirs),
+            None => Ok(arch),
+        })
+        .expect("the ranges of the keys are those of an arch")
+        .with_measured_at(circular.measured_at);
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
-        let why = match free_hinges {
-            true => "joints open between blocks",
-            false => "piers, fill, loads and ties go with blocks",
-        };
-        let wrong = format!("lacks `voussoirs`: {why}; give the number of voussoirs");
-        return Err(table.wrong_itself(wrong));
+        return Err(table.wrong_itself(match free_hinges {
+            true => "lacks `voussoirs`: joints open between blocks; give the number of voussoirs",
+            false => "lacks `voussoirs`: piers, fill, loads and ties go with blocks; give the number of voussoirs",
+        }));
     }
     if joints_deg.is_some() || !alone {
         let arch = CircularArch::new(arch, joints_deg).map_err(|error| {
@@ -304,13 +290,9 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
             Ok(Read::Arch(arch))
         }
         Err(error) => {
-            let in_m = table.gives("thickness_m");
-            let key = if in_m {
-                "thickness_m"
-            } else {
-                "thickness_ratio"
-            };
-            Err(table.wrong(key, why_not(&arch, error)))
+            let keys = ["thickness_m", "thickness_ratio"];
+            let key = keys.into_iter().find(|key| table.gives(key));
+            Err(table.wrong(key.unwrap_or(keys[1]), why_not(&arch, error)))
         }
     }
 }
@@ -343,10 +325,7 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
     }
 }
 
-const DRUMS: Count = Count {
-    range: 1..=MAX_BLOCKS,
-    why: "each is a block",
-};
+const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 
 /// Keys of `[column]` that only models with joints have.
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
@@ -379,10 +358,10 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
         })
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
-    match drum_heights_m {
-        Some(heights_m) => column
-            .with_drum_heights_m(heights_m)
-            .map_err(|error| table.wrong("drum_heights_m", format!("does not fit: {error}"))),
-        None => Ok(column),
-    }
+    let Some(heights_m) = drum_heights_m else {
+        return Ok(column);
+    };
+    let column = column.with_drum_heights_m(heights_m);
+    let column = column.map_err(|error| format!("does not fit: {error}"));
+    table.accept("drum_heights_m", column)
 }
