@@ -26,10 +26,8 @@ const TABLE: &[&str] = &["elastic_joints"];
 const STIFFEST_GPA_M: f64 = 1000.0;
 
 const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
-const POINTS: Count = Count(
-    ElasticProperties::CONTACT_POINTS,
-    "one does not hold a block",
-);
+const ONE_POINT: &str = "one does not hold a block";
+const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
 
 /// A range in another unit.
 const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
@@ -225,33 +223,23 @@ impl ElasticTable {
     }
 }
 
+const NO_STIFFNESS: &str = "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
+                            Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
+                            docs/elastic-joints.md explains how to choose";
+const OF_MODULI: &str = "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out";
+const OF_STONE: &str = "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out";
+const OF_CRITICAL: &str = " beside it: it is a part of critical damping at a frequency";
 const RELATIONS: &[Relation<'_>] = &[
     OneOf(
         &["normal_stiffness_gpa_m", "stone_modulus_gpa"],
-        Some(
-            "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
-             Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
-             docs/elastic-joints.md explains how to choose",
-        ),
+        Some(NO_STIFFNESS),
     ),
-    Excludes(
-        "stone_modulus_gpa",
-        "shear_stiffness_gpa_m",
-        "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out",
-    ),
+    Excludes("stone_modulus_gpa", "shear_stiffness_gpa_m", OF_MODULI),
     Together(&["mortar_modulus_gpa", "mortar_thickness_m"]),
-    Excludes(
-        "normal_stiffness_gpa_m",
-        "mortar_modulus_gpa",
-        "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out",
-    ),
+    Excludes("normal_stiffness_gpa_m", "mortar_modulus_gpa", OF_STONE),
     AtMostOne(&["damping_time_s", "damping_ratio"], GIVE_ONE),
     AtMostOne(&["damping_time_s", "damping_frequency_hz"], GIVE_ONE),
-    Requires(
-        "damping_ratio",
-        "damping_frequency_hz",
-        " beside it: it is a part of critical damping at a frequency",
-    ),
+    Requires("damping_ratio", "damping_frequency_hz", OF_CRITICAL),
     Requires("damping_frequency_hz", "damping_ratio", " beside it"),
     AtMostOne(&["contact", "contact_points"], GIVE_ONE),
 ];

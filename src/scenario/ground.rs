@@ -40,16 +40,12 @@ impl Ground {
     /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
         table::read_text((&source.text, &source.folder), &[], |table| {
-            let known = Known {
-                series: &[],
-                gravity_m_s2: Some(gravity_m_s2),
-            };
+            let known = (&[][..], Some(gravity_m_s2));
             let ground = table.given_table("ground", |table| Self::read(table, known))?;
             let missing =
                 "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]";
-            ground
-                .map(|(ground, _)| ground)
-                .ok_or_else(|| table.wrong_itself(missing))
+            table.refuse_all(ground.is_none(), missing)?;
+            ground.map(|(ground, _)| ground).ok_or(Reported)
         })
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
@@ -76,9 +72,7 @@ impl Ground {
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let mut found = None;
         for &kind in Pulse::ALL {
-            let pulse = table.table(kind.name(), |table| {
-                PulseGround::read(table, kind, known.gravity_m_s2)
-            });
+            let pulse = table.table(kind.name(), |table| PulseGround::read(table, kind, known.1));
             found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
         }
         let record = table.table(RECORD, |table| Record::read(table, known));

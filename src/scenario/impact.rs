@@ -10,23 +10,15 @@ const MODELS: [ImpactModel; 4] = [
     ImpactModel::Mirrored,
     ImpactModel::Prescribed { restitution: 0.0 },
 ];
-const NAMES: &[&str] = &[
-    MODELS[0].name(),
-    MODELS[1].name(),
-    MODELS[2].name(),
-    MODELS[3].name(),
-];
-
 /// Reads `[impact]`.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactLaw> {
-    let name = table.or("model", &Named(NAMES, |name| name), NAMES[0]);
+    let names = MODELS.map(|model| model.name());
+    let name = table.or("model", &Named(&names, |name| name), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
     // From no rebound to far above the measured 0.67 to 0.97 times the theory.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
-    let mut models = MODELS.into_iter();
-    let mut model = models
-        .find(|model| model.name() == name)
-        .unwrap_or(MODELS[0]);
+    let index = names.iter().position(|one| *one == name);
+    let mut model = MODELS[index.unwrap_or(0)];
     if let ImpactModel::Prescribed { .. } = model {
         let restitution = table.needed("restitution", &RESTITUTION, restitution);
         model = ImpactModel::Prescribed { restitution };

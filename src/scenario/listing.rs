@@ -144,9 +144,8 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     if path.is_file() {
         return Ok(vec![file_name(Path::new(pattern))?]);
     }
-    ensure(pattern.contains(['*', '?', '[']), || {
-        no_file("does not exist")
-    })?;
+    let is_pattern = pattern.contains(['*', '?', '[']);
+    ensure(is_pattern, || no_file("does not exist"))?;
     let here = folder.as_os_str().is_empty();
     let folder = if here { Path::new(".") } else { folder };
     // `glob` cannot start from a folder, so its patterns are made absolute.
@@ -172,7 +171,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
             files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
         }
     }
-    ensure(!files.is_empty(), || "matches no file".to_owned())?;
+    ensure(!files.is_empty(), || "matches no file")?;
     Ok(files)
 }
 

@@ -302,10 +302,7 @@ impl Scenario {
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
-        let known = Known {
-            series: known,
-            gravity_m_s2,
-        };
+        let known = (known, gravity_m_s2);
         let shaking = Shaking::read(table, known, changes.statics);
         let motion = motion.complete(table);
         let right_foot = shaking.as_ref().ok().and_then(|it| it.right_foot.as_ref());

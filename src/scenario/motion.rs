@@ -199,22 +199,16 @@ impl Motion {
 
 /// Relations between the tables of different models of motion.
 const ALONE: &[Relation<'_>] = &[
-    Excludes(
-        "elastic_joints",
-        "free_hinges",
-        "cannot be combined with [elastic_joints]; leave one out, or choose the model of motion",
-    ),
-    Excludes(
-        "elastic_joints",
-        "impact",
-        "cannot be combined with [elastic_joints], which have no impacts; leave one out",
-    ),
-    Excludes(
-        "free_hinges",
-        "impact",
-        "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out",
-    ),
+    Excludes("elastic_joints", "free_hinges", ONE_MODEL),
+    Excludes("elastic_joints", "impact", ELASTIC_IMPACT),
+    Excludes("free_hinges", "impact", FREE_IMPACT),
 ];
+const ONE_MODEL: &str =
+    "cannot be combined with [elastic_joints]; leave one out, or choose the model of motion";
+const ELASTIC_IMPACT: &str =
+    "cannot be combined with [elastic_joints], which have no impacts; leave one out";
+const FREE_IMPACT: &str =
+    "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
 
 /// True if only models with joints can move the structure: it has drums, or its springings have moved.
 fn needs_joints(table: &Table<'_>) -> bool {
@@ -262,10 +256,9 @@ impl Tables {
         }
         let (law, free_hinges, elastic_joints) = (law?, self.free_hinges?, self.elastic_joints?);
         let supports = self.supports?;
-        if supports.is_some() && !self.hinges.has_joints() {
-            let wrong = "needs joints that follow: four links start undeformed; choose [free_hinges] or [elastic_joints], or leave it out";
-            return Err(table.wrong("supports", wrong));
-        }
+        let follow = self.hinges.has_joints();
+        let wrong = "needs joints that follow: four links start undeformed; choose [free_hinges] or [elastic_joints], or leave it out";
+        table.refuse(supports.is_some() && !follow, "supports", wrong)?;
         let supports = supports.unwrap_or_default();
         let options = free_hinges.unwrap_or_default();
         let motion = match (self.hinges, elastic_joints) {

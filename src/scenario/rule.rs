@@ -205,15 +205,15 @@ impl Rule for Count {
 }
 
 /// One of these things by its name.
-pub(super) struct Named<T: 'static>(pub(super) &'static [T], pub(super) fn(T) -> &'static str);
+pub(super) struct Named<'a, T>(pub(super) &'a [T], pub(super) fn(T) -> &'static str);
 
-impl<T: Copy> Named<T> {
+impl<T: Copy> Named<'_, T> {
     fn names(&self) -> Vec<&'static str> {
         self.0.iter().map(|&one| (self.1)(one)).collect()
     }
 }
 
-impl<T: Copy + Serialize> Rule for Named<T> {
+impl<T: Copy + Serialize> Rule for Named<'_, T> {
     type Read = T;
 
     fn allowed(&self) -> String {

@@ -45,12 +45,10 @@ impl Rule for Ascending<'_> {
     }
 
     fn read(&self, value: &Value) -> Result<Vec<f64>, String> {
-        if value.is_number() {
-            return Err("is a single number".to_owned());
-        }
+        ensure(!value.is_number(), || "is a single number")?;
         let values = List(self.0).read(value)?;
-        ensure(!values.is_empty(), || "is empty".to_owned())?;
-        ensure(ascend(&values), || "does not ascend".to_owned())?;
+        ensure(!values.is_empty(), || "is empty")?;
+        ensure(ascend(&values), || "does not ascend")?;
         Ok(values)
     }
 

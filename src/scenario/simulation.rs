@@ -30,12 +30,7 @@ impl Simulation {
             && let Some(wrong) = rows_fault(duration_s, output_step_s)
         {
             // The step is easier to change.
-            let gives_step = table.gives(OUTPUT_STEP_S);
-            let key = if gives_step {
-                OUTPUT_STEP_S
-            } else {
-                "duration_s"
-            };
+            let key = ["duration_s", OUTPUT_STEP_S][usize::from(table.gives(OUTPUT_STEP_S))];
             table.wrong(key, wrong);
         }
         let [tolerance, rest_ratio] = [Request::RELATIVE_TOLERANCE, Request::REST_ENERGY_RATIO];
@@ -56,9 +51,8 @@ impl Simulation {
     pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
         let after_s = AFTER_RATIO * (size_m / self.gravity_m_s2).sqrt();
         let default_s = ground_end_s + after_s.max(AFTER_S);
-        let most_s = Request::TIME_S
-            .end()
-            .min(Request::MOST_SAMPLES * self.output_step_s);
+        let most_s = Request::MOST_SAMPLES * self.output_step_s;
+        let most_s = most_s.min(*Request::TIME_S.end());
         self.duration_s.unwrap_or(default_s.min(most_s))
     }
 

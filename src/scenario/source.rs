@@ -4,10 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::error::{Fault, ScenarioErrors};
-
-/// Largest text of a scenario.
-const MAX_BYTES: u64 = 1 << 20;
+use super::error::{Fault, ScenarioErrors, ensure};
 
 /// The text of a scenario before it is read, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -59,21 +56,10 @@ impl Source {
     /// # Errors
     /// When it cannot be read, is not UTF-8 text or is larger than 1 MiB.
     pub fn of_reader(reader: impl Read, name: &str) -> Result<Self, ScenarioErrors> {
-        let unreadable = |message: String| ScenarioErrors::unreadable(name, message);
-        let mut bytes = Vec::new();
-        // The limit applies while reading, because not every file knows its size.
-        reader
-            .take(MAX_BYTES + 1)
-            .read_to_end(&mut bytes)
-            .map_err(|error| unreadable(format!("cannot be read: {error}")))?;
-        if bytes.len() as u64 > MAX_BYTES {
-            return Err(unreadable(
-                "is larger than 1 MiB, too large for a scenario".to_owned(),
-            ));
-        }
-        if let Some(wrong) = not_plain(&bytes) {
-            return Err(unreadable(wrong.to_owned()));
-        }
+        let unreadable = |wrong: String| ScenarioErrors::unreadable(name, wrong);
+        let bytes = read_at_most(reader, 1, "scenario").map_err(unreadable)?;
+        let wrong = not_plain(&bytes).map(str::to_owned);
+        wrong.map(unreadable).map_or(Ok(()), Err)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             // The text before the fault is the same in the lossy text.
             let text = String::from_utf8_lossy(error.as_bytes());
@@ -87,6 +73,22 @@ impl Source {
             text,
         })
     }
+}
+
+/// The bytes of a file of at most so many MiB.
+pub(super) fn read_at_most(
+    reader: impl Read,
+    mebibytes: u64,
+    what: &str,
+) -> Result<Vec<u8>, String> {
+    let (most, mut bytes) = (mebibytes << 20, Vec::new());
+    // The limit applies while reading, because not every file knows its size.
+    let read = reader.take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|error| format!("cannot be read: {error}"))?;
+    ensure(bytes.len() as u64 <= most, || {
+        format!("is larger than {mebibytes} MiB, too large for a {what}")
+    })?;
+    Ok(bytes)
 }
 
 /// Why a file is not plain text, if its first bytes or its line ends show it.

@@ -85,6 +85,7 @@ pub struct Spectral {
 
 const SPECTRAL_PERIOD_S: &str = "spectral_period_s";
 const PERIOD_S: Number = within(&(0.01..=100.0));
+const DAMPING: Number = within(&(0.0..=99.0));
 const SPECTRAL_DAMPING_PERCENT: &str = "spectral_damping_percent";
 
 impl Spectral {
@@ -98,11 +99,7 @@ impl Spectral {
         let default = Self::DEFAULT;
         Self {
             period_s: table.or(SPECTRAL_PERIOD_S, &PERIOD_S, default.period_s),
-            damping_percent: table.or(
-                SPECTRAL_DAMPING_PERCENT,
-                &within(&(0.0..=99.0)),
-                default.damping_percent,
-            ),
+            damping_percent: table.or(SPECTRAL_DAMPING_PERCENT, &DAMPING, default.damping_percent),
         }
     }
 }
@@ -134,7 +131,10 @@ impl Suite {
         );
         table.refuse_all(cases > MAX_CASES, wrong)?;
         let strongest = measure.scaling(values[values.len() - 1]);
-        let accept = |series: &Series| suits(series, strongest, simulation);
+        let simulation = simulation.ok_or(Reported);
+        let accept = |series: &Series| {
+            simulation.map_or(Ok(()), |simulation| suits(series, strongest, simulation))
+        };
         let records = listing.series(table, accept)?.into_iter();
         Ok(Self {
             records: records.map(|(_, series)| series).collect(),
@@ -155,14 +155,15 @@ impl Suite {
 impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let records = written(&[(RECORDS, &self.records)]);
+        let Spectral {
+            period_s,
+            damping_percent,
+        } = self.spectral;
         let own = [
             (self.measure.name(), json!(self.levels)),
             ("both_signs", json!(self.both_signs)),
-            (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
-            (
-                SPECTRAL_DAMPING_PERCENT,
-                json!(self.spectral.damping_percent),
-            ),
+            (SPECTRAL_PERIOD_S, json!(period_s)),
+            (SPECTRAL_DAMPING_PERCENT, json!(damping_percent)),
         ];
         let own = own.map(|(key, value)| (key.to_owned(), value));
         serializer.collect_map(records.into_iter().chain(own))
@@ -172,14 +173,7 @@ impl Serialize for Suite {
 const RECORDS: &str = "records";
 
 /// Checks that a record can be used at the strongest level, or explains why not.
-fn suits(
-    series: &Series,
-    strongest: Scaling,
-    simulation: Option<&Simulation>,
-) -> Result<(), String> {
-    let Some(simulation) = simulation else {
-        return Ok(());
-    };
+fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result<(), String> {
     let own_g = series.peak_g(simulation.gravity_m_s2);
     series.check_not_zero(simulation.gravity_m_s2)?;
     if let Scaling::PeakG(peak_g) = strongest {

@@ -6,7 +6,7 @@
 //!
 //! Reading describes: from an empty text, [`describe`] collects all tables, keys, rules and defaults that `read` has.
 
-use std::fmt;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -24,11 +24,16 @@ pub(super) struct Reported;
 /// A value, or [`Reported`] if its fault has been recorded.
 pub(super) type Reading<T> = Result<T, Reported>;
 
+/// Reads the keys of a table.
+pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> Reading<T> {}
+
+impl<T, R: FnOnce(&mut Table<'_>) -> Reading<T>> Reader<T> for R {}
+
 /// Reads a whole TOML text with `read`, after replacing values as `set` says, or returns everything that is wrong.
 pub(super) fn read_text<T>(
     (text, folder): (&str, &Path),
     set: &[Assignment],
-    read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+    read: impl Reader<T>,
 ) -> Result<T, Vec<Fault>> {
     let mut document = Document::parse(text, folder)?;
     document.assign(set);
@@ -38,7 +43,7 @@ pub(super) fn read_text<T>(
 /// Reads a document with `read`, or returns everything that is wrong.
 pub(super) fn read_document<T>(
     mut document: Document<'_>,
-    read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+    read: impl Reader<T>,
 ) -> Result<T, Vec<Fault>> {
     let mut faults = std::mem::take(&mut document.faults);
     let mut table = Table::new("the scenario".to_owned(), &document.root, &document);
@@ -52,7 +57,7 @@ pub(super) fn read_document<T>(
 }
 
 /// The JSON schema of all texts that `read` reads.
-pub(super) fn describe<T>(read: impl FnOnce(&mut Table<'_>) -> Reading<T>) -> Value {
+pub(super) fn describe<T>(read: impl Reader<T>) -> Value {
     let document = Document::default();
     let mut table = Table::new(String::new(), &document.root, &document);
     table.description = Some(an_object());
@@ -181,20 +186,12 @@ impl<'a> Table<'a> {
     }
 
     /// The table of that name as `read` reads it, if given and right.
-    pub(super) fn table<T>(
-        &mut self,
-        key: &str,
-        read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
-    ) -> Option<T> {
+    pub(super) fn table<T>(&mut self, key: &str, read: impl Reader<T>) -> Option<T> {
         self.given_table(key, read).ok().flatten()
     }
 
     /// The table of that name as `read` reads it, if given.
-    pub(super) fn given_table<T>(
-        &mut self,
-        key: &str,
-        read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
-    ) -> Reading<Option<T>> {
+    pub(super) fn given_table<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<Option<T>> {
         match self.entry(key, true) {
             Some(Value::Object(entries)) => {
                 let path = format!("{}/{key}", self.path);
@@ -208,11 +205,7 @@ impl<'a> Table<'a> {
     }
 
     /// The tables of an array `[[key]]` that are right, each read by `read`; empty if not given.
-    pub(super) fn tables<T>(
-        &mut self,
-        key: &str,
-        read: impl Fn(&mut Table<'_>) -> Reading<T>,
-    ) -> Vec<T> {
+    pub(super) fn tables<T>(&mut self, key: &str, read: impl Reader<T> + Copy) -> Vec<T> {
         let Some(entry) = self.entry(key, true) else {
             if self.describes() {
                 let _ = self.descend(key, None, read);
@@ -233,7 +226,7 @@ impl<'a> Table<'a> {
         for (index, element) in elements.iter().enumerate() {
             if let Value::Object(entries) = element {
                 let path = format!("{}/{key}/{index}", self.path);
-                tables.extend(self.descend(key, Some((path, entries)), &read));
+                tables.extend(self.descend(key, Some((path, entries)), read));
             } else {
                 let wrong = format!("is {}; must be a table", kind(element));
                 self.wrong_element(key, index, wrong);
@@ -243,15 +236,12 @@ impl<'a> Table<'a> {
     }
 
     /// The table of that name as `read` reads it; if not given, `read` gets an empty table.
-    pub(super) fn table_or_defaults<T>(
-        &mut self,
-        key: &str,
-        read: impl Fn(&mut Table<'_>) -> Reading<T>,
-    ) -> Reading<T> {
-        match self.given_table(key, &read)? {
-            Some(value) => Ok(value),
-            None => self.descend(key, None, read),
+    pub(super) fn table_or_defaults<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<T> {
+        if self.may_give(&[key]) || self.describes() {
+            return self.given_table(key, read)?.ok_or(Reported);
         }
+        self.entry(key, true);
+        self.descend(key, None, read)
     }
 
     /// The keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file; for a description, one of them.
@@ -287,15 +277,14 @@ impl<'a> Table<'a> {
     /// Whether the file gives one of the keys, or has lines that are not TOML and name one.
     pub(super) fn may_give(&self, keys: &[&str]) -> bool {
         let unread = &self.document.unread;
-        keys.iter()
-            .any(|key| self.gives(key) || unread.contains(key))
+        let mut keys = keys.iter();
+        keys.any(|key| self.gives(key) || unread.contains(key))
     }
 
     /// Whether the key is read as a table.
     pub(super) fn is_table(&self, key: &str) -> bool {
-        self.known
-            .iter()
-            .any(|(known, is_table)| known == key && *is_table)
+        let mut known = self.known.iter();
+        known.any(|(known, is_table)| known == key && *is_table)
     }
 
     /// The place of the value that the file gives for a key.
@@ -355,7 +344,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the file which `key` names is missing or wrong: `message` continues the key and its value.
-    pub(super) fn wrong_file(&mut self, key: &str, message: impl fmt::Display) -> Reported {
+    pub(super) fn wrong_file(&mut self, key: &str, message: impl Display) -> Reported {
         let reported = self.wrong(key, message);
         if let Some(fault) = self.faults.last_mut() {
             fault.of_file = true;
@@ -364,16 +353,16 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the given value of `key` is wrong: `message` continues the key and its value.
-    pub(super) fn wrong(&mut self, key: &str, message: impl fmt::Display) -> Reported {
+    pub(super) fn wrong(&mut self, key: &str, message: impl Display) -> Reported {
         self.wrong_in(&[], key, message)
     }
 
     /// Records that the given value of `key` is wrong, if it is.
-    pub(super) fn refuse(
+    pub(super) fn refuse<M: Display>(
         &mut self,
         is_wrong: bool,
         key: &str,
-        message: impl fmt::Display,
+        message: M,
     ) -> Reading<()> {
         if is_wrong {
             return Err(self.wrong(key, message));
@@ -382,7 +371,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the whole table is wrong, if it is.
-    pub(super) fn refuse_all(&mut self, is_wrong: bool, message: impl fmt::Display) -> Reading<()> {
+    pub(super) fn refuse_all(&mut self, is_wrong: bool, message: impl Display) -> Reading<()> {
         if is_wrong {
             return Err(self.wrong_itself(message));
         }
@@ -390,21 +379,17 @@ impl<'a> Table<'a> {
     }
 
     /// The result of work with the given value of `key`; an error continues the key and its value.
-    pub(super) fn accept<T>(
-        &mut self,
-        key: &str,
-        result: Result<T, impl fmt::Display>,
-    ) -> Reading<T> {
+    pub(super) fn accept<T, E: Display>(&mut self, key: &str, result: Result<T, E>) -> Reading<T> {
         result.map_err(|wrong| self.wrong(key, wrong))
     }
 
     /// Records that the given value of `key` is wrong in nested tables inside this one. If the innermost table does not give it, the
     /// tables around it are searched; if none does, it is missing in the innermost table that is given.
-    pub(super) fn wrong_in(
+    pub(super) fn wrong_in<M: Display>(
         &mut self,
         tables: &[&str],
         key: &str,
-        message: impl fmt::Display,
+        message: M,
     ) -> Reported {
         let mut around = vec![(self.path.clone(), self.entries)];
         for table in tables {
@@ -434,17 +419,16 @@ impl<'a> Table<'a> {
 
     /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
     /// value that is not an array counts as its only element.
-    pub(super) fn wrong_element(
+    pub(super) fn wrong_element<M: Display>(
         &mut self,
         key: &str,
-        index: usize,
-        message: impl fmt::Display,
+        at: usize,
+        message: M,
     ) -> Reported {
-        let element = self.entries.get(key).and_then(|value| value.get(index));
-        let Some(element) = element else {
+        let Some(element) = self.entries.get(key).and_then(|value| value.get(at)) else {
             return self.wrong(key, message);
         };
-        let path = format!("{}/{key}/{index}", self.path);
+        let path = format!("{}/{key}/{at}", self.path);
         let value = self.document.quote(&path, element);
         let place = self.place_of(&path).unwrap_or_default();
         self.fault(place, format!("`{value}` in `{key}` {message}"))
@@ -458,7 +442,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the whole table is wrong: `message` continues its name.
-    pub(super) fn wrong_itself(&mut self, message: impl fmt::Display) -> Reported {
+    pub(super) fn wrong_itself(&mut self, message: impl Display) -> Reported {
         self.fault(self.place, format!("{} {message}", self.name))
     }
 
@@ -482,7 +466,7 @@ impl<'a> Table<'a> {
         &mut self,
         key: &str,
         table: Option<(String, &Entries)>,
-        read: impl FnOnce(&mut Table<'_>) -> Reading<T>,
+        read: impl Reader<T>,
     ) -> Reading<T> {
         let empty = Entries::new();
         let name = match self.name.strip_suffix(']') {

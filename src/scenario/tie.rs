@@ -13,7 +13,7 @@
 use nalgebra::Vector2;
 
 use super::prelude::*;
-use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError};
+use crate::mechanics::blocks::{MAX_BLOCKS, Row};
 use crate::mechanics::column::Column;
 use crate::mechanics::masonry::Masonry;
 use crate::mechanics::stability::falls;
@@ -266,21 +266,17 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     })
 }
 
-/// A structure with its ties, which `tied` adds to it.
-fn bound<T>(
+/// The ties of a structure.
+fn placed(
     table: &mut Table<'_>,
     ties: &[TieTable],
     (row, springings): (&Row, Option<[usize; 2]>),
-    tied: impl FnOnce(Vec<Tie>) -> Result<T, (usize, TieError)>,
-) -> Reading<T> {
+) -> Reading<Vec<Tie>> {
     let placed = ties.iter().enumerate().map(|(index, tie)| {
         let placed = tie.placed(row, springings);
-        placed.map_err(|wrong| (index, wrong))
+        placed.map_err(|wrong| table.wrong_element("tie", index, wrong))
     });
-    let placed = placed.collect::<Result<Vec<_>, _>>();
-    placed
-        .and_then(|ties| tied(ties).map_err(|(index, error)| (index, error.to_string())))
-        .map_err(|(index, wrong)| table.wrong_element("tie", index, wrong))
+    placed.collect()
 }
 
 /// Masonry with its ties.
@@ -290,10 +286,9 @@ pub(super) fn tied(
     masonry: Masonry,
     gravity_m_s2: f64,
 ) -> Reading<Masonry> {
-    let (row, springings) = (masonry.row.clone(), masonry.springing_joints());
-    bound(table, ties, (&row, springings), |ties| {
-        masonry.with_ties(ties, gravity_m_s2)
-    })
+    let ties = placed(table, ties, (&masonry.row, masonry.springing_joints()))?;
+    let tied = masonry.with_ties(ties, gravity_m_s2);
+    tied.map_err(|(index, error)| table.wrong_element("tie", index, error))
 }
 
 /// A column of any number of drums with its ties.
@@ -306,22 +301,18 @@ pub(super) fn tied_column(
     if ties.is_empty() {
         return Ok(column);
     }
-    let no_row = |error: RowError| format!("makes no row of blocks: {error}");
-    let row = column
-        .row()
-        .map_err(|error| table.wrong("column", no_row(error)))?;
-    let column = bound(table, ties, (&row, None), |ties| {
-        column.with_ties(ties, gravity_m_s2)
-    })?;
-    let falls = match column.row() {
-        Ok(row) => falls(&row).map_err(|error| error.to_string()),
-        Err(error) => Err(error.to_string()),
-    };
-    match falls {
-        Ok(None) => Ok(column),
-        Ok(Some(_)) => Err(table.wrong("tie", PULLS_OVER)),
-        Err(wrong) => Err(table.wrong("column", format!("cannot be checked to stand: {wrong}"))),
-    }
+    let row = column.row();
+    let row = row.map_err(|error| format!("makes no row of blocks: {error}"));
+    let row = table.accept("column", row)?;
+    let ties = placed(table, ties, (&row, None))?;
+    let column = column.with_ties(ties, gravity_m_s2);
+    let column = column.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+    let row = column.row().map_err(|error| error.to_string());
+    let falls = row.and_then(|row| falls(&row).map_err(|error| error.to_string()));
+    let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
+    let falls = table.accept("column", falls)?.is_some();
+    table.refuse(falls, "tie", PULLS_OVER)?;
+    Ok(column)
 }
 
 /// Message about ties whose prestress overturns a structure that stands without them.

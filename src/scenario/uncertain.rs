@@ -111,12 +111,9 @@ impl Spread {
         let spacing = spacing.unwrap_or(Spacing::Linear);
         let wrong = format!("is not above `from`; must be above {}", short(from));
         table.refuse(to <= from, "to", wrong)?;
-        let is_wrong = spacing == Spacing::Logarithmic && from <= 0.0;
-        table.refuse(
-            is_wrong,
-            "spacing",
-            "needs numbers above 0; use \"linear\" here",
-        )?;
+        let has_zero = spacing == Spacing::Logarithmic && from <= 0.0;
+        let wrong = "needs numbers above 0; use \"linear\" here";
+        table.refuse(has_zero, "spacing", wrong)?;
         Ok(Self::Range { from, to, spacing })
     }
 
@@ -318,9 +315,10 @@ impl Uncertain {
 /// Whether a table of the file gives a number that the resolved one does not have.
 fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
     match given {
-        Value::Object(given) => given
-            .iter()
-            .any(|(key, given)| lacks(resolved.and_then(|table| table.get(key)), given)),
+        Value::Object(given) => {
+            let mut given = given.iter();
+            given.any(|(key, given)| lacks(resolved.and_then(|table| table.get(key)), given))
+        }
         Value::Number(_) => resolved.is_none(),
         _ => false,
     }
@@ -339,9 +337,10 @@ impl UncertainKey {
     ) -> Result<(), String> {
         let mut before = before.iter();
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
-        ensure(!is_known, || {
-            "is the same as a key before it; leave one out".to_owned()
-        })?;
+        ensure(
+            !is_known,
+            || "is the same as a key before it; leave one out",
+        )?;
         // Where the file gives another number, a length may be written without a point.
         let resolved = number(resolved, &self.key);
         let is_given = resolved.is_none();
@@ -353,8 +352,8 @@ impl UncertainKey {
                 "is the whole number {own} in the scenario; only numbers that may have a fraction are uncertain"
             )
         })?;
-        let wrong = || "is no number in the scenario; only numbers are uncertain".to_owned();
-        ensure(own.is_number() || own.is_null(), wrong)?;
+        let wrong = "is no number in the scenario; only numbers are uncertain";
+        ensure(own.is_number() || own.is_null(), || wrong)?;
         let is_enough = self.own.is_some() || matches!(self.spread, Spread::Range { .. });
         ensure(is_enough, || {
             let key = &self.key;
@@ -371,12 +370,11 @@ impl UncertainKey {
             // A bound that only rounding keeps from zero is zero.
             let value = Some(self.at(part)).filter(|value| value.abs() > 1e-12 * largest);
             let value = value.unwrap_or(0.0);
-            scenario
-                .with_values(&[(&self.key, value)])
-                .map_err(|wrong| {
-                    let value = plain(value);
-                    format!("reaches {value}, which the scenario does not allow: {wrong}")
-                })?;
+            let allowed = scenario.with_values(&[(&self.key, value)]);
+            let value = plain(value);
+            allowed.map_err(|wrong| {
+                format!("reaches {value}, which the scenario does not allow: {wrong}")
+            })?;
         }
         Ok(())
     }

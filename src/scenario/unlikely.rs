@@ -132,10 +132,8 @@ impl Structure {
                 });
                 let radius = long("the mean radius is", radius_m, RADIUS_M);
                 let thickness = long("the thickness is", thick_m, THICKNESS_M);
-                return [radius, thickness, in_radians]
-                    .into_iter()
-                    .flatten()
-                    .collect();
+                let all = [radius, thickness, in_radians];
+                return all.into_iter().flatten().collect();
             }
             Self::Column(column) => {
                 let longest_m = column.height_m.max(column.width_m);
@@ -153,11 +151,7 @@ impl Structure {
 /// Warns that a length is larger than usual, and names a unit in which it would be usual.
 fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
     let is_huge = length_m > 10.0 * usual_m;
-    let unit = if is_huge {
-        "millimetres"
-    } else {
-        "centimetres"
-    };
+    let unit = ["centimetres", "millimetres"][usize::from(is_huge)];
     (length_m > usual_m).then(|| format!("{what} {} m: is it in {unit}?", plain(length_m)))
 }
 

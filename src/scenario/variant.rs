@@ -1,6 +1,6 @@
 //! A scenario with values that differ from those in its text.
 
-use super::document::Document;
+use super::document::{Document, Entries};
 use super::prelude::*;
 use super::{Assignment, Changes, Scenario, Series, span, table};
 
@@ -21,11 +21,13 @@ impl Scenario {
                 tables.shift_remove("ground");
             }
         }
-        make_room(&mut resolved, values);
+        let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
+        make_room(&mut resolved, &keys);
         let set = values.iter().map(|(key, value)| assignment(key, *value));
         let set = set.collect::<Result<Vec<_>, String>>()?;
         let mut document = Document::of_json(resolved, &self.files.folder);
         document.assign(&set);
+        fit(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
         let changes = Changes::default();
         table::read_document(document, |table| Self::read_table(table, &known, &changes))
@@ -102,75 +104,61 @@ const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/ground/right/record", "scale", "peak_g"],
 ];
 
-/// Changes values that depend on the new ones: an arch keeps either its thickness or its ratio, its last joint is at the other
-/// springing, and the drums of a column add up to its height.
-fn make_room(table: &mut Value, values: &[(&str, f64)]) {
-    let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
-    let given = |wanted: [&str; 2]| {
-        let index = keys.iter().position(|key| key[..] == wanted)?;
-        Some(values[index].1)
-    };
+/// Removes the values in place of which new ones are given: an arch keeps either its thickness or its ratio.
+fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
     let both_ways = ALTERNATIVES.map(|[name, one, other]| [[name, one, other], [name, other, one]]);
-    for [name, is_given, goes] in both_ways.into_iter().flatten() {
-        let is_given =
-            |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{is_given}");
+    for [name, given, goes] in both_ways.into_iter().flatten() {
+        let is_given = |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{given}");
         if keys.iter().any(is_given)
-            && let Some(Value::Object(table)) = table.pointer_mut(name)
+            && let Some(Value::Object(table)) = tables.pointer_mut(name)
         {
             table.shift_remove(goes);
         }
     }
-    let of_arch = |key: &str| given(["arch", key]).or_else(|| table["arch"][key].as_f64());
-    let measured = of_arch("span_m").zip(of_arch("rise_m"));
-    let measured_deg = measured.map(|(span_m, rise_m)| span::embrace_deg(span_m, rise_m));
-    if let (Some(embrace_deg), Some(Value::Array(joints_deg))) = (
-        given(["arch", "embrace_deg"]).or(measured_deg),
-        table.pointer_mut("/arch/joints_deg"),
-    ) && let Some(last_deg) = joints_deg.last().and_then(Value::as_f64)
-    {
-        let angles_deg = joints_deg.iter().filter_map(Value::as_f64);
-        let angles_deg = angles_deg.map(|angle_deg| angle_deg / last_deg * embrace_deg);
-        let mut angles_deg: Vec<f64> = angles_deg.collect();
-        if let Some(last) = angles_deg.last_mut() {
-            *last = embrace_deg;
-        }
-        *joints_deg = angles_deg.into_iter().map(Value::from).collect();
-    }
-    let height_m = given(["column", "height_m"]);
-    let is_drum = |key: &[&str]| matches!(key, ["column", "drum_heights_m", _]);
-    fit_drums(table, values, height_m, keys.iter().any(|key| is_drum(key)));
 }
 
-/// Drums share a new height in their proportions; the height is that of new drums.
-fn fit_drums(table: &mut Value, values: &[(&str, f64)], height_m: Option<f64>, drums_change: bool) {
-    let Some(Value::Object(column)) = table.get_mut("column") else {
-        return;
-    };
-    let Some(Value::Array(drums)) = column.get("drum_heights_m") else {
-        return;
-    };
-    let mut drums_m: Vec<f64> = drums.iter().filter_map(Value::as_f64).collect();
-    let sum_m: f64 = drums_m.iter().sum();
-    match (height_m, drums_change) {
-        (Some(height_m), false) => {
-            for drum_m in &mut drums_m {
-                *drum_m *= height_m / sum_m;
-            }
-            column.insert("drum_heights_m".to_owned(), Value::from(drums_m));
+/// Changes values that depend on the new ones. The last joint of an arch is at the other springing; drums share a new height of their column
+/// in their proportions, and the height is that of new drums.
+fn fit(tables: &mut Entries, keys: &[Vec<&str>]) {
+    let is_new = |wanted: [&str; 2]| keys.iter().any(|key| key.starts_with(&wanted));
+    if let Some(Value::Object(arch)) = tables.get_mut("arch") {
+        let number = |key: &str| arch.get(key).and_then(Value::as_f64);
+        let measured = number("span_m").zip(number("rise_m"));
+        let measured_deg = measured.map(|(span_m, rise_m)| span::embrace_deg(span_m, rise_m));
+        let new_deg = number("embrace_deg").filter(|_| is_new(["arch", "embrace_deg"]));
+        let joints_deg = numbers(arch, "joints_deg");
+        if let Some((embrace_deg, [joints_deg @ .., last_deg])) =
+            new_deg.or(measured_deg).zip(joints_deg.as_deref())
+        {
+            let angles_deg = joints_deg
+                .iter()
+                .map(|angle_deg| angle_deg / last_deg * embrace_deg);
+            let angles_deg: Vec<f64> = angles_deg.chain([embrace_deg]).collect();
+            arch.insert("joints_deg".to_owned(), Value::from(angles_deg));
         }
-        (None, true) => {
-            for (key, value) in values {
-                if let ["column", "drum_heights_m", entry] = parts(key)[..]
-                    && let Some(index) = entry.parse::<usize>().ok().and_then(|n| n.checked_sub(1))
-                    && let Some(drum_m) = drums_m.get_mut(index)
-                {
-                    *drum_m = *value;
-                }
-            }
-            let sum_m: f64 = drums_m.iter().sum();
-            column.insert("height_m".to_owned(), Value::from(sum_m));
-        }
-        // If both are given, the reader checks that they add up.
-        _ => {}
     }
+    if let Some(Value::Object(column)) = tables.get_mut("column")
+        && let Some(drums_m) = numbers(column, "drum_heights_m")
+    {
+        let (sum_m, height_m) = (drums_m.iter().sum::<f64>(), column["height_m"].as_f64());
+        let is_new = ["height_m", "drum_heights_m"].map(|key| is_new(["column", key]));
+        match (is_new, height_m) {
+            ([true, false], Some(height_m)) => {
+                let ratio = height_m / sum_m;
+                let drums_m: Vec<f64> = drums_m.iter().map(|drum_m| drum_m * ratio).collect();
+                column.insert("drum_heights_m".to_owned(), Value::from(drums_m));
+            }
+            ([false, true], _) => {
+                column.insert("height_m".to_owned(), Value::from(sum_m));
+            }
+            // If both are given, the reader checks that they add up.
+            _ => {}
+        }
+    }
+}
+
+/// The numbers of a list.
+fn numbers(table: &Entries, key: &str) -> Option<Vec<f64>> {
+    let numbers = table.get(key)?.as_array()?.iter();
+    Some(numbers.filter_map(Value::as_f64).collect())
 }

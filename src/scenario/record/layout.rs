@@ -133,12 +133,8 @@ const TABLE_KEYS: [&str; 6] = [
 impl Format {
     /// The format that the extension of a file name indicates; the error continues the name.
     pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, &'static str> {
-        let ending = Path::new(file)
-            .extension()
-            .and_then(OsStr::to_str)
-            .unwrap_or_default()
-            .to_ascii_lowercase();
-        match ending.as_str() {
+        let ending = Path::new(file).extension().and_then(OsStr::to_str);
+        match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
             "at2" | "vt2" => Ok(Self::At2),
             "asc" => Ok(Self::Asc),
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
@@ -160,18 +156,18 @@ impl Format {
         table.optional("format", &Named(Self::ALL, Self::name))
     }
 
-    /// Reads the format, or finds it from the name of the file; `report` reports a name without one.
-    pub(super) fn read_or_ending(
-        table: &mut Table<'_>,
-        file: &str,
-        report: impl Fn(&mut Table<'_>, &str) -> Reported,
-    ) -> Option<Self> {
-        match Self::read(table) {
-            None if !table.gives("format") => Self::of_ending(file)
-                .map_err(|wrong| report(table, wrong))
-                .ok(),
-            format => format,
+    /// Reads the format, or finds it from the name of the file, if one is given.
+    pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Self> {
+        let (format, is_key) = (Self::read(table), table.gives("file"));
+        if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
+            return format;
         }
+        let ending = Self::of_ending(file);
+        let report = |wrong| match is_key {
+            true => table.wrong("file", wrong),
+            false => table.wrong_itself(wrong),
+        };
+        ending.map_err(report).ok()
     }
 }
 

@@ -33,7 +33,6 @@ mod unit;
 use std::borrow::Cow;
 use std::fmt;
 use std::fs;
-use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -45,12 +44,10 @@ pub use unit::{Recorded, Unit};
 use super::assignment::Assignment;
 use super::error::ScenarioErrors;
 use super::prelude::*;
-use super::source::not_plain;
+use super::source::{not_plain, read_at_most};
 use super::table;
 use crate::dynamics::ground::GroundMotion;
 
-/// Largest file.
-const MAX_BYTES: u64 = 64 << 20;
 /// Largest acceleration of the ground: beyond it the unit must be wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const SCALE: Number = within(&(-1e6..=1e6));
@@ -156,8 +153,7 @@ impl Record {
         scaling: Scaling,
         gravity_m_s2: f64,
     ) -> Result<GroundMotion, String> {
-        let nothing = || "the record is zero throughout".to_owned();
-        ensure(self.main.peak() != 0.0, nothing)?;
+        ensure(self.main.peak() != 0.0, || "the record is zero throughout")?;
         let rescaled = Self {
             main: self.main.scaled(scaling),
             ..self.clone()
@@ -194,7 +190,7 @@ impl Record {
             "cannot be combined with `component = \"vertical\"`; give one record per direction";
         table.refuse(is_second, "vertical", wrong)?;
         table.sound()?;
-        let gravity_m_s2 = known.gravity_m_s2.ok_or(Reported)?;
+        let gravity_m_s2 = known.1.ok_or(Reported)?;
         let record = Self {
             main: main?,
             component,
@@ -210,14 +206,8 @@ impl Record {
     }
 }
 
-/// What is known when records are read.
-#[derive(Clone, Copy)]
-pub(super) struct Known<'a> {
-    /// Records that need not be read from their files again.
-    pub(super) series: &'a [Series],
-    /// Gravity, if `[simulation]` gives a right one.
-    pub(super) gravity_m_s2: Option<f64>,
-}
+/// What is known when records are read: those that need not be read from their files again, and gravity if `[simulation]` gives a right one.
+pub(super) type Known<'a> = (&'a [Series], Option<f64>);
 
 impl Series {
     /// The unscaled samples of a file; the error continues the name of the file.
@@ -248,8 +238,7 @@ impl Series {
         let name = path.display().to_string();
         let layout = table::read_text(("", Path::new("")), keys, |table| {
             table.rename("the record");
-            let format =
-                Format::read_or_ending(table, &name, |table, wrong| table.wrong_itself(wrong));
+            let format = Format::read_or_ending(table, &name);
             Ok(Layout::read(table, format))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
@@ -379,29 +368,28 @@ impl Series {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
-    fn read(table: &mut Table<'_>, known: Known<'_>, start_s: f64) -> Reading<Self> {
+    fn read(
+        table: &mut Table<'_>,
+        (known, gravity_m_s2): Known<'_>,
+        start_s: f64,
+    ) -> Reading<Self> {
         let file = table.required("file", &TEXT);
-        let format = Format::read_or_ending(table, &file, |table, wrong| {
-            table
-                .refuse(table.gives("file"), "file", wrong)
-                .err()
-                .unwrap_or(Reported)
-        });
+        let format = Format::read_or_ending(table, &file);
         let scale = table.optional("scale", &SCALE);
         let peak_g = table.optional("peak_g", &PEAK_G);
         let at_most = "give at most one of them";
         let related = table.relate(&[AtMostOne(&["scale", "peak_g"], at_most)]);
         let layout = Layout::read(table, format);
         related.and(table.sound())?;
-        let mut series = known.series.iter();
-        let series = match series.find(|known| known.file == file && known.layout == layout) {
+        let mut known = known.iter();
+        let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
             None => Self::of_file(table.folder(), file, layout)
                 .map_err(|wrong| table.wrong_file("file", wrong))?,
         };
         let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
         let series = series.scaled(scaling);
-        series.check(table, start_s, known.gravity_m_s2.ok_or(Reported)?)?;
+        series.check(table, start_s, gravity_m_s2.ok_or(Reported)?)?;
         Ok(series)
     }
 
@@ -483,17 +471,9 @@ pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
 /// The contents of a file of at most 64 MiB.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error| format!("cannot be read: {error}");
-    if !fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err("is not a file".to_owned());
-    }
-    let mut bytes = Vec::new();
-    fs::File::open(path)
-        .and_then(|file| file.take(MAX_BYTES + 1).read_to_end(&mut bytes))
-        .map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err("is larger than 64 MiB, too large for a record".to_owned());
-    }
-    Ok(bytes)
+    let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
+    ensure(is_file, || "is not a file")?;
+    read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
 }
 
 /// Says that a vertical acceleration is impossible for a structure that rests on the ground.
