@@ -53,16 +53,11 @@ struct Parser {
 }
 
 impl Parser {
-    fn value(
-        &mut self,
-        path: String,
-        key: usize,
-        value: Spanned<DeValue<'_>>,
-        depth: usize,
-    ) -> Value {
+    fn value(&mut self, path: String, key: usize, value: Spanned<DeValue<'_>>) -> Value {
+        let is_deep = path.matches('/').count() > DEEPEST + 1;
         let (range, text) = (value.span(), self.text);
         let parsed = match value.into_inner() {
-            DeValue::Array(_) | DeValue::Table(_) if depth > DEEPEST => Value::Array(Vec::new()),
+            DeValue::Array(_) | DeValue::Table(_) if is_deep => Value::Array(Vec::new()),
             DeValue::String(string) => Value::from(string),
             // A number beyond this type is beyond the bounds of all counts.
             DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
@@ -78,21 +73,20 @@ impl Parser {
             DeValue::Datetime(_) => Value::Null,
             DeValue::Array(elements) => {
                 let elements = elements.into_iter().enumerate();
-                let parsed = elements.map(|(index, element)| {
-                    self.value(format!("{path}/{index}"), 0, element, depth + 1)
-                });
+                let parsed = elements
+                    .map(|(index, element)| self.value(format!("{path}/{index}"), 0, element));
                 parsed.collect()
             }
-            DeValue::Table(table) => Value::Object(self.table(&path, table, depth + 1)),
+            DeValue::Table(table) => Value::Object(self.table(&path, table)),
         };
         self.spans.insert(path, Span { text, range, key });
         parsed
     }
 
-    fn table(&mut self, path: &str, table: DeTable<'_>, depth: usize) -> Entries {
+    fn table(&mut self, path: &str, table: DeTable<'_>) -> Entries {
         let entries = table.into_iter().map(|(key, value)| {
             let (offset, key) = (key.span().start, key.into_inner().into_owned());
-            let value = self.value(format!("{path}/{key}"), offset, value, depth);
+            let value = self.value(format!("{path}/{key}"), offset, value);
             (key, value)
         });
         entries.collect()
@@ -136,7 +130,7 @@ impl<'a> Document<'a> {
                 }
                 let mut parser = Parser::default();
                 return Ok(Self {
-                    root: parser.table("", root.into_inner(), 0),
+                    root: parser.table("", root.into_inner()),
                     spans: parser.spans,
                     texts: vec![text],
                     unread,
@@ -183,7 +177,7 @@ impl<'a> Document<'a> {
             let (text, spans) = (self.texts.len() - 1, Spans::new());
             let (value, _) = DeTable::parse_recoverable(&assignment.text);
             let mut parser = Parser { text, spans };
-            let value = Value::Object(parser.table("", value.into_inner(), 0));
+            let value = Value::Object(parser.table("", value.into_inner()));
             let mut root = Value::Object(mem::take(&mut self.root));
             match replace(&mut root, value, assignment.depth) {
                 Ok([path, new_path]) => {

@@ -23,6 +23,8 @@ pub enum Motion {
     ElasticJoints(ElasticTable),
 }
 
+type AnyModel = Result<Box<dyn Model>, ModelError>;
+
 impl Motion {
     /// Name of the model.
     #[must_use]
@@ -58,7 +60,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Structure::model`] or [`Structure::free_hinges`].
-    pub fn model(&self, structure: &Structure) -> Result<Box<dyn Model>, ModelError> {
+    pub fn model(&self, structure: &Structure) -> AnyModel {
         Ok(match self {
             Self::FourLinks(law) => structure.model(*law)?,
             Self::FreeHinges(free) => Box::new(free.model(structure)?),
@@ -97,10 +99,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Motion::model`].
-    pub fn model_for_many_cases(
-        &self,
-        structure: &Structure,
-    ) -> Result<Box<dyn Model>, ModelError> {
+    pub fn model_for_many_cases(&self, structure: &Structure) -> AnyModel {
         match self {
             Self::FourLinks(_) => self.model(structure),
             Self::ElasticJoints(joints) => Ok(Box::new(joints.model(structure)?.for_many_cases())),
@@ -144,7 +143,7 @@ impl Motion {
         until: Option<(f64, f64)>,
     ) -> Reading<()> {
         if let Some(movements) = self.supports() {
-            supports::check(table, structure, &movements)?;
+            supports::check(table, structure, movements)?;
         }
         let coefficient = self.friction_coefficient();
         if let Some(coefficient) = coefficient {

@@ -76,17 +76,13 @@ impl Source {
 }
 
 /// The bytes of a file of at most so many MiB.
-pub(super) fn read_at_most(
-    reader: impl Read,
-    mebibytes: u64,
-    what: &str,
-) -> Result<Vec<u8>, String> {
-    let (most, mut bytes) = (mebibytes << 20, Vec::new());
+pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Vec<u8>, String> {
+    let (most, mut bytes) = (mib << 20, Vec::new());
     // The limit applies while reading, because not every file knows its size.
     let read = reader.take(most + 1).read_to_end(&mut bytes);
     read.map_err(|error| format!("cannot be read: {error}"))?;
     ensure(bytes.len() as u64 <= most, || {
-        format!("is larger than {mebibytes} MiB, too large for a {what}")
+        format!("is larger than {mib} MiB, too large for a {what}")
     })?;
     Ok(bytes)
 }

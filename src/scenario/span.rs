@@ -15,15 +15,8 @@ use crate::mechanics::arch::MeasuredAt;
 
 /// Keys that give the shape in a resolved scenario.
 const RESOLVED: [&str; 3] = ["mean_radius_m", "thickness_ratio", "embrace_deg"];
-/// Keys that give it by the span.
-const GIVEN: [&str; 6] = [
-    "span_m",
-    "rise_m",
-    "embrace_deg",
-    "measured_at",
-    "thickness_m",
-    "thickness_ratio",
-];
+/// Keys of `[arch]` that do not concern the shape.
+const OTHERS: [&str; 4] = ["depth_m", "density_kg_m3", "voussoirs", "joints_deg"];
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
 /// Spans and rises may be smaller than any radius.
@@ -107,7 +100,7 @@ impl Circular {
         // A length may be written without a point.
         let length = |value: &Value| value.as_f64().map_or_else(|| value.clone(), Value::from);
         given
-            .filter(|(key, _)| GIVEN.contains(&key.as_str()))
+            .filter(|(key, _)| !OTHERS.contains(&key.as_str()))
             .map(|(key, value)| (key.clone(), length(value)))
             .collect()
     }

@@ -131,7 +131,6 @@ impl Suite {
         );
         table.refuse_all(cases > MAX_CASES, wrong)?;
         let strongest = measure.scaling(values[values.len() - 1]);
-        let simulation = simulation.ok_or(Reported);
         let accept = |series: &Series| {
             simulation.map_or(Ok(()), |simulation| suits(series, strongest, simulation))
         };

@@ -25,11 +25,7 @@ fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
 }
 
 /// Refuses movements on which a structure does not stand: as rigid blocks, from which elastic joints fall earlier.
-pub(super) fn check(
-    table: &mut Table<'_>,
-    structure: &Structure,
-    movements: &Movements,
-) -> Reading<()> {
+pub(super) fn check(table: &mut Table<'_>, structure: &Structure, moved: Movements) -> Reading<()> {
     // Other faults of the row are reported by its users.
     let Ok(row) = structure.row() else {
         return Ok(());
@@ -40,7 +36,7 @@ pub(super) fn check(
     }
     let joints = &row.joints;
     let apart_m = (joints[joints.len() - 1].intrados_m - joints[0].intrados_m).x;
-    let closer_m = -(movements.left.spread_m + movements.right.spread_m);
+    let closer_m = -(moved.left.spread_m + moved.right.spread_m);
     let wrong = format!(
         "pushes the springings {} m towards each other, and they are {} m apart: spread_m is positive outwards",
         plain(closer_m),
@@ -50,7 +46,7 @@ pub(super) fn check(
     let Ok(mut follower) = Follower::new(&row) else {
         return Ok(());
     };
-    let wrong = match follower.move_supports(|part| *movements * part, 0.0, 1.0) {
+    let wrong = match follower.move_supports(|part| moved * part, 0.0, 1.0) {
         Ok(Reached::Falls(part)) => format!(
             "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
              `archrock spread` finds how far they may move",

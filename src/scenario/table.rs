@@ -358,21 +358,16 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the given value of `key` is wrong, if it is.
-    pub(super) fn refuse<M: Display>(
-        &mut self,
-        is_wrong: bool,
-        key: &str,
-        message: M,
-    ) -> Reading<()> {
-        if is_wrong {
+    pub(super) fn refuse<M: Display>(&mut self, when: bool, key: &str, message: M) -> Reading<()> {
+        if when {
             return Err(self.wrong(key, message));
         }
         Ok(())
     }
 
     /// Records that the whole table is wrong, if it is.
-    pub(super) fn refuse_all(&mut self, is_wrong: bool, message: impl Display) -> Reading<()> {
-        if is_wrong {
+    pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> Reading<()> {
+        if when {
             return Err(self.wrong_itself(message));
         }
         Ok(())
@@ -387,12 +382,12 @@ impl<'a> Table<'a> {
     /// tables around it are searched; if none does, it is missing in the innermost table that is given.
     pub(super) fn wrong_in<M: Display>(
         &mut self,
-        tables: &[&str],
+        path: &[&str],
         key: &str,
         message: M,
     ) -> Reported {
         let mut around = vec![(self.path.clone(), self.entries)];
-        for table in tables {
+        for table in path {
             let (path, entries) = &around[around.len() - 1];
             let Some(Value::Object(inner)) = entries.get(*table) else {
                 break;
@@ -401,7 +396,7 @@ impl<'a> Table<'a> {
         }
         let innermost = around.last().and_then(|(path, _)| self.place_of(path));
         // With nested tables, only those are searched.
-        let mut searched = around.iter().skip(tables.len().min(1)).rev();
+        let mut searched = around.iter().skip(path.len().min(1)).rev();
         let found =
             searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
         let Some((path, value)) = found else {
@@ -419,19 +414,14 @@ impl<'a> Table<'a> {
 
     /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
     /// value that is not an array counts as its only element.
-    pub(super) fn wrong_element<M: Display>(
-        &mut self,
-        key: &str,
-        at: usize,
-        message: M,
-    ) -> Reported {
+    pub(super) fn wrong_element<M: Display>(&mut self, key: &str, at: usize, wrong: M) -> Reported {
         let Some(element) = self.entries.get(key).and_then(|value| value.get(at)) else {
-            return self.wrong(key, message);
+            return self.wrong(key, wrong);
         };
         let path = format!("{}/{key}/{at}", self.path);
         let value = self.document.quote(&path, element);
         let place = self.place_of(&path).unwrap_or_default();
-        self.fault(place, format!("`{value}` in `{key}` {message}"))
+        self.fault(place, format!("`{value}` in `{key}` {wrong}"))
     }
 
     /// Records that a key is given which another excludes.

@@ -421,10 +421,7 @@ impl Demand {
         outer.given_table("demand", |table| Self::read(table, points))
     }
 
-    fn read(
-        table: &mut Table<'_>,
-        points: impl Fn(&mut Table<'_>) -> Reading<ByState<PointDemand>>,
-    ) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, points: impl Reader<ByState<PointDemand>>) -> Reading<Self> {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
         let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
             if let Some(key) = CODE_KEYS.into_iter().find(|key| table.gives(key)) {

@@ -368,11 +368,8 @@ impl Series {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
-    fn read(
-        table: &mut Table<'_>,
-        (known, gravity_m_s2): Known<'_>,
-        start_s: f64,
-    ) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, known: Known<'_>, start_s: f64) -> Reading<Self> {
+        let (known, gravity_m_s2) = known;
         let file = table.required("file", &TEXT);
         let format = Format::read_or_ending(table, &file);
         let scale = table.optional("scale", &SCALE);

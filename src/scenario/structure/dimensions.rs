@@ -32,6 +32,9 @@ named! {
     }
 }
 
+/// Ends of a line, in metres.
+type Ends = [Vector2<f64>; 2];
+
 impl Dimension {
     /// A dimension; its label has the name if the place is ambiguous: `is_named`.
     fn new(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str, is_named: bool) -> Self {
@@ -112,21 +115,15 @@ fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
 }
 
 /// Span and rise between the ends of a line and the height of its crown. The words name the line if it was set.
-fn span_and_rise(
-    ends: [Vector2<f64>; 2],
-    crown_m: f64,
-    line: Option<MeasuredAt>,
-) -> [Dimension; 2] {
+fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimension; 2] {
     let crown = Vector2::new(ends[0].x, crown_m);
     let mut dimensions = [
         Dimension::new(DimensionSide::Below, ends, "span", true),
         Dimension::new(DimensionSide::Left, [ends[0], crown], "rise", true),
     ];
-    if let Some(line) = line {
-        let words = format!(" {}", line.in_words());
-        dimensions
-            .iter_mut()
-            .for_each(|dimension| dimension.words += &words);
+    let line = line.map_or_else(String::new, |line| format!(" {}", line.in_words()));
+    for dimension in &mut dimensions {
+        dimension.words += &line;
     }
     dimensions
 }

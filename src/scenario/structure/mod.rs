@@ -107,15 +107,15 @@ impl Structure {
     ///
     /// # Errors
     /// When it does not rock as four links.
-    pub fn model(
+    pub fn model<L: Into<ImpactLaw>>(
         &self,
-        impact: impl Into<ImpactLaw>,
+        law: L,
     ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
-            Self::Arch(arch) => Box::new(FourLinks::of_arch(arch, impact)?),
+            Self::Arch(arch) => Box::new(FourLinks::of_arch(arch, law)?),
             Self::Column(column) if !column.ties().is_empty() => return Err(FourLinkError::Ties),
-            Self::Column(column) => Box::new(RockingColumn::new(column, impact)?),
-            Self::Masonry(masonry) => Box::new(four_link_row(masonry, impact)?),
+            Self::Column(column) => Box::new(RockingColumn::new(column, law)?),
+            Self::Masonry(masonry) => Box::new(four_link_row(masonry, law)?),
         })
     }
 
@@ -123,14 +123,14 @@ impl Structure {
     ///
     /// # Errors
     /// When it does not rock as four links.
-    pub fn four_links(
+    pub fn four_links<L: Into<ImpactLaw>>(
         &self,
-        impact: impl Into<ImpactLaw>,
+        law: L,
     ) -> Result<Option<FourLinks>, FourLinkError> {
         Ok(match self {
-            Self::Arch(arch) => Some(FourLinks::of_arch(arch, impact)?),
+            Self::Arch(arch) => Some(FourLinks::of_arch(arch, law)?),
             Self::Column(_) => None,
-            Self::Masonry(masonry) => Some(four_link_row(masonry, impact)?),
+            Self::Masonry(masonry) => Some(four_link_row(masonry, law)?),
         })
     }
 
@@ -235,12 +235,12 @@ impl Structure {
 }
 
 /// A row of blocks as four links, with the depth that the scenario gives.
-fn four_link_row(
+fn four_link_row<L: Into<ImpactLaw>>(
     masonry: &Masonry,
-    impact: impl Into<ImpactLaw>,
+    law: L,
 ) -> Result<FourLinks, FourLinkError> {
     let depth_m = masonry.shape.material().depth_m;
-    Ok(FourLinks::of_row(&masonry.row, impact)?.with_depth_m(depth_m)?)
+    Ok(FourLinks::of_row(&masonry.row, law)?.with_depth_m(depth_m)?)
 }
 
 /// The contents of a table that describes a structure.
