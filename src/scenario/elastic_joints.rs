@@ -83,7 +83,7 @@ impl ElasticTable {
             longest_step_s: table.optional("longest_step_s", &within(&ElasticOptions::STEP_S)),
             supports: Movements::default(),
         };
-        table.optional("contact", &Named(&["continuous"], |name| name));
+        table.optional("contact", &one_of(&["continuous"], |name| name));
         table.relate(RELATIONS)?;
         Ok(read)
     }

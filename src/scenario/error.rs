@@ -69,11 +69,8 @@ impl ScenarioErrors {
     /// Gives each fault found in the text its line and column.
     ///
     /// For a fault in an assignment, the assignment stands in place of the file, and there is no place.
-    pub(super) fn placed(
-        (text, name): (&str, &str),
-        set: &[Assignment],
-        mut faults: Vec<Fault>,
-    ) -> Self {
+    pub(super) fn placed(source: (&str, &str), set: &[Assignment], mut faults: Vec<Fault>) -> Self {
+        let (text, name) = source;
         faults.sort_by_key(|fault| (fault.text, fault.offset));
         // One pass over the text serves all faults: a hostile file can have very many.
         let mut chars = text.char_indices().peekable();

@@ -59,13 +59,8 @@ pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTab
     }
 }
 
-/// Refuses friction that cannot carry the weight of the structure; `name` is the table in which it is given.
-pub(super) fn carries(
-    table: &mut Table<'_>,
-    name: &str,
-    structure: &Structure,
-    coefficient: f64,
-) -> Reading<()> {
+/// Refuses friction that cannot carry the weight of a structure.
+pub(super) fn carries(structure: &Structure, coefficient: f64) -> Result<(), String> {
     // Other faults of the row are reported by its users.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
@@ -73,12 +68,9 @@ pub(super) fn carries(
     if friction::stands(model.row(), coefficient) != Ok(false) {
         return Ok(());
     }
-    let wrong = friction::least_coefficient(model.row()).map_or_else(
-        |error| error.to_string(),
-        |least| {
-            let least = plain(rounded_up(least));
-            format!("does not carry the weight of the structure; must be at least {least}")
-        },
-    );
-    Err(table.wrong_in(&[name], "friction_coefficient", wrong))
+    let least = friction::least_coefficient(model.row()).map_err(|error| error.to_string())?;
+    let least = plain(rounded_up(least));
+    Err(format!(
+        "does not carry the weight of the structure; must be at least {least}"
+    ))
 }

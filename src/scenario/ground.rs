@@ -72,7 +72,7 @@ impl Ground {
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let mut found = None;
         for &kind in Pulse::ALL {
-            let pulse = table.table(kind.name(), |table| PulseGround::read(table, kind, known.1));
+            let pulse = table.table(kind.name(), |table| PulseGround::read(table, kind, known));
             found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
         }
         let record = table.table(RECORD, |table| Record::read(table, known));
@@ -146,11 +146,7 @@ impl PulseGround {
             .expect(IN_RANGE)
     }
 
-    fn read(
-        table: &mut Table<'_>,
-        kind: Pulse,
-        gravity_m_s2: Option<f64>,
-    ) -> Reading<(Self, GroundMotion)> {
+    fn read(table: &mut Table<'_>, kind: Pulse, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let (is_train, periods) = (kind.is_wave_train(), WaveTrain::default().cycles);
         let has_cycles = kind == Pulse::WindowedSine;
         let pulse = Self {
@@ -165,7 +161,7 @@ impl PulseGround {
         };
         table.sound()?;
         // Whether the ground falls freely does not depend on gravity, whose value may itself be faulty.
-        let gravity_m_s2 = gravity_m_s2.unwrap_or(1.0);
+        let gravity_m_s2 = known.1.unwrap_or(1.0);
         let motion = pulse.motion(gravity_m_s2);
         match motion.free_fall_s(gravity_m_s2) {
             None => Ok((pulse, motion)),

@@ -99,9 +99,25 @@ impl Map {
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
     ) -> Reading<Self> {
-        let repeat = table.or(REPEAT, &SWITCH, false);
+        let repeat = table.or(REPEAT, &switch(), false);
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
         let _ = table.refuse(repeat && !hinges.has_joints(), REPEAT, wrong);
+        let is_no_ring = structure.is_some_and(|structure| structure.circular().is_none());
+        let is_found = motion.is_some_and(|motion| {
+            let model = motion.impact().model;
+            !matches!(model, ImpactModel::Prescribed { .. })
+        });
+        // Quantities that the scenario does not have.
+        let unsuited = |quantity| match quantity {
+            Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace if is_no_ring => {
+                Some("applies to a circular [arch] without piers and loads")
+            }
+            Quantity::Restitution if hinges.has_joints() => Some(
+                "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none",
+            ),
+            Quantity::Restitution if is_found => Some("needs model = \"prescribed\" in [impact]"),
+            _ => None,
+        };
         let mut axes = Vec::new();
         let others = table.keys_of_other_tables().into_iter();
         let others = others.map(|key| (Quantity::Other, key));
@@ -109,7 +125,9 @@ impl Map {
         let own = own.map(|quantity| (*quantity, quantity.name().to_owned()));
         for (quantity, key) in own.chain(others) {
             if let Some(sequence) = Sequence::read(table, &key, quantity.range()) {
-                suits(table, quantity, structure, (hinges, motion));
+                if let Some(wrong) = unsuited(quantity) {
+                    table.wrong(&key, wrong);
+                }
                 axes.push(Axis {
                     quantity,
                     key,
@@ -207,31 +225,3 @@ impl Serialize for Map {
 }
 
 const REPEAT: &str = "repeat";
-
-/// Refuses a quantity that the scenario does not have.
-fn suits(
-    table: &mut Table<'_>,
-    quantity: Quantity,
-    structure: Option<&Structure>,
-    (hinges, motion): (Hinges, Option<&Motion>),
-) {
-    let is_prescribed = |motion: &Motion| {
-        let model = motion.impact().model;
-        matches!(model, ImpactModel::Prescribed { .. })
-    };
-    let wrong = match quantity {
-        Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace
-            if structure.is_some_and(|structure| structure.circular().is_none()) =>
-        {
-            "applies to a circular [arch] without piers and loads"
-        }
-        Quantity::Restitution if hinges.has_joints() => {
-            "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none"
-        }
-        Quantity::Restitution if !motion.is_none_or(is_prescribed) => {
-            "needs model = \"prescribed\" in [impact]"
-        }
-        _ => return,
-    };
-    table.wrong(quantity.name(), wrong);
-}

@@ -63,12 +63,12 @@ fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
 }
 
 fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
-    let joints_file = table.required("joints", &TEXT);
-    let outlines_file = table.optional("outlines", &TEXT);
-    let kinds = Named(Supports::ALL, Supports::name);
+    let joints_file = table.required("joints", &text());
+    let outlines_file = table.optional("outlines", &text());
+    let kinds = one_of(Supports::ALL, Supports::name);
     let supports = table.or("supports", &kinds, Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
-    let densities = OneOrMore(&MAGNITUDE);
+    let densities = one_or_more(&MAGNITUDE);
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
     table.sound()?;
     let path = table.path(&joints_file);
@@ -231,7 +231,10 @@ impl Additions {
         let key = shape.name();
         let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
-        let masonry = tie::tied(table, &self.ties, masonry, gravity_m_s2)?;
+        let on = (&masonry.row, masonry.springing_joints());
+        let ties = tie::placed(table, &self.ties, on)?;
+        let tied = masonry.with_ties(ties, gravity_m_s2);
+        let masonry = tied.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
         match falls(&masonry.row) {
             Ok(None) => Ok(masonry),
             Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
@@ -286,7 +289,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
         value.or(table.gives(key).then_some(1.0))
     });
     let blocks = table.optional("blocks", &PIER_BLOCKS);
-    let pedestal = table.optional("pedestal", &SWITCH);
+    let pedestal = table.optional("pedestal", &switch());
     let one = |table: &mut Table<'_>| {
         let mut number = |key, both: Option<f64>| match both {
             Some(both) => table.or(key, &MAGNITUDE, both),
@@ -300,7 +303,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
             width_m: number("width_m", both[1]),
             density_kg_m3: table.optional("density_kg_m3", &MAGNITUDE).or(both[2]),
             blocks: table.or("blocks", &PIER_BLOCKS, blocks.unwrap_or(1)),
-            pedestal: table.or("pedestal", &SWITCH, pedestal.unwrap_or(false)),
+            pedestal: table.or("pedestal", &switch(), pedestal.unwrap_or(false)),
         })
     };
     let (left, right) = (table.table("left", one), table.table("right", one));

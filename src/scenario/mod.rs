@@ -294,7 +294,7 @@ impl Scenario {
 
     /// Reads a scenario; records that are known are not read from their files again.
     fn read_table(table: &mut Table<'_>, known: &[Series], changes: &Changes<'_>) -> Reading<Self> {
-        let title = table.optional("title", &TEXT);
+        let title = table.optional("title", &text());
         let motion = motion::Tables::read(table, changes.hinges, changes.statics);
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
@@ -313,7 +313,7 @@ impl Scenario {
         let suite = table.given_table("suite", |table| Suite::read(table, simulated));
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
         let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
-        let demand = Demand::read_given(table, options.confidence_factor);
+        let demand = Demand::read_given(table, &options);
         let uncertain = table.given_table("uncertain", Uncertain::read);
         let (verify, demand, ()) = (verify?, demand?, suits?);
         if let Some(verify) = &verify {

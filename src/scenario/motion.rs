@@ -147,7 +147,9 @@ impl Motion {
         }
         let coefficient = self.friction_coefficient();
         if let Some(coefficient) = coefficient {
-            free_hinges::carries(table, self.table_name(), structure, coefficient)?;
+            free_hinges::carries(structure, coefficient).map_err(|wrong| {
+                table.wrong_in(&[self.table_name()], "friction_coefficient", wrong)
+            })?;
         }
         match self {
             Self::FreeHinges(free) if self.supports().is_some() && coefficient.is_some() => {

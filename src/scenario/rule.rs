@@ -104,78 +104,90 @@ impl Rule for Number {
     }
 }
 
-/// An array whose elements follow a rule.
-pub(super) struct List<'a, R>(pub(super) &'a R);
+/// A rule made of its parts: the allowed values in words, the JSON schema, and a reader whose error continues a sentence about the value.
+pub(super) struct Custom<'a, T>(
+    pub(super) String,
+    pub(super) Value,
+    pub(super) Box<dyn Fn(&Value) -> Result<T, String> + 'a>,
+);
 
-impl<R: Rule> Rule for List<'_, R> {
-    type Read = Vec<R::Read>;
-
-    fn allowed(&self) -> String {
-        format!("an array, each element {}", self.0.allowed())
-    }
-
-    fn read(&self, value: &Value) -> Result<Self::Read, String> {
-        let elements = value.as_array().ok_or_else(|| is(value))?;
-        let read = |(element, place): (&Value, usize)| {
-            let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
-            self.0.read(element).map_err(wrong)
-        };
-        elements.iter().zip(1..).map(read).collect()
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "type": "array", "items": self.0.schema() })
-    }
-}
-
-/// Values that follow a rule: a single one, or an array of at least one.
-pub(super) struct OneOrMore<'a, R>(pub(super) &'a R);
-
-impl<R: Rule> Rule for OneOrMore<'_, R> {
-    type Read = Vec<R::Read>;
-
-    fn allowed(&self) -> String {
-        format!("{} or an array of at least one", self.0.allowed())
-    }
-
-    fn read(&self, value: &Value) -> Result<Self::Read, String> {
-        match value {
-            Value::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
-            Value::Array(_) => List(self.0).read(value),
-            _ => Ok(vec![self.0.read(value)?]),
-        }
-    }
-
-    fn schema(&self) -> Value {
-        let one = self.0.schema();
-        json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] })
-    }
-}
-
-/// Any value of a kind: the kind in words and as a JSON schema, and the value of that kind.
-pub(super) struct Any<T>(&'static str, &'static str, fn(&Value) -> Option<T>);
-
-/// True or false.
-pub(super) const SWITCH: Any<bool> = Any("true or false", "boolean", Value::as_bool);
-/// Any string.
-pub(super) const TEXT: Any<String> = Any("a string", "string", |value| {
-    value.as_str().map(str::to_owned)
-});
-
-impl<T: Serialize> Rule for Any<T> {
+impl<T: Serialize> Rule for Custom<'_, T> {
     type Read = T;
 
     fn allowed(&self) -> String {
-        self.0.to_owned()
+        self.0.clone()
     }
 
     fn read(&self, value: &Value) -> Result<T, String> {
-        (self.2)(value).ok_or_else(|| is(value))
+        (self.2)(value)
     }
 
     fn schema(&self) -> Value {
-        json!({ "type": self.1 })
+        self.1.clone()
     }
+}
+
+/// An array whose elements follow a rule.
+pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
+    let allowed = format!("an array, each element {}", rule.allowed());
+    let read = |value: &Value| {
+        let elements = value.as_array().ok_or_else(|| is(value))?;
+        let read = |(element, place): (&Value, usize)| {
+            let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
+            rule.read(element).map_err(wrong)
+        };
+        elements.iter().zip(1..).map(read).collect()
+    };
+    let schema = json!({ "type": "array", "items": rule.schema() });
+    Custom(allowed, schema, Box::new(read))
+}
+
+/// Values that follow a rule: a single one, or an array of at least one.
+pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
+    let allowed = format!("{} or an array of at least one", rule.allowed());
+    let (one, list) = (rule.schema(), list(rule));
+    let read = move |value: &Value| match value {
+        Value::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
+        Value::Array(_) => list.read(value),
+        _ => Ok(vec![rule.read(value)?]),
+    };
+    let schema = json!({ "anyOf": [one, { "type": "array", "items": one, "minItems": 1 }] });
+    Custom(allowed, schema, Box::new(read))
+}
+
+/// True or false.
+pub(super) fn switch() -> Custom<'static, bool> {
+    any("true or false", "boolean", Value::as_bool)
+}
+
+/// Any string.
+pub(super) fn text() -> Custom<'static, String> {
+    any("a string", "string", |value| {
+        value.as_str().map(str::to_owned)
+    })
+}
+
+/// Any value of a kind of JSON.
+fn any<T: 'static>(allowed: &str, kind: &str, read: fn(&Value) -> Option<T>) -> Custom<'static, T> {
+    let read = move |value: &Value| read(value).ok_or_else(|| is(value));
+    Custom(allowed.to_owned(), json!({ "type": kind }), Box::new(read))
+}
+
+/// One of these things by its name.
+pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<'_, T> {
+    let names: Vec<_> = all.iter().map(|one| name(*one)).collect();
+    let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
+    let (allowed, schema) = (
+        format!("one of {}", quoted.join(", ")),
+        json!({ "enum": names }),
+    );
+    let read = move |value: &Value| {
+        let text = value.as_str().ok_or_else(|| is(value))?;
+        let index = names.iter().position(|name| *name == text);
+        let unknown = || format!("is unknown{}", did_you_mean(text, &names));
+        index.map(|index| all[index]).ok_or_else(unknown)
+    };
+    Custom(allowed, schema, Box::new(read))
 }
 
 /// A whole number in a range, and why the range begins where it does.
@@ -201,35 +213,6 @@ impl Rule for Count {
 
     fn schema(&self) -> Value {
         json!({ "type": "integer", "minimum": self.0.start(), "maximum": self.0.end() })
-    }
-}
-
-/// One of these things by its name.
-pub(super) struct Named<'a, T>(pub(super) &'a [T], pub(super) fn(T) -> &'static str);
-
-impl<T: Copy> Named<'_, T> {
-    fn names(&self) -> Vec<&'static str> {
-        self.0.iter().map(|&one| (self.1)(one)).collect()
-    }
-}
-
-impl<T: Copy + Serialize> Rule for Named<'_, T> {
-    type Read = T;
-
-    fn allowed(&self) -> String {
-        let names: Vec<_> = self.names().iter().map(|s| format!("{s:?}")).collect();
-        format!("one of {}", names.join(", "))
-    }
-
-    fn read(&self, value: &Value) -> Result<T, String> {
-        let text = value.as_str().ok_or_else(|| is(value))?;
-        let mut all = self.0.iter().copied();
-        all.find(|&one| (self.1)(one) == text)
-            .ok_or_else(|| format!("is unknown{}", did_you_mean(text, &self.names())))
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "enum": self.names() })
     }
 }
 

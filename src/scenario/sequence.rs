@@ -32,29 +32,20 @@ pub enum Sequence {
 }
 
 /// An array of ascending numbers.
-struct Ascending<'a>(&'a Number);
-
-impl Rule for Ascending<'_> {
-    type Read = Vec<f64>;
-
-    fn allowed(&self) -> String {
-        format!(
-            "an array of ascending numbers or {{ from = ..., to = ..., count = ... }}, each {}",
-            self.0.allowed()
-        )
-    }
-
-    fn read(&self, value: &Value) -> Result<Vec<f64>, String> {
+fn ascending(number: &Number) -> Custom<'_, Vec<f64>> {
+    let allowed = format!(
+        "an array of ascending numbers or {{ from = ..., to = ..., count = ... }}, each {}",
+        number.allowed()
+    );
+    let read = |value: &Value| {
         ensure(!value.is_number(), || "is a single number")?;
-        let values = List(self.0).read(value)?;
+        let values = list(number).read(value)?;
         ensure(!values.is_empty(), || "is empty")?;
         ensure(ascend(&values), || "does not ascend")?;
         Ok(values)
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "type": "array", "items": self.0.schema(), "minItems": 1 })
-    }
+    };
+    let schema = json!({ "type": "array", "items": number.schema(), "minItems": 1 });
+    Custom(allowed, schema, Box::new(read))
 }
 
 fn ascend(values: &[f64]) -> bool {
@@ -98,14 +89,14 @@ impl Sequence {
                 return range;
             }
         }
-        table.optional(key, &Ascending(rule)).map(Self::List)
+        table.optional(key, &ascending(rule)).map(Self::List)
     }
 
     fn read_range(table: &mut Table<'_>, rule: &Number) -> Reading<Self> {
         let from = table.required("from", rule);
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);
-        let spacings = Named(Spacing::ALL, Spacing::name);
+        let spacings = one_of(Spacing::ALL, Spacing::name);
         let spacing = table.or("spacing", &spacings, Spacing::Linear);
         table.sound()?;
         let wrong = format!("is not above `from`; must be above {}", short(from));

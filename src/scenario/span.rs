@@ -40,7 +40,7 @@ impl Circular {
         let thickness_m = table.optional("thickness_m", &POSITIVE);
         let embrace_deg = table.optional("embrace_deg", &EMBRACE_DEG);
         let rise_m = table.optional("rise_m", &LENGTH);
-        let lines = Named(MeasuredAt::ALL, MeasuredAt::name);
+        let lines = one_of(MeasuredAt::ALL, MeasuredAt::name);
         let measured_at = table.optional("measured_at", &lines);
         let radius = format!(
             "lacks `mean_radius_m`: give {}, or `span_m` where it is `measured_at`",

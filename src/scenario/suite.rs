@@ -110,14 +110,14 @@ const MAX_CASES: usize = 1_000_000;
 impl Suite {
     /// Reads `[suite]` with its records; `None`: `[simulation]` is faulty.
     pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> Reading<Self> {
-        let patterns = table.required(RECORDS, &OneOrMore(&TEXT));
+        let patterns = table.required(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
             let levels = Sequence::read(table, measure.name(), measure.range())?;
             Some((measure, levels))
         });
         let levels: Vec<_> = levels.collect();
-        let both_signs = table.or("both_signs", &SWITCH, true);
+        let both_signs = table.or("both_signs", &switch(), true);
         let spectral = Spectral::read(table);
         let related = table.relate(&[OneOf(&["scales", "peaks_g"], None)]);
         let listing = Listing::read(table, &[(RECORDS, patterns)], format);

@@ -15,7 +15,6 @@ use nalgebra::Vector2;
 use super::prelude::*;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row};
 use crate::mechanics::column::Column;
-use crate::mechanics::masonry::Masonry;
 use crate::mechanics::stability::falls;
 use crate::mechanics::tie::{Anchor, Tie, TieError};
 
@@ -87,7 +86,7 @@ impl TieTable {
     }
 
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let names = Named(Between::ALL, Between::name);
+        let names = one_of(Between::ALL, Between::name);
         let stiffness = within(&(1e-3..=STIFFEST_N_M));
         let stress = within(&(1e-3..=1e5));
         let read = Self {
@@ -191,7 +190,7 @@ impl TieTable {
 }
 
 fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
-    let numbers = table.optional(key, &List(&COORDINATE_M))?;
+    let numbers = table.optional(key, &list(&COORDINATE_M))?;
     let point = <[f64; 2]>::try_from(numbers);
     let wrong = "has not two elements; must be a point [x, y] in m";
     table.accept(key, point.map_err(|_| wrong)).ok()
@@ -267,7 +266,7 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
 }
 
 /// The ties of a structure.
-fn placed(
+pub(super) fn placed(
     table: &mut Table<'_>,
     ties: &[TieTable],
     (row, springings): (&Row, Option<[usize; 2]>),
@@ -277,18 +276,6 @@ fn placed(
         placed.map_err(|wrong| table.wrong_element("tie", index, wrong))
     });
     placed.collect()
-}
-
-/// Masonry with its ties.
-pub(super) fn tied(
-    table: &mut Table<'_>,
-    ties: &[TieTable],
-    masonry: Masonry,
-    gravity_m_s2: f64,
-) -> Reading<Masonry> {
-    let ties = placed(table, ties, (&masonry.row, masonry.springing_joints()))?;
-    let tied = masonry.with_ties(ties, gravity_m_s2);
-    tied.map_err(|(index, error)| table.wrong_element("tie", index, error))
 }
 
 /// A column of any number of drums with its ties.

@@ -90,9 +90,9 @@ impl Spread {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
         let from = table.optional("from", &ANY_NUMBER);
         let to = table.optional("to", &ANY_NUMBER);
-        let spacing = table.optional("spacing", &Named(Spacing::ALL, Spacing::name));
+        let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
         let deviation = table.optional("deviation", &above(0.0, 1e12));
-        let distributions = Named(Distribution::ALL, Distribution::name);
+        let distributions = one_of(Distribution::ALL, Distribution::name);
         let distribution = table.optional("distribution", &distributions);
         let relations = [
             OneOf(&["from", "deviation"], Some(SPREAD)),
@@ -170,7 +170,7 @@ impl Uncertain {
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
-        let total_indices = table.or(TOTAL_INDICES, &SWITCH, false);
+        let total_indices = table.or(TOTAL_INDICES, &switch(), false);
         let mut keys = Vec::new();
         for key in table.keys_of_other_tables() {
             if let Some(spread) = table.table(&key, Spread::read) {

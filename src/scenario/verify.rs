@@ -141,7 +141,8 @@ impl Records {
     }
 
     fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
-        let patterns = RECORDS.map(|(_, key)| Some((key, table.optional(key, &OneOrMore(&TEXT))?)));
+        let patterns =
+            RECORDS.map(|(_, key)| Some((key, table.optional(key, &one_or_more(&text()))?)));
         let given: Vec<_> = patterns.into_iter().flatten().collect();
         if given.is_empty() && !table.describes() {
             return Ok(Self::default());
@@ -207,7 +208,7 @@ impl Default for Verify {
 impl Verify {
     /// Reads `[verify]`, whose files are relative to `folder`.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
-        let sides = Named(CheckedSides::ALL, CheckedSides::name);
+        let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
             confidence_factor: table.or("confidence_factor", &CONFIDENCE, CONFIDENCE_FACTOR),
             behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, BEHAVIOUR_FACTOR),
@@ -406,13 +407,10 @@ const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "heigh
 
 impl Demand {
     /// Reads `[demand]` of the scenario.
-    pub(super) fn read_given(
-        outer: &mut Table<'_>,
-        confidence_factor: f64,
-    ) -> Reading<Option<Self>> {
+    pub(super) fn read_given(outer: &mut Table<'_>, options: &Verify) -> Reading<Option<Self>> {
         let points = |table: &mut Table<'_>| {
             Ok(read_by_state(table, |table, state| {
-                PointDemand::read(table, state, confidence_factor)
+                PointDemand::read(table, state, options.confidence_factor)
             }))
         };
         if outer.describes() {
@@ -451,8 +449,8 @@ impl Demand {
 
 impl CodeDemand {
     fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let soil = table.required("soil", &Named(Soil::ALL, Soil::name));
-        let categories = Named(Topography::ALL, Topography::name);
+        let soil = table.required("soil", &one_of(Soil::ALL, Soil::name));
+        let categories = one_of(Topography::ALL, Topography::name);
         let category = table.optional("topography", &categories);
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
@@ -546,7 +544,7 @@ impl BuildingMode {
 
 impl PointDemand {
     fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> Reading<Self> {
-        let spectrum = table.required("spectrum", &TEXT);
+        let spectrum = table.required("spectrum", &text());
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
         let default = StateRule::circolare(state, confidence_factor);
         let rule = default.map(|default| {

@@ -17,12 +17,7 @@ const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
 pub(super) fn parse(text: &str, unit: Option<Unit>, quantity: Recorded) -> Parsed<Contents> {
-    let Header {
-        line,
-        count,
-        step_s,
-        unit: named,
-    } = Header::parse(text, unit, quantity)?;
+    let (line, [count, step_s], named) = header(text, unit, quantity)?;
     let gravity = Some(Unit::Gravity).filter(|_| quantity == Recorded::Acceleration);
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
     let unit = unit.or(named).or(gravity);
@@ -51,69 +46,56 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// The contents of the header.
-struct Header {
-    /// Its last line, from 1.
-    line: usize,
-    /// Number of samples.
-    count: f64,
-    step_s: f64,
-    /// The unit of the samples, if the header names it.
-    unit: Option<Unit>,
-}
-
 const COUNT: &str = "NPTS";
 const STEP: &str = "DT";
 
-impl Header {
-    fn parse(text: &str, known: Option<Unit>, quantity: Recorded) -> Parsed<Self> {
-        let (mut unit, mut items, mut last) = (None, Vec::new(), 1);
-        for (text, line) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
-            last = line;
-            let end = text.char_indices().nth(MAX_HEADER_LINE_CHARS);
-            let text = end.map_or(text, |(end, _)| &text[..end]);
-            let fault = LineFault::on::<String>(line);
-            check_quantity(text, quantity).map_err(fault)?;
-            if let Some(named) = unit_named(text) {
-                let remedy = "give `unit`: what the samples are in";
-                unit = match known {
-                    Some(_) => Unit::written(named).or(known),
-                    None => Some(Unit::of_header(named, quantity, remedy).map_err(fault)?),
-                };
-            }
-            let begins = header_words(text).any(|word| word.eq_ignore_ascii_case(COUNT));
-            if begins || !items.is_empty() {
-                items.extend(header_words(text).filter(|word| is_item(word)));
-            }
-            if position(&items, STEP).is_some() {
-                let missing = || fault("gives no numbers for NPTS and DT".to_owned());
-                let (count, step_s) = values(&items).ok_or_else(missing)?;
-                let step_s = checked_step(STEP, step_s).map_err(fault)?;
-                let is_count = count.fract() == 0.0 && (2.0..=MAX_SAMPLES as f64).contains(&count);
-                ensure(is_count, || {
-                    let count = plain(count);
-                    fault(format!(
-                        "{COUNT} is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
-                    ))
-                })?;
-                return Ok(Self {
-                    line,
-                    count,
-                    step_s,
-                    unit,
-                });
-            }
-            // The number of samples and their spacing may be on two consecutive lines.
-            if !items.is_empty() && !begins {
-                break;
-            }
+/// The last line of the header, from 1, the number of samples and their step in s, and the unit that it names.
+fn header(
+    text: &str,
+    known: Option<Unit>,
+    quantity: Recorded,
+) -> Parsed<(usize, [f64; 2], Option<Unit>)> {
+    let (mut unit, mut items, mut last) = (None, Vec::new(), 1);
+    for (text, line) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
+        last = line;
+        let end = text.char_indices().nth(MAX_HEADER_LINE_CHARS);
+        let text = end.map_or(text, |(end, _)| &text[..end]);
+        let fault = LineFault::on::<String>(line);
+        check_quantity(text, quantity).map_err(fault)?;
+        if let Some(named) = unit_named(text) {
+            let remedy = "give `unit`: what the samples are in";
+            unit = match known {
+                Some(_) => Unit::written(named).or(known),
+                None => Some(Unit::of_header(named, quantity, remedy).map_err(fault)?),
+            };
         }
-        let message = match items.is_empty() {
-            true => "there is no NPTS (number of samples) up to here: is this an AT2 file?",
-            false => "the header has no DT (time step) up to here",
-        };
-        Err(LineFault::on(last)(message))
+        let begins = header_words(text).any(|word| word.eq_ignore_ascii_case(COUNT));
+        if begins || !items.is_empty() {
+            items.extend(header_words(text).filter(|word| is_item(word)));
+        }
+        if position(&items, STEP).is_some() {
+            let missing = || fault("gives no numbers for NPTS and DT".to_owned());
+            let (count, step_s) = values(&items).ok_or_else(missing)?;
+            let step_s = checked_step(STEP, step_s).map_err(fault)?;
+            let is_count = count.fract() == 0.0 && (2.0..=MAX_SAMPLES as f64).contains(&count);
+            ensure(is_count, || {
+                let count = plain(count);
+                fault(format!(
+                    "{COUNT} is {count}; must be a whole number from 2 to {MAX_SAMPLES}"
+                ))
+            })?;
+            return Ok((line, [count, step_s], unit));
+        }
+        // The number of samples and their spacing may be on two consecutive lines.
+        if !items.is_empty() && !begins {
+            break;
+        }
     }
+    let message = match items.is_empty() {
+        true => "there is no NPTS (number of samples) up to here: is this an AT2 file?",
+        false => "the header has no DT (time step) up to here",
+    };
+    Err(LineFault::on(last)(message))
 }
 
 /// Whether a word of the header is a label or a number.

@@ -34,7 +34,7 @@ pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
 /// Reads a table with one sample per row.
 fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Parsed<Samples> {
     let mut rows = Rows::new(text, layout.decimal);
-    let first = rows.next().ok_or_else(|| nothing(text))?;
+    let first = rows.next().ok_or_else(|| nothing(text, 0))?;
     let columns = Columns::find(layout, times, &first)?;
     let unit_s = columns.time_unit_s(&first);
     let (mut times_s, mut values) = (Vec::new(), Values::default());
@@ -73,8 +73,9 @@ fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Parsed<Samples> 
 }
 
 /// Reports that a table has no rows.
-fn nothing(text: &str) -> LineFault {
-    let line = text.lines().take_while(|line| line.is_empty()).count();
+fn nothing(text: &str, last_line: usize) -> LineFault {
+    let blank = text.lines().take_while(|line| line.is_empty()).count();
+    let line = if last_line > 0 { last_line } else { blank };
     LineFault::on(line.max(1))("there are no samples")
 }
 

@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
-use super::unit::{AnyUnit, Recorded, Unit};
+use super::unit::{Recorded, Unit, any_unit};
 use crate::scenario::prelude::*;
 
 named! {
@@ -153,7 +153,7 @@ impl Format {
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
-        table.optional("format", &Named(Self::ALL, Self::name))
+        table.optional("format", &one_of(Self::ALL, Self::name))
     }
 
     /// Reads the format, or finds it from the name of the file, if one is given.
@@ -176,19 +176,19 @@ impl Layout {
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
-        let time_column = table.optional("time_column", &AnyColumn);
-        let acceleration_column = table.optional("acceleration_column", &AnyColumn);
-        let wrapped = table.or("wrapped", &SWITCH, false);
-        let decimals = Named(Decimal::ALL, Decimal::name);
-        let quantities = Named(Recorded::ALL, Recorded::name);
+        let time_column = table.optional("time_column", &any_column());
+        let acceleration_column = table.optional("acceleration_column", &any_column());
+        let wrapped = table.or("wrapped", &switch(), false);
+        let decimals = one_of(Decimal::ALL, Decimal::name);
+        let quantities = one_of(Recorded::ALL, Recorded::name);
         let mut layout = Self {
             acceleration_column,
             wrapped,
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
             decimal: table.or("decimal", &decimals, Decimal::Point),
-            unit: table.optional("unit", &AnyUnit),
+            unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, Recorded::Acceleration),
-            remove_mean: table.or("remove_mean", &SWITCH, false),
+            remove_mean: table.or("remove_mean", &switch(), false),
             ..Self::new(format.unwrap_or(Format::Csv))
         };
         let (Some(format), quantity) = (format, layout.quantity) else {
@@ -224,7 +224,7 @@ impl Layout {
             }
             let column = time_column.unwrap_or(TableColumn::Number(1));
             layout.times = Some(dt_s.map_or(Times::Column(column), Times::Step));
-            layout.unit = Some(table.needed("unit", &AnyUnit, layout.unit));
+            layout.unit = Some(table.needed("unit", &any_unit(), layout.unit));
         }
         layout
     }
@@ -237,23 +237,12 @@ impl Layout {
 }
 
 /// Name or number of a column.
-struct AnyColumn;
-
-impl Rule for AnyColumn {
-    type Read = TableColumn;
-
-    fn allowed(&self) -> String {
-        format!("the name of a column, or {}", COLUMN_NUMBER.allowed())
-    }
-
-    fn read(&self, value: &Value) -> Result<TableColumn, String> {
-        match value {
-            Value::String(name) => Ok(TableColumn::Name(name.clone())),
-            _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
-        }
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "anyOf": [{ "type": "string" }, COLUMN_NUMBER.schema()] })
-    }
+fn any_column() -> Custom<'static, TableColumn> {
+    let allowed = format!("the name of a column, or {}", COLUMN_NUMBER.allowed());
+    let read = |value: &Value| match value {
+        Value::String(name) => Ok(TableColumn::Name(name.clone())),
+        _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
+    };
+    let schema = json!({ "anyOf": [{ "type": "string" }, COLUMN_NUMBER.schema()] });
+    Custom(allowed, schema, Box::new(read))
 }

@@ -180,7 +180,7 @@ impl Record {
 
     /// Reads `[ground.record]` and builds its motion.
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
-        let components = Named(Component::ALL, Component::name);
+        let components = one_of(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
         let main = Series::read(table, known, start_s);
@@ -370,7 +370,7 @@ impl Series {
 
     fn read(table: &mut Table<'_>, known: Known<'_>, start_s: f64) -> Reading<Self> {
         let (known, gravity_m_s2) = known;
-        let file = table.required("file", &TEXT);
+        let file = table.required("file", &text());
         let format = Format::read_or_ending(table, &file);
         let scale = table.optional("scale", &SCALE);
         let peak_g = table.optional("peak_g", &PEAK_G);

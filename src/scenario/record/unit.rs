@@ -88,25 +88,15 @@ impl Unit {
 }
 
 /// A unit, by its name or in a spelling that files have.
-pub(super) struct AnyUnit;
-
-const NAMES: Named<Unit> = Named(Unit::ALL, Unit::name);
-
-impl Rule for AnyUnit {
-    type Read = Unit;
-
-    fn allowed(&self) -> String {
-        format!("{} or \"gal\"", NAMES.allowed())
-    }
-
-    fn read(&self, value: &Value) -> Result<Unit, String> {
+pub(super) fn any_unit() -> Custom<'static, Unit> {
+    let names = one_of(Unit::ALL, Unit::name);
+    let allowed = format!("{} or \"gal\"", names.allowed());
+    let read = move |value: &Value| {
         let written = value.as_str().and_then(Unit::written);
-        written.map_or_else(|| NAMES.read(value), Ok)
-    }
-
-    fn schema(&self) -> Value {
-        json!({ "type": "string", "examples": Unit::ALL })
-    }
+        written.map_or_else(|| names.read(value), Ok)
+    };
+    let schema = json!({ "type": "string", "examples": Unit::ALL });
+    Custom(allowed, schema, Box::new(read))
 }
 
 #[cfg(test)]

@@ -257,7 +257,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
-    let joints_deg = table.optional("joints_deg", &List(&JOINT_DEG));
+    let joints_deg = table.optional("joints_deg", &list(&JOINT_DEG));
     let equal = "`voussoirs` are equal: give one of them";
     table.agrees(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
     let circular = circular?;
@@ -335,11 +335,11 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
-    let drum_heights_m = table.optional("drum_heights_m", &List(&MAGNITUDE));
+    let drum_heights_m = table.optional("drum_heights_m", &list(&MAGNITUDE));
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
-    let pedestal = table.or("pedestal", &SWITCH, false);
+    let pedestal = table.or("pedestal", &switch(), false);
     if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);

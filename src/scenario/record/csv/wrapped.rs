@@ -63,11 +63,7 @@ pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Parsed<Sample
         }
     }
     let line = values.line;
-    if values.values.is_empty() {
-        let empty = nothing(table);
-        let line = if line > 0 { line } else { empty.line };
-        return Err(LineFault { line, ..empty });
-    }
+    ensure(!values.values.is_empty(), || nothing(table, line))?;
     values.evenly(step_s, line, "`dt_s`")
 }
 
