@@ -104,12 +104,11 @@ impl Rule for Number {
     }
 }
 
-/// A rule made of its parts: the allowed values in words, the JSON schema, and a reader whose error continues a sentence about the value.
-pub(super) struct Custom<'a, T>(
-    pub(super) String,
-    pub(super) Value,
-    pub(super) Box<dyn Fn(&Value) -> Result<T, String> + 'a>,
-);
+/// Reads a value; the error continues a sentence about it.
+type Read<'a, T> = Box<dyn Fn(&Value) -> Result<T, String> + 'a>;
+
+/// A rule made of its parts: the allowed values in words, the JSON schema, and a reader.
+pub(super) struct Custom<'a, T>(pub(super) String, pub(super) Value, pub(super) Read<'a, T>);
 
 impl<T: Serialize> Rule for Custom<'_, T> {
     type Read = T;
