@@ -149,12 +149,8 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
 pub fn moments(values: &[f64]) -> [f64; 2] {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
-    let variance = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>()
-        / n;
-    [mean, variance]
+    let squares = values.iter().map(|value| (value - mean).powi(2));
+    [mean, squares.sum::<f64>() / n]
 }
 
 /// Pearson's correlation of two lists; `None` if one of them does not vary.

@@ -168,10 +168,8 @@ impl Ending {
             let summary = checked.own.map_err(|error| error.to_string())?;
             Self::from_summary(&summary, checked.safe_from_s, checked.doubt)
         };
-        checked(model, cases, until)
-            .into_iter()
-            .map(ending)
-            .collect()
+        let checked = checked(model, cases, until).into_iter();
+        checked.map(ending).collect()
     }
 
     /// The ending of a history, and why it is uncertain, if it is.

@@ -235,10 +235,9 @@ impl Crossing {
 
     /// The crossings on a column, whose cells go up.
     fn of(column: &[CellCounts], logarithmic: bool) -> Self {
-        let known: Vec<[f64; 2]> = column
-            .iter()
-            .filter_map(|cell| Some([cell.at[1], cell.probability()?]))
-            .collect();
+        let known = column.iter();
+        let known = known.filter_map(|cell| Some([cell.at[1], cell.probability()?]));
+        let known: Vec<[f64; 2]> = known.collect();
         let first = |level: f64| {
             let index = known.iter().position(|[_, share]| *share >= level)?;
             let [y, share] = known[index];

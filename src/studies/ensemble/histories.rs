@@ -72,14 +72,13 @@ impl Histories {
             .map_err(|error| error.to_string())?;
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
-        let body = most.map_or(0, |(body, _)| body);
         // A history that ends early may last longer in another sample.
         let end_s = request.end_s.min(2.0 * summary.end_s);
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
         Ok(Self {
-            body,
+            body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
             own: (
@@ -127,11 +126,8 @@ impl Question for Histories {
             };
             outcomes.insert(name.to_owned(), json!(share));
             if share.count > 0 {
-                lines.push(format!(
-                    "{}: {}",
-                    name.replace('_', " "),
-                    share_in_words(&share)
-                ));
+                let name = name.replace('_', " ");
+                lines.push(format!("{name}: {}", share_in_words(&share)));
             }
         }
         lines.push(peak_band.map_or("largest rotation: not known".to_owned(), peaks_in_words));
@@ -140,13 +136,13 @@ impl Question for Histories {
             let answer = line.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
-        all.push(if has_joints {
-            let of = |answer: &HistoryAnswer| answer.potential_over_barrier;
-            of_answer("peak_potential_over_barrier", of)
-        } else {
-            of_answer("peak_rotation_rad", |answer: &HistoryAnswer| {
-                answer.peak_rotation_rad
-            })
+        all.push(match has_joints {
+            true => of_answer("peak_potential_over_barrier", |one: &HistoryAnswer| {
+                one.potential_over_barrier
+            }),
+            false => of_answer("peak_rotation_rad", |one: &HistoryAnswer| {
+                one.peak_rotation_rad
+            }),
         });
         let bands = self.bands(samples);
         Ok(Findings {
@@ -248,18 +244,12 @@ impl HistoryAnswer {
 
     /// The rotation at an instant; infinite, with its sign, once it has overturned.
     fn rotation_rad(&self, time: usize) -> f64 {
-        let last = || {
-            let last = self.course_rad.last().copied().map_or(0.0, f64::from);
-            if self.overturned_itself() {
-                f64::INFINITY.copysign(last)
-            } else {
-                last
-            }
-        };
-        self.course_rad
-            .get(time)
-            .copied()
-            .map_or_else(last, f64::from)
+        let last = self.course_rad.last().copied().map_or(0.0, f64::from);
+        match self.course_rad.get(time) {
+            Some(rotation_rad) => f64::from(*rotation_rad),
+            None if self.overturned_itself() => f64::INFINITY.copysign(last),
+            None => last,
+        }
     }
 }
 
@@ -305,11 +295,8 @@ fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
         Ok((_, Verdict::Overturns)) => "overturns".to_owned(),
         Ok((_, Verdict::Uncertain)) => "is uncertain".to_owned(),
         Ok((own, _)) => {
-            let rotation = own
-                .ending
-                .peak
-                .over_critical()
-                .map(|part| (part, "rotation"));
+            let rotation = own.ending.peak.over_critical();
+            let rotation = rotation.map(|part| (part, "rotation"));
             let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
             // Rounded down, as in `run`, so that a value just below 100 % does not read as 100 %.
             margin.map_or("survives".to_owned(), |(part, what)| {
@@ -359,10 +346,8 @@ impl Histories {
         samples: &Samples<'_, HistoryAnswer>,
         bands: &[BandAt],
     ) -> String {
-        let (scenario, title) = (
-            samples.scenario,
-            samples.title("Histories with uncertain data"),
-        );
+        let scenario = samples.scenario;
+        let title = samples.title("Histories with uncertain data");
         let end_s = bands.last().map_or(1.0, |at| at.time_s);
         let mut panels = Panels::new(figure, title, [0.0, end_s]);
         let subject = Subject {
@@ -378,10 +363,11 @@ impl Histories {
         let y = around(&[], values, 6);
         let model = scenario.model().ok();
         let body = model.and_then(|model| model.bodies().get(self.body).cloned());
-        let label = match body.filter(|name| !name.is_empty()) {
-            Some(name) => format!("Rotation of {} (rad)", name.replace('_', " ")),
-            None => "Rotation (rad)".to_owned(),
-        };
+        let of_body = body.filter(|name| !name.is_empty());
+        let of_body = of_body.map_or(String::new(), |name| {
+            format!("of {} ", name.replace('_', " "))
+        });
+        let label = format!("Rotation {of_body}(rad)");
         // Values of samples that overturned are outside the picture.
         let at = |which: usize| {
             let points = bands.iter().map(move |at| (at.time_s, at.band_rad[which]));
@@ -395,9 +381,8 @@ impl Histories {
         ];
         panels.panel(&label, 330.0, y, None, marks);
         let all = samples.answers().count().max(1) as f64;
-        let shares = bands
-            .iter()
-            .map(|at| (at.time_s, at.overturned as f64 / all));
+        let shares = bands.iter();
+        let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
         let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
         let y = Scale::exactly(0.0, 1.0, 2);
         panels.panel("Overturned", 70.0, y, None, shares);

@@ -58,9 +58,8 @@ pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<V
             .clone()
             .filter_map(|sample| answers[sample])
             .collect();
-        let terms: Vec<f64> = chosen
-            .filter_map(|sample| half_square(sample, number))
-            .collect();
+        let terms = chosen.filter_map(|sample| half_square(sample, number));
+        let terms: Vec<f64> = terms.collect();
         let ([_, variance], [mean, _]) = (moments(&known), moments(&terms));
         (variance > 0.0 && !terms.is_empty()).then(|| (mean / variance).clamp(0.0, 1.0))
     };
@@ -109,10 +108,8 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
             .map(|raw| unbiased(raw, 2.0 * expansion.bias()));
         let [low, high] = interval(drawn.collect())?;
         let pairs = |drawn: &[usize]| {
-            let pairs = drawn
-                .iter()
-                .map(|index| (own_ranks[*index], answer_ranks[*index]));
-            correlation(pairs)
+            let drawn = drawn.iter();
+            correlation(drawn.map(|index| (own_ranks[*index], answer_ranks[*index])))
         };
         let rank_correlation = pairs(&all)?;
         let drawn = resampled.iter().filter_map(|drawn| pairs(drawn));
@@ -139,10 +136,8 @@ impl Expansion {
     fn of(ranks: &[f64]) -> Self {
         let count = ranks.len();
         let harmonics = (count / SAMPLES_PER_HARMONIC).clamp(1, MOST_HARMONICS);
-        let angles: Vec<f64> = ranks
-            .iter()
-            .map(|rank| std::f64::consts::PI * (rank - 0.5) / count as f64)
-            .collect();
+        let angle = |rank: &f64| std::f64::consts::PI * (rank - 0.5) / count as f64;
+        let angles: Vec<f64> = ranks.iter().map(angle).collect();
         let cosines = (1..=harmonics).map(|harmonic| {
             let cosine =
                 |angle: &f64| std::f64::consts::SQRT_2 * libm::cos(harmonic as f64 * angle);

@@ -47,12 +47,11 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         [] => [0.0; 2],
     };
     let middles = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-    let edges: Vec<_> = [first - before]
+    let edges = [first - before]
         .into_iter()
         .chain(middles)
-        .chain([last + after])
-        .map(from)
-        .collect();
+        .chain([last + after]);
+    let edges: Vec<_> = edges.map(from).collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
     // Half a cell beyond the ends there may be impossible values.
     let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
@@ -61,16 +60,13 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         Quantity::Restitution => high.min(1.0),
         _ => high,
     };
-    let edges: Vec<_> = edges
-        .into_iter()
-        .map(|edge| edge.clamp(low, high))
-        .collect();
+    let edges = edges.into_iter().map(|edge| edge.clamp(low, high));
     let scale = if logarithmic {
         Scale::logarithmic(low, high)
     } else {
         Scale::exactly(low, high, figure.ticks(8))
     };
-    (scale, edges)
+    (scale, edges.collect())
 }
 
 /// The picture of a map, and the positions of its cells.
@@ -156,16 +152,13 @@ impl<'s> Sheet<'s> {
             x,
             y,
         };
-        let [columns, rows] = edges;
+        let [columns, rows] = edges.each_ref().map(|edges| edges.iter());
         Drawn {
             picture: drawn.svg,
             height_px: drawn.height_px,
             edges_px: [
-                columns
-                    .iter()
-                    .map(|edge| axes.place(*edge, y.low).x)
-                    .collect(),
-                rows.iter().map(|edge| axes.place(x.low, *edge).y).collect(),
+                columns.map(|edge| axes.place(*edge, y.low).x).collect(),
+                rows.map(|edge| axes.place(x.low, *edge).y).collect(),
             ],
         }
     }

@@ -73,10 +73,8 @@ const CURVE_WITH_UNCERTAIN: CurveStyle = CurveStyle {
 fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
     let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
     let with_uncertain = results.has_uncertain().then_some(with_uncertain);
-    [(&results.fit, CURVE)]
-        .into_iter()
-        .chain(with_uncertain)
-        .filter_map(|(fit, style)| Some((fit.as_ref().ok()?, style)))
+    let all = [(&results.fit, CURVE)].into_iter().chain(with_uncertain);
+    all.filter_map(|(fit, style)| Some((fit.as_ref().ok()?, style)))
         .collect()
 }
 

@@ -208,21 +208,22 @@ impl Threshold {
             });
             ranges.collect()
         };
-        let varied = self.varied.iter().map(|varied| match &varied.factor {
-            Ok(factor) => VariedSummary::Known {
-                with: &varied.name,
-                factor: *factor,
-                from_end: factor.map(|factor| match self.is_first(factor) {
-                    true => RangeEnd::Sampled,
-                    false => RangeEnd::Edge,
-                }),
-                peak_g: factor.map(|factor| factor * peak_g),
-                incomplete: varied.incomplete,
-            },
-            Err(reason) => VariedSummary::Unknown {
-                with: &varied.name,
-                failed: reason,
-            },
+        let from_end = |factor| match self.is_first(factor) {
+            true => RangeEnd::Sampled,
+            false => RangeEnd::Edge,
+        };
+        let varied = self.varied.iter().map(|varied| {
+            let with = &varied.name;
+            match &varied.factor {
+                Ok(factor) => VariedSummary::Known {
+                    with,
+                    factor: *factor,
+                    from_end: factor.map(from_end),
+                    peak_g: factor.map(|factor| factor * peak_g),
+                    incomplete: varied.incomplete,
+                },
+                Err(failed) => VariedSummary::Unknown { with, failed },
+            }
         });
         ModelSummary {
             model: &self.model,
@@ -327,11 +328,7 @@ impl Threshold {
     fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
         self.varied.iter().map(move |varied| {
             let no_verdict = varied.no_verdict();
-            let certainly = if no_verdict.is_some() {
-                "certainly "
-            } else {
-                ""
-            };
+            let certainly = no_verdict.as_ref().map_or("", |_| "certainly ");
             let answer = match &varied.factor {
                 Ok(Some(factor)) if self.is_first(*factor) => {
                     let at = at(*factor, peak_g);
@@ -363,10 +360,9 @@ impl Threshold {
             && first.from_end == RangeEnd::Sampled
         {
             let what = verdict.name();
-            let range = if *verdict == Verdict::Overturns {
-                "band"
-            } else {
-                "range"
+            let range = match verdict {
+                Verdict::Overturns => "band",
+                _ => "range",
             };
             lines.push(format!(
                 "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"

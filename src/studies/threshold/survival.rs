@@ -28,10 +28,9 @@ impl Survival {
     /// extends from the first to the last strength tried in it.
     #[must_use]
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
-        let known: Vec<(f64, Verdict)> = levels
-            .iter()
-            .filter_map(|(level, verdict)| Some((*level, (*verdict)?)))
-            .collect();
+        let known = levels.iter();
+        let known = known.filter_map(|(level, verdict)| Some((*level, (*verdict)?)));
+        let known: Vec<(f64, Verdict)> = known.collect();
         let runs = known.chunk_by(|a, b| a.1 == b.1);
         let runs = runs.map(|run| (run[0].1, [run[0].0, run[run.len() - 1].0]));
         let tried = [known.first(), known.last()].map(|end| end.map_or(0.0, |end| end.0));
