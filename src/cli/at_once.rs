@@ -38,13 +38,8 @@ pub fn at_once(
         false => input.read_statics()?,
     };
     warn(&scenario.unlikely());
-    let session = Session {
-        input: Some(&input),
-        work: Work::default(),
-        style: Style::of(figure.get()?),
-        options,
-        pending: Vec::new(),
-    };
+    let style = Style::of(figure.get()?);
+    let session = Session::new(Some(&input), Work::default(), style, options);
     let place = figure.printed(input.results(arguments.out.as_deref())?);
     let place = place.locked_for(Writer::of(kind), &Origin::of(&scenario))?;
     session.finish(kind, &scenario, &place, arguments.format)

@@ -138,13 +138,10 @@ impl From<ScenarioErrors> for Failure {
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
         match error {
-            SimulationError::Argument(_)
-            | SimulationError::FreeFall { .. }
-            | SimulationError::Feet
-            | SimulationError::Memory(_) => Self::Input(error.to_string()),
             SimulationError::Row(_) | SimulationError::Computation(_) => {
                 Self::Work(error.to_string())
             }
+            _ => Self::Input(error.to_string()),
         }
     }
 }

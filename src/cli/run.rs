@@ -197,13 +197,8 @@ impl Job {
 
     /// Runs the job and returns its report.
     fn run(&self, arguments: &Arguments) -> Result<Results, Failure> {
-        let mut session = Session {
-            input: None,
-            work: arguments.work,
-            style: Style::of(arguments.figure.get()?),
-            options: Options::default(),
-            pending: Vec::new(),
-        };
+        let style = Style::of(arguments.figure.get()?);
+        let mut session = Session::new(None, arguments.work, style, Options::default());
         let scenarios = &self.scenarios;
         if session.is_part(scenarios)? {
             self.run_samples(&mut session, &mut Results::default())?;
@@ -221,11 +216,10 @@ impl Job {
                 .map(|place| place.of_model(scenario, several));
             own.push(arguments.compute(run, scenario, place.as_ref())?);
         }
-        let name = |one: &Scenario| one.motion().hinges().name().to_owned();
-        let summaries = scenarios
-            .iter()
-            .map(name)
-            .zip(own.iter().map(|one| one.summary.clone()));
+        let name = |(one, own): (&Scenario, &RunResults<'_>)| {
+            (one.motion().hinges().name().to_owned(), own.summary.clone())
+        };
+        let summaries = scenarios.iter().zip(&own).map(name);
         let mut results = Results {
             summary: match &own[..] {
                 [only] => only.summary.clone(),

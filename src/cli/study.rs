@@ -119,31 +119,41 @@ impl StudyArguments {
 
     /// The studies of this command.
     pub fn session<'s>(&self, input: &'s Input<'s>, style: Style, options: Options) -> Session<'s> {
-        Session {
-            input: Some(input),
-            work: self.work,
-            style,
-            options,
-            pending: Vec::new(),
-        }
+        Session::new(Some(input), self.work, style, options)
     }
 }
 
 /// The studies of a command.
 pub struct Session<'s> {
     /// The scenario file, which errors about the scenario name.
-    pub input: Option<&'s Input<'s>>,
-    pub work: Work,
-    pub style: Style,
-    pub options: Options,
+    input: Option<&'s Input<'s>>,
+    work: Work,
+    style: Style,
+    options: Options,
     /// The files that keep the rows of results until these are published.
-    pub pending: Vec<PartFile>,
+    pending: Vec<PartFile>,
 }
 
 /// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
 pub const ITSELF: &str = "the scenario itself:\n";
 
-impl Session<'_> {
+impl<'s> Session<'s> {
+    /// The studies of a command, none of which is computed yet.
+    pub const fn new(
+        input: Option<&'s Input<'s>>,
+        work: Work,
+        style: Style,
+        options: Options,
+    ) -> Self {
+        Self {
+            input,
+            work,
+            style,
+            options,
+            pending: Vec::new(),
+        }
+    }
+
     /// Publishes the results in a folder.
     pub fn publish(&mut self, place: &Destination) -> Result<(), Failure> {
         place.publish()?;
@@ -287,11 +297,8 @@ impl Session<'_> {
             of_models.push((model, found));
         }
         if !words.is_empty() {
-            let indent = if results.words.starts_with(' ') || results.words.is_empty() {
-                ""
-            } else {
-                "  "
-            };
+            let is_indented = results.words.starts_with(' ') || results.words.is_empty();
+            let indent = if is_indented { "" } else { "  " };
             results.words.insert_str(0, &(words + ITSELF + indent));
         }
         Ok(of_models)

@@ -164,10 +164,8 @@ impl Writer {
     pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
         let others = Self::all().filter(|other| other.files != self.files && other.name != MERGE);
         let warning = |other: Self| {
-            let difference = other
-                .places(folder)
-                .into_iter()
-                .find_map(|place| own.difference(&other.origin(&place)?))?;
+            let mut places = other.places(folder).into_iter();
+            let difference = places.find_map(|place| own.difference(&other.origin(&place)?))?;
             Some(format!(
                 "{} holds results of `archrock {}` from another scenario: {difference}. They stay; choose another folder to keep results apart",
                 folder.display(),
@@ -232,10 +230,9 @@ impl Writer {
         }
         let mut all: Vec<PathBuf> = files.iter().rev().map(|file| folder.join(file)).collect();
         let pictures = files.iter().filter_map(|file| file.strip_suffix(".svg"));
-        for (stem, format) in
-            pictures.flat_map(|stem| PictureFormat::OTHERS.map(|other| (stem, other)))
-        {
-            all.push(folder.join(format!("{stem}.{}", format.name())));
+        for stem in pictures {
+            let names = PictureFormat::OTHERS.map(|other| format!("{stem}.{}", other.name()));
+            all.extend(names.map(|name| folder.join(name)));
         }
         all
     }
@@ -288,16 +285,11 @@ impl Writer {
                 Some(Path::new(file).file_name()? == name)
             };
             // The names of records have an extension.
-            name.contains('.')
-                && self
-                    .places(path)
-                    .into_iter()
-                    .any(|place| shaken_by(place) == Some(true))
+            let mut places = self.places(path).into_iter();
+            name.contains('.') && places.any(|place| shaken_by(place) == Some(true))
         };
-        entries
-            .map(|entry| entry.path())
-            .filter(is_of_record)
-            .collect()
+        let paths = entries.map(|entry| entry.path());
+        paths.filter(is_of_record).collect()
     }
 }
 

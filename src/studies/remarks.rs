@@ -63,14 +63,11 @@ struct Extent {
 impl Extent {
     /// With one more value.
     fn with(extent: Option<Self>, value: f64) -> Option<Self> {
-        let Self { min, max } = extent.unwrap_or(Self {
-            min: value,
-            max: value,
+        let ends = extent.map_or((value, value), |Self { min, max }| {
+            (min.min(value), max.max(value))
         });
-        Some(Self {
-            min: min.min(value),
-            max: max.max(value),
-        })
+        let (min, max) = ends;
+        Some(Self { min, max })
     }
 }
 

@@ -178,17 +178,16 @@ impl Fragilities {
             let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
             format!("{}{ends}", rounded_or_unknown(number))
         };
-        let all = [
-            ("record to record", &self.record_to_record),
-            ("uncertain data", &self.uncertain_data),
-            ("both", &self.both),
-        ];
-        let words = all.map(|(name, of)| {
+        let words = |name: &str, of: &Estimated| {
             let median = number(of.median, of.median_interval);
             let dispersion = number(of.dispersion, of.dispersion_interval);
             format!("{name}: median {median}, dispersion {dispersion}")
-        });
-        words.to_vec()
+        };
+        vec![
+            words("record to record", &self.record_to_record),
+            words("uncertain data", &self.uncertain_data),
+            words("both", &self.both),
+        ]
     }
 }
 
@@ -315,10 +314,8 @@ impl<'a> Counted<'a> {
             let unknown = "nowhere up to the highest level";
             found.map_or(unknown.to_owned(), |found| found.in_words(column, unknown))
         };
-        let [own, all] = [
-            self.of_itself().collect::<Vec<_>>(),
-            self.of_samples().collect(),
-        ];
+        let own: Vec<_> = self.of_itself().collect();
+        let all: Vec<_> = self.of_samples().collect();
         format!(
             "overturns with a probability of 5 % {}, of 50 % {} (dispersion {}), over records and {samples} samples of [uncertain];\n    \
              the scenario itself with 5 % {}, with 50 % {}",

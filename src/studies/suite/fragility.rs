@@ -301,21 +301,13 @@ fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Line {
     pivot: f64,
-    level: f64,
-    slope: f64,
+    /// Level and slope.
+    coefficients: Vector2<f64>,
 }
 
 impl Line {
     fn at(&self, log: f64) -> f64 {
-        self.level + self.slope * (log - self.pivot)
-    }
-
-    fn moved(&self, step: Vector2<f64>) -> Self {
-        Self {
-            level: self.level + step.x,
-            slope: self.slope + step.y,
-            ..*self
-        }
+        self.coefficients.x + self.coefficients.y * (log - self.pivot)
     }
 }
 
@@ -353,8 +345,7 @@ impl Likelihood {
         let mut likelihood = Self {
             line: Line {
                 pivot,
-                level: line.at(pivot),
-                slope: line.slope,
+                coefficients: Vector2::new(line.at(pivot), line.coefficients.y),
             },
             logarithm: 0.0,
             score: Vector2::zeros(),
@@ -374,8 +365,7 @@ impl Likelihood {
     fn largest(levels: &[LogLevel]) -> Option<Self> {
         let equal_chances = Line {
             pivot: levels[0].log,
-            level: 0.0,
-            slope: 0.0,
+            coefficients: Vector2::zeros(),
         };
         let mut best = Self::at(levels, equal_chances);
         for _ in 0..STEPS {
@@ -385,10 +375,23 @@ impl Likelihood {
             }
             // Near the maximum a good step gains less than the rounding error.
             let least = best.logarithm * (1.0 + ROUNDING);
-            best = std::iter::successors(Some(step), |step| Some(step * 0.5))
-                .take(HALVINGS)
-                .map(|step| Self::at(levels, best.line.moved(step)))
-                .find(|next| next.logarithm >= least)?;
+            let Line {
+                pivot,
+                coefficients,
+            } = best.line;
+            let next = |step: Vector2<f64>| {
+                let coefficients = coefficients + step;
+                Self::at(
+                    levels,
+                    Line {
+                        pivot,
+                        coefficients,
+                    },
+                )
+            };
+            let steps = std::iter::successors(Some(step), |step| Some(step * 0.5));
+            let mut nexts = steps.take(HALVINGS).map(next);
+            best = nexts.find(|next| next.logarithm >= least)?;
         }
         None
     }
@@ -402,9 +405,9 @@ impl Fragility {
         let clustered_covariance = clustered_covariance(&line, &covariance, observations);
 
         // `theta = exp(pivot - level / slope)` and `beta = 1 / slope`.
-        let dispersion = line.slope.recip();
-        let median = (line.pivot - line.level * dispersion).exp();
-        let log_median_gradient = Vector2::new(-1.0, line.level * dispersion) * dispersion;
+        let (level, dispersion) = (line.coefficients.x, line.coefficients.y.recip());
+        let median = (line.pivot - level * dispersion).exp();
+        let log_median_gradient = Vector2::new(-1.0, level * dispersion) * dispersion;
         let dispersion_gradient = Vector2::new(0.0, -dispersion * dispersion);
         let errors = |covariance: &Matrix2<f64>| Errors {
             median: median * standard_error(covariance, &log_median_gradient),

@@ -20,10 +20,8 @@ const SURVIVED: f64 = 0.94;
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let over_critical = over_critical(results);
-    let survived = results
-        .cases
-        .iter()
-        .filter(|case| !case.overturned_itself());
+    let cases = results.cases.iter();
+    let survived = cases.filter(|case| !case.overturned_itself());
     let least = if over_critical { 1.0 } else { 1e-3 };
     let largest = survived.filter_map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
@@ -183,16 +181,14 @@ const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
 /// The largest rotation of each case that counts, in radians, infinite if it overturned.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
-    let known = cases.iter().filter(|case| case.known_verdict().is_some());
-    known
-        .filter_map(|case| {
-            let peak_rad = case.result.as_ref().ok()?.peak_rotation_rad;
-            Some(match case.overturned_itself() {
-                true => f64::INFINITY,
-                false => peak_rad,
-            })
+    let peak_rad = |case: &CaseRow| {
+        case.known_verdict()?;
+        Some(match case.overturned_itself() {
+            true => f64::INFINITY,
+            false => case.result.as_ref().ok()?.peak_rotation_rad,
         })
-        .collect()
+    };
+    cases.iter().filter_map(peak_rad).collect()
 }
 
 /// The distribution of the peaks of all cases that count: ascending peaks, as in [`Fractiles`], with the share of all cases with a
@@ -236,9 +232,6 @@ const PEAKS: Stroke = Stroke::new(color::BLUE, 2.0, "");
 
 /// Whether all peaks are known over the critical rotation.
 fn over_critical(results: &SuiteFragility) -> bool {
-    let mut endings = results
-        .cases
-        .iter()
-        .filter_map(|case| case.result.as_ref().ok());
+    let mut endings = results.cases.iter().flat_map(|case| &case.result);
     endings.all(|ending| ending.peak.over_critical().is_some())
 }

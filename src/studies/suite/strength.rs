@@ -131,32 +131,20 @@ impl SuiteFragility {
 /// Least number of capacities for a dispersion.
 const LEAST_CAPACITIES: usize = 3;
 
-/// Distribution of the capacities in a measure.
-struct Scatter {
-    capacities: usize,
-    median: f64,
-    dispersion: f64,
-}
-
-impl Scatter {
-    /// `None` with fewer than three capacities.
-    fn of<'a>(capacities: impl Iterator<Item = &'a Capacity<'a>>, measure: usize) -> Option<Self> {
-        let found = capacities.filter_map(|capacity| capacity.in_measures[measure]);
-        let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(f64::ln).collect();
-        let count = logarithms.len() as f64;
-        let mean = logarithms.iter().sum::<f64>() / count;
-        let squares: f64 = logarithms.iter().map(|value| (value - mean).powi(2)).sum();
-        (logarithms.len() >= LEAST_CAPACITIES).then(|| Self {
-            capacities: logarithms.len(),
-            median: mean.exp(),
-            dispersion: (squares / (count - 1.0)).sqrt(),
-        })
-    }
-
-    fn dispersion_of_factor(&self, measure: usize) -> f64 {
-        let (_, _, power) = MEASURES[measure];
-        self.dispersion / power
-    }
+/// Number, geometric mean and dispersion of the capacities in a measure, and the dispersion of the factor on the record; `None` with
+/// fewer than three capacities.
+fn scatter<'a>(
+    capacities: impl Iterator<Item = &'a Capacity<'a>>,
+    measure: usize,
+) -> Option<(usize, [f64; 3])> {
+    let found = capacities.filter_map(|capacity| capacity.in_measures[measure]);
+    let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(f64::ln).collect();
+    let count = logarithms.len() as f64;
+    let mean = logarithms.iter().sum::<f64>() / count;
+    let squares: f64 = logarithms.iter().map(|value| (value - mean).powi(2)).sum();
+    let dispersion = (squares / (count - 1.0)).sqrt();
+    let numbers = [mean.exp(), dispersion, dispersion / MEASURES[measure].2];
+    (logarithms.len() >= LEAST_CAPACITIES).then_some((logarithms.len(), numbers))
 }
 
 /// Efficiency of each intensity measure, the best first, with intervals by bootstrap over the records. Records that do not overturn are
@@ -173,26 +161,26 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
         .map(|drawn| {
             let of = |measure| {
                 let capacities = drawn.iter().flat_map(|record| records[*record]);
-                Some(Scatter::of(capacities, measure)?.dispersion_of_factor(measure))
+                scatter(capacities, measure).map(|(_, [.., of_factor])| of_factor)
             };
             measures.clone().map(of).collect()
         })
         .collect();
     let least = |draw: &[Option<f64>]| draw.iter().flatten().copied().reduce(f64::min);
     let of = |measure: usize| {
-        let scatter = Scatter::of(capacities.iter(), measure)?;
+        let (count, [median, dispersion, dispersion_of_factor]) =
+            scatter(capacities.iter(), measure)?;
         let own: Option<Vec<f64>> = drawn.iter().map(|draw| draw[measure]).collect();
-        let best = drawn
-            .iter()
-            .filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
+        let best = drawn.iter();
+        let best = best.filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
         let (name, words, _) = MEASURES[measure];
         Some(Efficiency {
             measure: name,
             words,
-            capacities: scatter.capacities,
-            median: scatter.median,
-            dispersion: scatter.dispersion,
-            dispersion_of_factor: scatter.dispersion_of_factor(measure),
+            capacities: count,
+            median,
+            dispersion,
+            dispersion_of_factor,
             dispersion_of_factor_interval: own.and_then(interval),
             best_share: best.count() as f64 / drawn.len() as f64,
         })

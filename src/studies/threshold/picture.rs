@@ -127,14 +127,15 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut listed = Vec::new();
     for (threshold, name) in thresholds.iter().zip(names) {
+        let name = if names.len() > 1 {
+            format!("{name} ")
+        } else {
+            String::new()
+        };
         for (verdict, range) in &threshold.ranges {
-            let what = verdict.name();
             if place(range.to) - place(range.from) < NARROW_PX {
                 let [from, to] = [range.from, range.to].map(rounded);
-                listed.push(match names {
-                    [_] => format!("{what} {from} to {to}"),
-                    _ => format!("{name} {what} {from} to {to}"),
-                });
+                listed.push(format!("{name}{} {from} to {to}", verdict.name()));
             }
         }
     }
@@ -157,11 +158,9 @@ fn kind_of(sample: &FactorSample) -> Kind {
 
 /// Whether all largest rotations are known over the critical one; otherwise they are drawn in radians.
 fn are_over_critical(thresholds: &[Threshold]) -> bool {
-    let mut samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    samples.all(|sample| {
-        let ending = sample.result.as_ref();
-        ending.map_or(true, |ending| ending.peak.over_critical().is_some())
-    })
+    let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+    let mut endings = samples.flat_map(|sample| &sample.result);
+    endings.all(|ending| ending.peak.over_critical().is_some())
 }
 
 /// The scale up to the largest rotation that was survived. Overturning cases go beyond it.
@@ -172,11 +171,8 @@ fn scale(
 ) -> Scale {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
     let survived = samples.filter(|sample| sample.verdict() == Some(Verdict::Survives));
-    Scale::exactly(
-        0.0,
-        1.15 * survived.filter_map(peak).fold(least, f64::max),
-        6,
-    )
+    let largest = survived.filter_map(peak).fold(least, f64::max);
+    Scale::exactly(0.0, 1.15 * largest, 6)
 }
 
 /// The edges of the bands and of the uncertain ranges, ascending.
@@ -184,10 +180,8 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
     let ranges = threshold.ranges.iter();
     let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
-    let ends =
-        ranges.flat_map(|(_, range)| [(range.from, range.from_end), (range.to, range.to_end)]);
-    let ends = ends.filter(|(_, end)| *end == RangeEnd::Edge);
-    let ends = ends.map(|(factor, _)| factor);
+    let ends = ranges.flat_map(|(_, at)| [(at.from, at.from_end), (at.to, at.to_end)]);
+    let ends = ends.filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
     // Where a band meets an uncertain range, one of the two factors that enclose the edge is enough.
     ends.filter(move |factor| {
         let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();
@@ -201,14 +195,10 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let edges: Vec<f64> = edges(threshold).collect();
     // The border between two colours: at the edge, if there is one, otherwise halfway.
     let border = |below: &FactorSample, above: &FactorSample| {
-        let edge = edges
-            .iter()
-            .find(|edge| (below.factor..=above.factor).contains(*edge));
-        let changes = below.verdict() != above.verdict();
-        match edge.filter(|_| changes) {
-            Some(edge) => *edge,
-            None => (below.factor * above.factor).sqrt(),
-        }
+        let mut edges = edges.iter().copied();
+        let edge = edges.find(|edge| (below.factor..=above.factor).contains(edge));
+        let edge = edge.filter(|_| below.verdict() != above.verdict());
+        edge.unwrap_or((below.factor * above.factor).sqrt())
     };
     let Frame { top, height, .. } = axes.frame;
     let place = |factor: f64| axes.place(factor, axes.y.low).x;

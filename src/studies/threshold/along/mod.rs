@@ -33,17 +33,13 @@ impl KeyRange {
     /// The values.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        let Self {
-            from, to, count, ..
-        } = *self;
-        let spacing = Spacing::Linear;
-        Sequence::Range {
-            from,
-            to,
-            count,
-            spacing,
-        }
-        .values()
+        let range = Sequence::Range {
+            from: self.from,
+            to: self.to,
+            count: self.count,
+            spacing: Spacing::Linear,
+        };
+        range.values()
     }
 }
 
