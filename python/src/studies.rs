@@ -1,6 +1,5 @@
 //! Studies: computed in memory or in parts, their results as the files that the program writes.
 
-use std::io::Write as _;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::slice;
@@ -178,7 +177,7 @@ fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     }
     let mut folder = batch.folder(path, &names).map_err(not_written)?;
     for (name, contents) in files {
-        folder.file(name).write_all(contents)?;
+        folder.write(name, contents).map_err(not_written)?;
     }
     folder.complete().map_err(not_written)?;
     batch.publish().map_err(not_written)?;
