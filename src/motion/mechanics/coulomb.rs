@@ -322,11 +322,8 @@ impl Program {
             let mut by = 0.0_f64;
             for end in 0..2 {
                 // Impulses are compared by the rates that they cause.
-                let wrong = if mode.pressed[end] {
-                    -impulse[end] * compliance[end]
-                } else {
-                    -rate[end]
-                };
+                let press = impulse[end] * compliance[end];
+                let wrong = -if mode.pressed[end] { press } else { rate[end] };
                 if wrong > tolerance {
                     mode.pressed[end] ^= true;
                     by = by.max(wrong);

@@ -18,6 +18,7 @@ use super::four_link::linkage::Linkage;
 use super::four_link::mechanism::HingeSites;
 use super::four_link::thrust::ThrustLine;
 use super::geometry::profile::Profile as _;
+use super::sides::Sides;
 use super::stability::falls;
 use super::sway::Sway;
 use crate::argument::{ArgumentError, within};
@@ -29,8 +30,8 @@ pub struct FourLinks {
     size: Size,
     /// Sections at which lines of thrust are reported.
     sections: Vec<f64>,
-    /// After a first sway to the right and to the left: one chain for a structure that is its own mirror image.
-    chains: [Arc<Chain>; 2],
+    /// By the first sway: one chain for a structure that is its own mirror image.
+    chains: Sides<Arc<Chain>>,
 }
 
 /// The units of a structure.
@@ -101,7 +102,7 @@ impl FourLinks {
         Ok(Self {
             size: Size::of(arch),
             sections: arch.thrust_sections_rad(),
-            chains: [chain.clone(), chain],
+            chains: Sides::of(|_| chain.clone()),
         })
     }
 
@@ -139,7 +140,7 @@ impl FourLinks {
             let incipient = incipient.map_err(|error| FourLinkError::Row { sway, error })?;
             Ok::<_, FourLinkError>(Arc::new(Chain::new(profiles, sites, incipient, law)))
         };
-        let chains = [chain(Sway::Right)?, chain(Sway::Left)?];
+        let chains = Sides::try_of(chain)?;
         let size = Size {
             length_m: row.size_m,
             mass_kg: row.mass_kg(),
@@ -181,10 +182,7 @@ impl FourLinks {
     /// The chain of mechanisms after a first sway to this side.
     #[must_use]
     pub fn chain_from(&self, first: Sway) -> &Chain {
-        match first {
-            Sway::Right => &self.chains[0],
-            Sway::Left => &self.chains[1],
-        }
+        self.chains.to(first)
     }
 
     /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
@@ -194,7 +192,7 @@ impl FourLinks {
     }
 
     fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
-        let [right, left] = [&self.chains[0], &self.chains[1]].map(|chain| &chain.incipient);
+        let (right, left) = (&self.chains.right.incipient, &self.chains.left.incipient);
         ThrustLine::at_rest(right, left, self.chain().profile(0), body_force_g)
     }
 }

@@ -415,11 +415,8 @@ impl<'a> Follower<'a> {
                 state.map_or(f64::NAN, |state| state.margin() + self.slack)
             };
             // Where ties hold it, its forces are found to this much.
-            let rounding = if self.is_held_by_ties() {
-                self.slack
-            } else {
-                0.0
-            };
+            let is_held = self.is_held_by_ties();
+            let rounding = if is_held { self.slack } else { 0.0 };
             let (last, _) = falls_below_zero(low, next, rounding, margin);
             self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {

@@ -143,13 +143,11 @@ pub fn limit_with_yielding_ties(
     };
     let weight_n = row.mass_kg() * row.gravity_m_s2;
     let ties = row.ties.iter();
-    let most: Vec<f64> = ties
-        .map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST))
-        .collect();
+    let most = ties.map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST));
     let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
     let work_at_rest = work(row, &undeformed.placement, &at_rest.velocities);
-    let mut highest = Highest::new(&most);
+    let mut highest = Highest::new(most.collect());
     let at_rest = Plane::new(row, work_at_rest, &at_rest.lengthening, sway);
     highest.planes.push(at_rest);
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
@@ -235,9 +233,8 @@ impl Plane {
         let (push, weight) = (sway.sign() * work.x, work.y);
         let all = lengthening.iter().copied().chain([push, weight]);
         let largest = all.map(f64::abs).fold(0.0, f64::max);
-        let slopes = [push]
-            .into_iter()
-            .chain(lengthening.iter().map(|rate| -rate));
+        let tied = lengthening.iter().map(|rate| -rate);
+        let slopes = [push].into_iter().chain(tied);
         Self {
             slopes: DVector::from_iterator(1 + lengthening.len(), slopes) / largest,
             most: weight / largest,
@@ -269,7 +266,7 @@ struct Highest {
 }
 
 impl Highest {
-    fn new(most: &[f64]) -> Self {
+    fn new(most: Vec<f64>) -> Self {
         let width = 1 + most.len();
         let axis = |index: usize, slope: f64, most: f64| {
             let mut slopes = DVector::zeros(width);
@@ -277,7 +274,7 @@ impl Highest {
             Plane { slopes, most }
         };
         let mut planes = vec![axis(0, 1.0, LARGEST_PUSH)];
-        planes.extend((1..).zip(most).map(|(tie, most)| axis(tie, 1.0, *most)));
+        planes.extend((1..).zip(&most).map(|(tie, most)| axis(tie, 1.0, *most)));
         planes.extend((0..width).map(|index| axis(index, -1.0, 0.0)));
         // Of forces that are as good, the least.
         let mut goal = DVector::repeat(width, -LESS_FORCE);
@@ -286,7 +283,7 @@ impl Highest {
         let mut inverse = -DMatrix::identity(width, width);
         inverse[(0, 0)] = 1.0;
         Self {
-            most: most.to_vec(),
+            most,
             basis: [0].into_iter().chain(width + 1..2 * width).collect(),
             planes,
             inverse,
@@ -371,9 +368,8 @@ impl Highest {
 /// Integral of the velocities over the masses.
 fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> {
     let blocks = row.blocks.iter().zip(&placement.centres_m).zip(velocities);
-    blocks
-        .map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg)
-        .sum()
+    let each = blocks.map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg);
+    each.sum()
 }
 
 /// A row under loads.
@@ -392,16 +388,14 @@ impl<'a> Trial<'a> {
         let placement = &stance.placement;
         let mut program = Program::new(row);
         program.place(placement);
+        let ties_kg = stance.forces_n().map(|force_n| force_n / row.gravity_m_s2);
         Self {
             row,
             placement,
             program,
             load: Load::none(row),
             lines: stance.lines(row).collect(),
-            ties_kg: stance
-                .forces_n()
-                .map(|force_n| force_n / row.gravity_m_s2)
-                .collect(),
+            ties_kg: ties_kg.collect(),
         }
     }
 
@@ -435,11 +429,9 @@ impl<'a> Trial<'a> {
 
     /// Rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
-        let velocities = &self.program.velocities;
-        self.lines
-            .iter()
-            .map(|line| line.lengthening(velocities))
-            .collect()
+        let lines = self.lines.iter();
+        let rates = lines.map(|line| line.lengthening(&self.program.velocities));
+        rates.collect()
     }
 
     fn openings(&self) -> Vec<Opening> {

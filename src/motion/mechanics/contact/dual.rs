@@ -105,11 +105,9 @@ impl Program {
             let compliance = self.response.rates[pin][edge];
             let free =
                 self.factor.bodies[pin].inverse_mass + self.factor.bodies[pin + 1].inverse_mass;
-            let full = if compliance > DEPENDENCE * free {
-                (-self.answer.rates[pin][edge] / compliance).max(0.0)
-            } else {
-                f64::INFINITY
-            };
+            let yields = compliance > DEPENDENCE * free;
+            let stops = (-self.answer.rates[pin][edge] / compliance).max(0.0);
+            let full = if yields { stops } else { f64::INFINITY };
             let (partial, blocking) = self.first_to_pull();
             if full <= partial && full < f64::INFINITY {
                 self.active[joint][edge] = true;

@@ -38,9 +38,8 @@ impl Banded {
             let below = (column + width).min(size - 1);
             let last = (column + 2 * width).min(size - 1);
             let magnitude = |row: usize| self.rows[self.index(row, column)].abs();
-            let pivot = (column..=below)
-                .max_by(|one, other| magnitude(*one).total_cmp(&magnitude(*other)))
-                .unwrap_or(column);
+            let larger = |one: &usize, other: &usize| magnitude(*one).total_cmp(&magnitude(*other));
+            let pivot = (column..=below).max_by(larger).unwrap_or(column);
             if pivot != column {
                 for other in column..=last {
                     let (one, two) = (self.index(column, other), self.index(pivot, other));
@@ -71,10 +70,9 @@ impl Banded {
         for right in rights {
             for row in (0..size).rev() {
                 let last = (row + 2 * width).min(size - 1);
-                let known: f64 = (row + 1..=last)
-                    .map(|column| self.rows[self.index(row, column)] * right[column])
-                    .sum();
-                right[row] = (right[row] - known) / self.rows[self.index(row, row)];
+                let known = (row + 1..=last)
+                    .map(|column| self.rows[self.index(row, column)] * right[column]);
+                right[row] = (right[row] - known.sum::<f64>()) / self.rows[self.index(row, row)];
             }
         }
         true

@@ -489,10 +489,9 @@ impl<'a> Search<'a> {
             let pair = bound.bodies;
             let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let span = bound.span([&first, &second]);
-            let force_n = if bonded {
-                span.stretch_m * bound.tie.stiffness_n_m
-            } else {
-                bound.tie.pull_n(*yielded_m, span.stretch_m)
+            let force_n = match bonded {
+                true => span.stretch_m * bound.tie.stiffness_n_m,
+                false => bound.tie.pull_n(*yielded_m, span.stretch_m),
             };
             between(pair, &bound.action([&first, &second], &span, force_n));
         }

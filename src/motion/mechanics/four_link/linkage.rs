@@ -62,8 +62,7 @@ impl Body {
 #[derive(Clone, Debug)]
 pub struct Linkage {
     profile: Arc<dyn Profile>,
-    hinges_rad: [f64; 4],
-    points: [Vector2<f64>; 4],
+    mechanism: FourLink,
     /// Bar A-B.
     left: Body,
     /// Bar B-C.
@@ -107,8 +106,7 @@ impl Linkage {
         let middle = profile.sector(b, c);
         Self {
             profile: profile.shared(),
-            hinges_rad: mechanism.hinges_rad,
-            points: mechanism.points,
+            mechanism: *mechanism,
             left: Body::new(&profile.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
             right: Body::new(&profile.sector(c, d), point_d, point_c - point_d),
@@ -181,12 +179,12 @@ impl Linkage {
         let turn_right = turn_between(self.right.bar, bars.right);
         let force = motion.body_force_g;
         let at_b = turned(bars.left) * left_spin.0 - bars.left * left_spin.1;
-        let [point_a, point_b, _, point_d] = self.points;
+        let [point_a, point_b, _, point_d] = self.mechanism.points;
         let left = Load::of_body(point_a, rotate_back(turn_left, force), left_spin);
         let middle = Load::of_body(point_b, rotate_back(turn_middle, force - at_b), middle_spin);
         let right = Load::of_body(point_d, rotate_back(turn_right, force), right_spin);
 
-        let [a, b, c, d] = self.hinges_rad;
+        let [a, b, c, d] = self.mechanism.hinges_rad;
         let on_left = left.resultant(&self.profile.sector(a, b));
         let on_middle = middle.resultant(&self.profile.sector(b, c));
         let on_right = right.resultant(&self.profile.sector(c, d));
@@ -199,8 +197,8 @@ impl Linkage {
 
         let still = Load::uniform(force);
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
-            let at_hinge = Momentum::applied_at(self.points[hinge], force);
-            let known = (self.hinges_rad[hinge], at_hinge);
+            let at_hinge = Momentum::applied_at(self.mechanism.points[hinge], force);
+            let known = (self.mechanism.hinges_rad[hinge], at_hinge);
             Part::new(&*self.profile, end_rad, load, known)
         };
         let parts = vec![
@@ -239,7 +237,7 @@ impl Mechanism for Linkage {
     const BODIES: &'static [&'static str] = &["left", "middle", "right"];
 
     fn moments(&self) -> Vec<MassMoments> {
-        let hinges = self.hinges_rad.windows(2);
+        let hinges = self.mechanism.hinges_rad.windows(2);
         let moments = hinges.map(|ends| self.profile.sector(ends[0], ends[1]));
         moments.collect()
     }
@@ -296,7 +294,7 @@ impl Mechanism for Linkage {
     /// In mean radii from the centre of the ring.
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
         let bars = self.bars(q_rad);
-        let [point_a, point_b, _, point_d] = self.points;
+        let [point_a, point_b, _, point_d] = self.mechanism.points;
         let at_b = point_a + bars.left;
         let middle_rad = angle_between(self.middle.bar, bars.middle);
         let right_rad = angle_between(self.right.bar, bars.right);

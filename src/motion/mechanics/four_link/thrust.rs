@@ -54,13 +54,10 @@ impl Demand {
         let normal = section.normal.max(least);
         let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
         let counts = section.normal >= least;
+        let friction = section.tangential.abs() / normal;
         Self {
             excess_ratio: beyond / (normal * thickness),
-            friction: if counts {
-                section.tangential.abs() / normal
-            } else {
-                0.0
-            },
+            friction: if counts { friction } else { 0.0 },
         }
     }
 

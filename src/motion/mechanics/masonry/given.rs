@@ -161,13 +161,11 @@ impl GivenBlocks {
         let corners = self.outlines_m().into_iter().flatten();
         let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
         let least_m = LEVEL_RATIO * self.size_m();
-        let stands = |joint: Option<&Joint>| {
-            joint.is_some_and(|joint| {
-                let levels_m = [joint.intrados_m.y, joint.extrados_m.y];
-                levels_m.iter().all(|level_m| level_m - lowest_m <= least_m)
-            })
-        };
-        [self.joints.first(), self.joints.last()].map(stands)
+        [0, self.joints.len() - 1].map(|joint| {
+            let joint = &self.joints[joint];
+            let mut levels_m = [joint.intrados_m.y, joint.extrados_m.y].into_iter();
+            levels_m.all(|level_m| level_m - lowest_m <= least_m)
+        })
     }
 
     /// Half the diagonal of the rectangle around the joints.

@@ -115,17 +115,16 @@ impl Pier {
             }
         };
         let mut joints: Vec<Joint> = (0..self.blocks).map(level).collect();
-        let mut outlines_m: Vec<Vec<Vector2<f64>>> = (0..self.blocks)
-            .map(|course| {
-                let bottom = level(course);
-                if course + 1 < self.blocks {
-                    return bottom.outline_m(&level(course + 1)).to_vec();
-                }
-                let shoulder = Vector2::new(outer_x, springing.extrados_m.y);
-                let top = [shoulder, springing.extrados_m, inner];
-                [[bottom.intrados_m, bottom.extrados_m].as_slice(), &top].concat()
-            })
-            .collect();
+        let outline_m = |course: usize| {
+            let bottom = level(course);
+            if course + 1 < self.blocks {
+                return bottom.outline_m(&level(course + 1)).to_vec();
+            }
+            let shoulder = Vector2::new(outer_x, springing.extrados_m.y);
+            let top = [shoulder, springing.extrados_m, inner];
+            [[bottom.intrados_m, bottom.extrados_m].as_slice(), &top].concat()
+        };
+        let mut outlines_m: Vec<_> = (0..self.blocks).map(outline_m).collect();
         if side == Sway::Right {
             joints.reverse();
             outlines_m.reverse();

@@ -440,10 +440,11 @@ impl<'a> Descent<'a> {
         let bounds = from_kg.iter().zip(way_kg).zip(&step.bounds_kg);
         let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
             let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
+            let part = (end_kg - kg) / change_kg;
             if *change_kg == 0.0 {
                 f64::INFINITY
             } else {
-                (end_kg - kg) / change_kg
+                part
             }
         });
         let ends: Vec<f64> = ends.collect();
@@ -479,7 +480,8 @@ impl<'a> Descent<'a> {
             // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
             self.learn_to_lengthen(step);
             let next = part + left / self.slope_along(step, way_kg);
-            part = if near < next && next < far {
+            let lies_between = near < next && next < far;
+            part = if lies_between {
                 next
             } else {
                 0.5 * (near + far)

@@ -16,44 +16,18 @@ use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::capacity::{CapacityError, Displaced, GivesWay};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
-use crate::mechanics::stability::{RowOnset, StabilityError, onset};
+use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::TieMemory;
 
 /// The way of a mechanism is gone in steps of this many radians.
 const STEP_RAD: f64 = 1e-3;
 
-/// Why a row is not held along a mechanism.
+/// Why a row is not held along a mechanism, in words: it does not stand, no push moves it, its mechanism may go on in several ways, or does
+/// not lose its strength.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum HeldError {
-    /// The row does not stand, or its mechanism was not found.
-    #[error(transparent)]
-    Stability(#[from] StabilityError),
-    /// No push moves it.
-    #[error("no push moves it to the {}", .0.name())]
-    NoPush(Sway),
-    /// Its mechanism may go on in several ways.
-    #[error(
-        "a push to the {side} opens {hinges} hinges, which may go on in several ways: there is no one mechanism to follow",
-        side = sway.name()
-    )]
-    Several {
-        /// To which side.
-        sway: Sway,
-        /// How many joints open.
-        hinges: usize,
-    },
-    /// Without ties, its bodies come to the end of their way.
-    #[error(transparent)]
-    Locks(#[from] CapacityError),
-    /// Its ties hold it, or its bodies come to the end of their way.
-    #[error(
-        "the mechanism that sways to the {side} comes to the end of its way before it loses its strength, which its ties keep: it has no \
-         ultimate displacement; give them a `yield_force_n` or `breaks_at_strain`",
-        side = .0.name()
-    )]
-    Holds(Sway),
-}
+#[error("{0}")]
+pub struct HeldError(String);
 
 /// The first mechanism of a row to a side.
 #[derive(Clone, Debug)]
@@ -76,7 +50,9 @@ impl<'a> Held<'a> {
     /// # Errors
     /// When it does not start as a mechanism of one degree of freedom, or has no end.
     pub fn new(row: &'a Row, sway: Sway) -> Result<Self, HeldError> {
-        let onset = onset(row, sway)?.ok_or(HeldError::NoPush(sway))?;
+        let (onset, side) = (onset(row, sway), sway.name());
+        let onset = onset.map_err(|error| HeldError(error.to_string()))?;
+        let onset = onset.ok_or_else(|| HeldError(format!("no push moves it to the {side}")))?;
         let mut held = Self {
             row,
             sway,
@@ -100,11 +76,13 @@ impl<'a> Held<'a> {
                 return Ok(held);
             }
         }
-        Err(if row.ties.is_empty() {
-            CapacityError::Locks { sway }.into()
-        } else {
-            HeldError::Holds(sway)
-        })
+        Err(HeldError(match row.ties.is_empty() {
+            true => CapacityError::Locks { sway }.to_string(),
+            false => format!(
+                "the mechanism that sways to the {side} comes to the end of its way before it loses its strength, which its ties keep: it \
+                 has no ultimate displacement; give them a `yield_force_n` or `breaks_at_strain`"
+            ),
+        }))
     }
 
     /// How many bodies move.
@@ -249,8 +227,10 @@ fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
         Supports::Both => 4,
     };
     if hinges.len() != due || onset.openings.len() != due {
-        let hinges = onset.openings.len();
-        return Err(HeldError::Several { sway, hinges });
+        let (side, hinges) = (sway.name(), onset.openings.len());
+        return Err(HeldError(format!(
+            "a push to the {side} opens {hinges} hinges, which may go on in several ways: there is no one mechanism to follow"
+        )));
     }
     Ok(Pins::new(row, hinges))
 }

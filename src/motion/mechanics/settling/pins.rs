@@ -489,19 +489,15 @@ impl<'a> Chain<'a> {
             let [first, after] = [body, body + 1].map(|pin| pins.hinges[pin].joint);
             let last = pins.hinges[count].joint;
             for (index, block) in row.blocks.iter().enumerate().take(last).skip(first) {
-                let arm_m = if index < after {
-                    block.centre_m - pins.pins_m[body]
-                } else {
-                    arms_m[body]
-                };
+                let own_m = block.centre_m - pins.pins_m[body];
+                let arm_m = if index < after { own_m } else { arms_m[body] };
                 *moment += arm_m * (block.mass_kg * per_mass);
             }
         }
         let poses = &before.placement.poses;
         let bodies = pins.hinges.iter().take(count);
-        let parts: Vec<usize> = (0..row.blocks.len())
-            .map(|block| pins.part_of(block))
-            .collect();
+        let parts = (0..row.blocks.len()).map(|block| pins.part_of(block));
+        let parts: Vec<usize> = parts.collect();
         let part = |anchor: Anchor| match anchor.block {
             Some(block) => parts[block],
             None => anchor.support(row.feet_m()) * (count + 1),
