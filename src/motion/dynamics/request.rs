@@ -110,10 +110,7 @@ impl Request {
         }
         let least_s = lasts_s / Self::MOST_SAMPLES;
         let allowed = format!("at least {least_s:?}, for ten million samples");
-        Err(ArgumentError::new(
-            "output_step_s",
-            self.output_step_s,
-            allowed,
-        ))
+        let given_s = self.output_step_s;
+        Err(ArgumentError::new("output_step_s", given_s, allowed))
     }
 }

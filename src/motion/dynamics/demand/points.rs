@@ -114,9 +114,8 @@ impl PointSpectrum {
             let slope = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
             let at_zero = pair[0].1 - slope * pair[0].0;
             let period_s = -2.0 * at_zero / (3.0 * slope);
-            (pair[0].0..=pair[1].0)
-                .contains(&period_s)
-                .then_some(period_s)
+            let between = pair[0].0..=pair[1].0;
+            between.contains(&period_s).then_some(period_s)
         });
         let mut largest = (0.0, from_s);
         for period_s in rows.chain(between).filter(within).chain(periods_s) {

@@ -304,12 +304,10 @@ impl<'a> LandingStepper<'a> {
 
     fn solve(&mut self) -> Result<(), RowMotionError> {
         let effort = self.program.solve(&self.load);
-        let effort = effort.map_err(|reason| {
-            RowMotionError::Failed(format!(
-                "at {} s {reason}, or give another `longest_step_s` in [free_hinges]",
-                self.course.time
-            ))
-        })?;
+        let time_s = self.course.time;
+        let remedy = "or give another `longest_step_s` in [free_hinges]";
+        let why = |reason| RowMotionError::Failed(format!("at {time_s} s {reason}, {remedy}"));
+        let effort = effort.map_err(why)?;
         let iterations = effort.iterations as u64;
         self.course.cost.evaluations += iterations;
         self.course.of_row.programs += 1;

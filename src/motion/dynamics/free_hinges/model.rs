@@ -56,14 +56,11 @@ impl RowOptions {
 
     /// Refuses steps and coefficients that are not valid.
     pub fn checked(self) -> Result<Self, ArgumentError> {
+        let friction = self.friction_coefficient;
         for (argument, value, range) in [
             ("longest_step_s", self.longest_step_s, Self::STEP_S),
             ("shortest_step_s", self.shortest_step_s, Self::STEP_S),
-            (
-                "friction_coefficient",
-                self.friction_coefficient,
-                Self::FRICTION_COEFFICIENT,
-            ),
+            ("friction_coefficient", friction, Self::FRICTION_COEFFICIENT),
         ] {
             if let Some(value) = value {
                 within(argument, value, range)?;
@@ -71,7 +68,7 @@ impl RowOptions {
         }
         let wrong = |argument, value, allowed| Err(ArgumentError::new(argument, value, allowed));
         match (self.longest_step_s, self.shortest_step_s) {
-            (_, Some(shortest_s)) if self.friction_coefficient.is_some() => wrong(
+            (_, Some(shortest_s)) if friction.is_some() => wrong(
                 "shortest_step_s",
                 shortest_s,
                 "left out where joints slip: then all steps are the longest".to_owned(),

@@ -47,9 +47,8 @@ impl<'a> Rest<'a> {
     pub fn moved_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
         let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
-        blocks
-            .map(|(block, (now, stood))| (now - stood) * block.mass_kg)
-            .sum()
+        let moved = blocks.map(|(block, (now, stood))| (now - stood) * block.mass_kg);
+        moved.sum()
     }
 
     /// True if a block with this centre and rotation has turned too far, or moved too far from its positions relative to both feet, which

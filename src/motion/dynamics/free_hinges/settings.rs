@@ -67,13 +67,8 @@ impl Settings {
     /// multiplied as well.
     pub(super) fn with_steps_times(&self, factor: f64) -> Self {
         let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
-        let times = |step_s| {
-            if limits(step_s) {
-                factor * step_s
-            } else {
-                step_s
-            }
-        };
+        let part = |step_s: f64| if limits(step_s) { factor } else { 1.0 };
+        let times = |step_s: f64| part(step_s) * step_s;
         Self {
             output_step_s: self.output_step_s.map(times),
             ..self.times(factor)

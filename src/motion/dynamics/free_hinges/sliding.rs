@@ -107,12 +107,10 @@ impl<'a> SlidingStepper<'a> {
         let supports = placement.support_poses.map(|pose| Position::of(&pose));
         let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
             let at = placement.centres_m.iter().zip(&placement.poses);
-            let positions: Vec<Position> = at
-                .map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()))
-                .collect();
-            let contacts = (0..joints)
-                .map(|joint| contact(&faces, &supports, &positions, joint))
-                .collect();
+            let at = at.map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()));
+            let positions: Vec<Position> = at.collect();
+            let contacts = (0..joints).map(|joint| contact(&faces, &supports, &positions, joint));
+            let contacts = contacts.collect();
             (positions, contacts)
         };
         let (positions, contacts) = contacts_at(placement);
@@ -453,11 +451,8 @@ impl<'a> SlidingStepper<'a> {
         let mass = self.row.mass_kg();
         let sway =
             self.rest.moved_kg_m(&self.centres).x - mass * (slid + 0.5 * self.right.gone_m.x);
-        if sway.abs() > SWAY_RATIO * mass * self.row.size_m {
-            sway
-        } else {
-            0.0
-        }
+        let least = SWAY_RATIO * mass * self.row.size_m;
+        if sway.abs() > least { sway } else { 0.0 }
     }
 }
 

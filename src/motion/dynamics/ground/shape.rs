@@ -33,10 +33,8 @@ pub struct Sine {
 impl Sine {
     pub fn at(&self, since_s: f64) -> (f64, f64) {
         let (sin, cos) = (self.frequency_rad_s * since_s + self.phase_rad).sin_cos();
-        (
-            self.amplitude * sin,
-            self.amplitude * self.frequency_rad_s * cos,
-        )
+        let rate = self.amplitude * self.frequency_rad_s * cos;
+        (self.amplitude * sin, rate)
     }
 
     /// Integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
@@ -94,20 +92,16 @@ impl Shape {
                 let x = scale * (since_s - 2.0 * period_s);
                 let bell = (-x * x).exp();
                 let square = 2.0 * x * x;
-                (
-                    bell * (1.0 - square),
-                    bell * scale * 2.0 * x * (square - 3.0),
-                )
+                let rate = bell * scale * 2.0 * x * (square - 3.0);
+                (bell * (1.0 - square), rate)
             }
             Self::AntisymmetricRicker { period_s } => {
                 let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
                 let y = scale * (since_s - 2.5 * period_s);
                 let bell = (-0.5 * y * y).exp();
                 let square = y * y;
-                (
-                    bell * y * (square - 3.0),
-                    bell * scale * (square * (6.0 - square) - 3.0),
-                )
+                let rate = bell * scale * (square * (6.0 - square) - 3.0);
+                (bell * y * (square - 3.0), rate)
             }
             Self::Gabor {
                 centre_s,
@@ -118,10 +112,8 @@ impl Shape {
                 let (sin, cos) = (angle + train.phase_rad).sin_cos();
                 let square = train.cycles * train.cycles;
                 let bell = (-angle * angle / square).exp();
-                (
-                    bell * cos,
-                    -bell * frequency_rad_s * (2.0 * angle / square * cos + sin),
-                )
+                let rate = -bell * frequency_rad_s * (2.0 * angle / square * cos + sin);
+                (bell * cos, rate)
             }
         }
     }

@@ -256,10 +256,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
             energy if energy > 0.0 && energy < self.barrier => energy,
             _ => self.barrier,
         };
-        (
-            (energy / weight).min(link.critical_rad),
-            (2.0 * energy / link.at_zero.inertia).sqrt(),
-        )
+        let rate = (2.0 * energy / link.at_zero.inertia).sqrt();
+        ((energy / weight).min(link.critical_rad), rate)
     }
 }
 
@@ -304,11 +302,8 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let x = (time_s - step.start_s) / span;
         // q by the polynomial of degree five with the coordinates, rates and accelerations of both
         // ends, in the time over the span; its error is span^6/46080 times the sixth derivative.
-        let (q, rate, bend) = (
-            step.start[0],
-            step.start[1] * span,
-            step.start_slope[1] * span * span,
-        );
+        let (q, rate) = (step.start[0], step.start[1] * span);
+        let bend = step.start_slope[1] * span * span;
         let miss = step.end[0] - (q + rate + 0.5 * bend);
         let miss_rate = step.end[1] * span - (rate + bend);
         let miss_bend = step.end_slope[1] * span * span - bend;

@@ -62,12 +62,12 @@ macro_rules! models {
             }
 
             fn critical_rotations_rad(&self, sway: Sway) -> Vec<f64> {
-                self.link_from(sway, 0).map_or(Vec::new(), |first| {
-                    let rotations = first.mechanism.rotations(first.critical_rad);
-                    seen_from_ground::<Self>(sway, rotations, 1.0)
-                        .as_ref()
-                        .to_vec()
-                })
+                let Some(first) = self.link_from(sway, 0) else {
+                    return Vec::new();
+                };
+                let rotations = first.mechanism.rotations(first.critical_rad);
+                let seen = seen_from_ground::<Self>(sway, rotations, 1.0);
+                seen.as_ref().to_vec()
             }
 
             fn limit_rad(&self, sway: Sway) -> f64 {
@@ -282,9 +282,9 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
         let joule = chain.joules_per_unit();
         let (energy_before, energy_after) = self.energies();
         let rates = |link: &Link<C::Mechanism>, sway, rate| {
-            seen_from_ground::<C>(sway, link.mechanism.rotation_rates(0.0), rate)
-                .as_ref()
-                .to_vec()
+            let rates = link.mechanism.rotation_rates(0.0);
+            let seen = seen_from_ground::<C>(sway, rates, rate);
+            seen.as_ref().to_vec()
         };
         let (sway, impacts) = (self.before.sway, self.before.impacts);
         let (link, sway_after) = (self.before.link, sway.opposite());

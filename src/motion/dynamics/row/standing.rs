@@ -190,9 +190,8 @@ impl RigidRow {
                 return Err(refused(allowed.to_owned()));
             }
         };
-        let link = row
-            .link_from(initial.sway, 0)
-            .expect("a row that starts as four links has its first mechanism");
+        let first = row.link_from(initial.sway, 0);
+        let link = first.expect("a row that starts as four links has its first mechanism");
         if initial.rotation_rad >= link.limit_rad {
             let limit_rad = link.limit_rad;
             return Err(refused(format!(
