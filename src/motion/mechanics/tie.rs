@@ -270,6 +270,32 @@ impl TieLine {
     }
 }
 
+/// Impulses of ties on each block, summed.
+pub(crate) fn sum_pulls<'a>(
+    blocks: usize,
+    ties: impl Iterator<Item = (&'a TieLine, f64)>,
+) -> Vec<Momentum> {
+    let mut pulls = vec![Momentum::ZERO; blocks];
+    let mut add = |ends: [Option<usize>; 2], pull: Momentum| {
+        for (end, pull) in ends.iter().zip([pull, pull * -1.0]) {
+            if let Some(block) = *end {
+                pulls[block] = pulls[block] + pull;
+            }
+        }
+    };
+    // Of many ties, neighbours are between the same blocks: their sum stays in registers.
+    let (mut ends, mut pull) = ([None; 2], Momentum::ZERO);
+    for (line, impulse) in ties {
+        if line.ends != ends {
+            add(ends, pull);
+            (ends, pull) = (line.ends, Momentum::ZERO);
+        }
+        pull = pull + line.unit_pull() * impulse;
+    }
+    add(ends, pull);
+    pulls
+}
+
 /// Adds to the velocities of blocks, with their centres there, what impulses of ties that lie so give them.
 pub(crate) fn pull_blocks<'a>(
     blocks: &[Block],
@@ -277,15 +303,7 @@ pub(crate) fn pull_blocks<'a>(
     ties: impl Iterator<Item = (&'a TieLine, f64)>,
     velocities: &mut [Twist],
 ) {
-    let mut pulls = vec![Momentum::ZERO; blocks.len()];
-    for (line, impulse) in ties {
-        let pull = line.unit_pull() * impulse;
-        for (end, pull) in line.ends.iter().zip([pull, pull * -1.0]) {
-            if let Some(block) = *end {
-                pulls[block] = pulls[block] + pull;
-            }
-        }
-    }
+    let pulls = sum_pulls(blocks.len(), ties);
     let bodies = blocks.iter().zip(centres_m).zip(&pulls);
     for (((block, centre_m), pull), velocity) in bodies.zip(velocities) {
         let rate = pull.about(*centre_m) / block.inertia_kg_m2;

@@ -26,8 +26,10 @@ use crate::mechanics::tie::TieLine;
 const STANDSTILL: f64 = 1e-9;
 /// No point moves by more than this part of the size in a step,
 const STEP: f64 = 1e-3;
-/// or, with ties, by this part of how far the descent has come, if that is more.
+/// or, with ties, by this part of how far the descent has come, if that is more,
 const STRIDE: f64 = 0.02;
+/// and by twice that if it accelerates: it does not approach an equilibrium.
+const ACCELERATING: f64 = 2.0;
 /// A block that moves by this part of the size in a descent falls.
 const FALLEN: f64 = 0.5;
 /// An arch whose ends miss each other by more than this part of its size has fallen apart.
@@ -142,6 +144,7 @@ impl<'a> Descent<'a> {
         let start_rad = turns(stance);
         let (mut farthest_m, mut longest) = (STEP * size_m, STEP * size_m);
         let (mut hinges, mut stayed) = (Vec::new(), 0_u32);
+        let mut before = f64::INFINITY;
         for step in 0..MOST_STEPS {
             // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
             let pins = (!self.ties_kg.is_empty()).then(|| Pins::of(self.row, &stance.placement));
@@ -176,8 +179,10 @@ impl<'a> Descent<'a> {
                 return Ok(false);
             }
             if !self.ties_kg.is_empty() {
-                farthest_m = size_m * STEP.max(STRIDE * gone);
+                let times = if fastest > before { ACCELERATING } else { 1.0 };
+                farthest_m = size_m * STEP.max(times * STRIDE * gone);
             }
+            before = fastest;
         }
         Ok(false)
     }
@@ -278,6 +283,12 @@ impl<'a> Descent<'a> {
         let mut fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
             let lacks_m = self.lacks_m(step);
+            // A tie changes by more alone than together with all others.
+            let least_kg = FORCE * self.row.mass_kg();
+            let mut each = lacks_m.iter().zip(&self.ties_m_kg);
+            if each.all(|(lacks_m, m_kg)| lacks_m.abs() <= least_kg * m_kg) {
+                return Ok(fastest);
+            }
             let responded = self.learn_to_lengthen(step);
             let Some(way_kg) = self.way_kg(step, &lacks_m) else {
                 break;
@@ -329,16 +340,13 @@ impl<'a> Descent<'a> {
             if found && all_go {
                 return way_kg.iter().all(|kg| kg.is_finite()).then_some(way_kg);
             }
-            let mut equations = DMatrix::identity(modes, modes);
-            let mut pulled = DVector::zeros(modes);
-            for mode in 0..modes {
-                let pulls = lengthen.column(mode).component_mul(&kg_m);
-                pulled[mode] = pulls.dot(lacks_m);
-                for other in 0..=mode {
-                    equations[(mode, other)] += step.length * pulls.dot(&lengthen.column(other));
-                }
+            let mut pulls = lengthen.clone();
+            for mut mode in pulls.column_iter_mut() {
+                mode.component_mul_assign(&kg_m);
             }
-            let speeds = equations.cholesky()?.solve(&pulled);
+            let mut equations = DMatrix::identity(modes, modes);
+            equations.gemm_tr(step.length, &pulls, lengthen, 1.0);
+            let speeds = equations.cholesky()?.solve(&pulls.tr_mul(lacks_m));
             way_kg.copy_from(lacks_m);
             way_kg.gemv(-step.length, lengthen, &speeds, 1.0);
             way_kg.component_mul_assign(&kg_m);

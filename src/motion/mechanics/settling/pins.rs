@@ -16,12 +16,14 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
-use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory};
+use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory, sum_pulls};
 
 /// Steps of Newton's method, at most.
 const MOST_STEPS: usize = 16;
 /// Forces below this part of the weight, and gaps below this part of the size, are rounding.
 const BALANCED: f64 = 1e-12;
+/// A step of Newton's method below this, in radians and parts of the weight, is the last one.
+const SMALL_STEP: f64 = 1e-8;
 /// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
 const FAR_RAD: f64 = 1.0;
 /// How much stiffer than bodies are pins that must not part, where it is seen whether an equilibrium is stable.
@@ -190,6 +192,11 @@ impl Pins {
         pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
     }
 
+    /// How many hinges are before each block.
+    fn parts(&self, row: &Row) -> impl Iterator<Item = usize> {
+        (0..row.blocks.len()).map(|block| self.part_of(block))
+    }
+
     /// How many hinges are before a block.
     pub(super) fn part_of(&self, block: usize) -> usize {
         let before = self.hinges.iter().filter(|hinge| hinge.joint <= block);
@@ -280,7 +287,8 @@ impl Pins {
         poses: &[Pose],
         before: &[TieMemory<Lanes<1>>],
     ) -> Pulls {
-        let lines = lines(row, supports, |block| poses[self.part_of(block)]);
+        let parts: Vec<usize> = self.parts(row).collect();
+        let lines = lines(row, supports, |block| poses[parts[block]]);
         let ties = row.ties.iter().zip(lines).zip(before);
         let ties = ties.map(|((tie, line), memory)| {
             let memory = memory.then(tie, line.stretch_m);
@@ -302,19 +310,16 @@ impl Pins {
             let centre = poses[self.part_of(block)].of(body.centre_m);
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
-        let mut loads: Vec<Momentum> = [Momentum::ZERO].into_iter().chain(own).collect();
-        for (line, force_n) in pulls {
-            let pull = line.along * (force_n * weight / row.gravity_m_s2);
-            for (end, pull) in [pull, -pull].into_iter().enumerate() {
-                if let Some(block) = line.ends[end] {
-                    let load = Momentum::applied_at(line.ends_m[end], pull);
-                    loads[block + 1] = loads[block + 1] + load;
-                }
-            }
-        }
-        for block in 1..loads.len() {
-            loads[block] = loads[block - 1] + loads[block];
-        }
+        let per_weight = weight / row.gravity_m_s2;
+        let pulls = pulls
+            .iter()
+            .map(|(line, force_n)| (line, force_n * per_weight));
+        let pulls = sum_pulls(row.blocks.len(), pulls);
+        let mut loads = vec![Momentum::ZERO];
+        loads.extend(own.zip(pulls).scan(Momentum::ZERO, |sum, (own, pull)| {
+            *sum = *sum + (own + pull);
+            Some(*sum)
+        }));
         loads
     }
 }
@@ -496,8 +501,7 @@ impl<'a> Chain<'a> {
         }
         let poses = &before.placement.poses;
         let bodies = pins.hinges.iter().take(count);
-        let parts = (0..row.blocks.len()).map(|block| pins.part_of(block));
-        let parts: Vec<usize> = parts.collect();
+        let parts: Vec<usize> = pins.parts(row).collect();
         let part = |anchor: Anchor| match anchor.block {
             Some(block) => parts[block],
             None => anchor.support(row.feet_m()) * (count + 1),
@@ -637,6 +641,10 @@ impl<'a> Chain<'a> {
                 *rotation_rad += by;
             }
             reaction += Vector2::new(step[count], step[count + 1]);
+            // Errors after a step are of the order of its square.
+            if step.amax() < SMALL_STEP {
+                return Some(self.poses());
+            }
             let mut turns = start_rad.iter().zip(&self.rotations_rad);
             if turns.any(|(start, now)| (now - start).abs() > FAR_RAD) {
                 return None;
