@@ -6,7 +6,7 @@ use std::ops::RangeInclusive;
 use serde::Serialize;
 
 use super::ground::GroundMotion;
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::sway::Sway;
 
 /// A request for a history: how long it lasts, and how accurate it is.
@@ -40,6 +40,20 @@ pub struct Initial {
 impl Initial {
     /// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.
     pub const MIN_ROTATION_RAD: f64 = 1e-100;
+
+    /// Refuses a rotation that is not below the limit position of the first mechanism.
+    pub(super) fn check(self, limit_rad: f64) -> Result<(), ArgumentError> {
+        let rotation_rad = self.rotation_rad;
+        let allowed =
+            format_args!("below {limit_rad:?}, the limit position of the first mechanism");
+        allow(
+            rotation_rad < limit_rad,
+            "rotation_rad",
+            rotation_rad,
+            allowed,
+        )
+        .map(drop)
+    }
 }
 
 impl Default for Request {
@@ -84,20 +98,13 @@ impl Request {
 
     /// Refuses numbers that no simulation on this ground can work with.
     pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
+        let (tolerance, rest_ratio) = (self.relative_tolerance, self.rest_energy_ratio);
         for (argument, value, range) in [
             ("gravity_m_s2", self.gravity_m_s2, Self::GRAVITY_M_S2),
             ("end_s", self.end_s, Self::TIME_S),
             ("output_step_s", self.output_step_s, Self::TIME_S),
-            (
-                "relative_tolerance",
-                self.relative_tolerance,
-                Self::RELATIVE_TOLERANCE,
-            ),
-            (
-                "rest_energy_ratio",
-                self.rest_energy_ratio,
-                Self::REST_ENERGY_RATIO,
-            ),
+            ("relative_tolerance", tolerance, Self::RELATIVE_TOLERANCE),
+            ("rest_energy_ratio", rest_ratio, Self::REST_ENERGY_RATIO),
         ] {
             within(argument, value, range)?;
         }
@@ -105,12 +112,9 @@ impl Request {
             within("rotation_rad", rotation_rad, Initial::MIN_ROTATION_RAD..=PI)?;
         }
         let lasts_s = self.lasts_s(ground);
-        if lasts_s / self.output_step_s <= Self::MOST_SAMPLES {
-            return Ok(());
-        }
-        let least_s = lasts_s / Self::MOST_SAMPLES;
-        let allowed = format!("at least {least_s:?}, for ten million samples");
-        let given_s = self.output_step_s;
-        Err(ArgumentError::new("output_step_s", given_s, allowed))
+        let (step_s, least_s) = (self.output_step_s, lasts_s / Self::MOST_SAMPLES);
+        let allowed = format_args!("at least {least_s:?}, for ten million samples");
+        let are_few = lasts_s / step_s <= Self::MOST_SAMPLES;
+        allow(are_few, "output_step_s", step_s, allowed).map(drop)
     }
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{damping_factor, displacement_m};
-use crate::argument::{ArgumentError, short};
+use crate::argument::{ArgumentError, allow, short};
 
 named! {
     /// Subsoil category (Tab. 3.2.II).
@@ -145,38 +145,36 @@ impl GroundSpectrum {
     pub fn new(hazard: Hazard, site: Site) -> Result<Self, ArgumentError> {
         let (ag_g, f0, tc_star_s) = (hazard.ag_g, hazard.f0, hazard.tc_star_s);
         let t_e_s = site.soil.t_e_s();
-        let refused = |argument, value, allowed| Err(ArgumentError::new(argument, value, allowed));
-        if !(2.2..=10.0).contains(&f0) {
-            let allowed = "a number from 2.2 (NTC 2018, § 3.2.1) to 10".to_owned();
-            return refused("f0", f0, allowed);
-        }
+        let (soil, s_t) = (site.soil, site.topographic_factor);
+        let allowed = "a number from 2.2 (NTC 2018, § 3.2.1) to 10";
+        allow((2.2..=10.0).contains(&f0), "f0", f0, allowed)?;
         let t_d_s = 4.0 * ag_g + 1.6;
+        let allowed = format!(
+            "above 0 and at most {} on soil {}, so that T_D = 4 a_g/g + 1.6 is at most T_E = {} s (NTC 2018, § 3.2.3.2)",
+            short(((t_e_s - 1.6) / 4.0 * 1e6).round() / 1e6),
+            soil.name(),
+            short(t_e_s),
+        );
         // False also for NaN.
-        if !(ag_g > 0.0 && t_d_s <= t_e_s) {
-            let allowed = format!(
-                "above 0 and at most {} on soil {}, so that T_D = 4 a_g/g + 1.6 is at most T_E = {} s (NTC 2018, § 3.2.3.2)",
-                short(((t_e_s - 1.6) / 4.0 * 1e6).round() / 1e6),
-                site.soil.name(),
-                short(t_e_s),
-            );
-            return refused("ag_g", ag_g, allowed);
-        }
-        let c_c = site.soil.period_coefficient(tc_star_s);
+        allow(ag_g > 0.0 && t_d_s <= t_e_s, "ag_g", ag_g, allowed)?;
+        let c_c = soil.period_coefficient(tc_star_s);
         let t_c_s = c_c * tc_star_s;
-        if !(tc_star_s > 0.0 && t_c_s <= t_d_s) {
-            let allowed = format!(
-                "above 0, and T_C = C_C T_C* (NTC 2018, Tab. 3.2.IV) at most T_D = {} s",
-                short((t_d_s * 1e6).round() / 1e6)
-            );
-            return refused("tc_star_s", tc_star_s, allowed);
-        }
-        if !(1.0..=2.0).contains(&site.topographic_factor) {
-            let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)".to_owned();
-            return refused("topographic_factor", site.topographic_factor, allowed);
-        }
-        let (s_s, s_t) = (site.soil.amplification(f0 * ag_g), site.topographic_factor);
+        let allowed = format!(
+            "above 0, and T_C = C_C T_C* (NTC 2018, Tab. 3.2.IV) at most T_D = {} s",
+            short((t_d_s * 1e6).round() / 1e6)
+        );
+        let in_order = tc_star_s > 0.0 && t_c_s <= t_d_s;
+        allow(in_order, "tc_star_s", tc_star_s, allowed)?;
+        let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)";
+        allow(
+            (1.0..=2.0).contains(&s_t),
+            "topographic_factor",
+            s_t,
+            allowed,
+        )?;
+        let s_s = soil.amplification(f0 * ag_g);
         Ok(Self {
-            soil: site.soil,
+            soil,
             hazard,
             s_s,
             s_t,

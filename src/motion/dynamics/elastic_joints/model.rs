@@ -203,11 +203,8 @@ impl ElasticJoints {
             [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)]
         };
         others.map(|(name, factor)| {
-            let steps_times = factor * self.steps_times;
-            let other = Self {
-                steps_times,
-                ..self.clone()
-            };
+            let mut other = self.clone();
+            other.steps_times *= factor;
             (name, other)
         })
     }
@@ -231,10 +228,8 @@ impl ElasticJoints {
             Contact::Continuous => (Contact::Points(3), "three contact points"),
             Contact::Points(_) => (Contact::Continuous, "continuous contact"),
         };
-        let summed_otherwise = ElasticProperties {
-            contact,
-            ..self.properties
-        };
+        let mut summed_otherwise = self.properties;
+        summed_otherwise.contact = contact;
         let others = [
             stiffness(softer, "a third of the stiffness"),
             stiffness(OTHER_STIFFNESS, "three times the stiffness"),
@@ -359,10 +354,8 @@ impl ElasticJoints {
             unreachable!("its joints are elastic");
         };
         let (joint, ratio) = rest.largest_eccentricity(&self.structure);
-        (
-            elastic.rest_eccentricity_joint,
-            elastic.rest_eccentricity_ratio,
-        ) = (joint, ratio);
+        elastic.rest_eccentricity_joint = joint;
+        elastic.rest_eccentricity_ratio = ratio;
         // Stacks have no first mechanism with one degree of freedom and a known barrier; the energy to push them over is known.
         if row.energy_error > LARGEST_ENERGY_ERROR
             && self.barrier_j(gravity_m_s2).is_none()

@@ -1,6 +1,6 @@
 //! Bodies with elastic joints in motion, several motions side by side: the leapfrog.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 
 use crate::mechanics::elastic_joint::{
     Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
@@ -162,10 +162,8 @@ remembered!(Observed {
 impl<'a, const L: usize> Motion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let joints = structure.joints.len();
-        let ties = structure
-            .ties
-            .iter()
-            .map(|bound| TieMemory::undeformed(&bound.tie));
+        let ties = structure.ties.iter();
+        let ties = ties.map(|bound| TieMemory::undeformed(&bound.tie));
         let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
@@ -206,11 +204,10 @@ impl<'a, const L: usize> Motion<'a, L> {
     /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
     pub fn step(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
         let arch = self.arch;
-        arch.dispatch(Leap {
-            motion: self,
-            step,
-            happens,
-        });
+        arch.dispatch(
+            #[inline(always)]
+            || self.leap(step, happens),
+        );
     }
 
     #[inline(always)]
@@ -475,22 +472,6 @@ impl<'a> Motion<'a, 1> {
         motion.ties.copy_from_slice(&rest.ties);
         motion.press(Lanes([0.0]));
         motion
-    }
-}
-
-/// A step, to be compiled once for every kind of vectors.
-struct Leap<'m, 'a, const L: usize> {
-    motion: &'m mut Motion<'a, L>,
-    step: &'m Step<Lanes<L>>,
-    happens: Happens,
-}
-
-impl<const L: usize> WithSimd for Leap<'_, '_, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.motion.leap(self.step, self.happens);
     }
 }
 

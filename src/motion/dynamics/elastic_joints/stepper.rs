@@ -376,9 +376,8 @@ impl<'a, const L: usize> Group<'a, L> {
             self.lanes[index] = None;
             return Some(Err(error));
         }
-        let ending = lane
-            .course
-            .ending(lane.course.overturned_s(), || lane.rests_since());
+        let course = &lane.course;
+        let ending = course.ending(course.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
             let mut ended = self.lanes[index].take()?;
             return Some(Ok(ended.course.end(outcome, time_s)));
@@ -413,9 +412,8 @@ impl<'a> Lane<'a> {
         slides: &[Slide],
     ) -> f64 {
         if self.course.rocks != Some(true) || !self.course.moved {
-            let edges = motion.memories.iter();
-            let is_open =
-                self.is_open(edges.map(|edges| edges.penetrations_m.map(|end| end.0[index])));
+            let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
+            let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
             if is_open {
@@ -560,15 +558,13 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         let half = self.half_kick();
         let motion = &self.motion;
         for index in 0..self.row.blocks.len() {
-            sample
-                .rates_rad_s
-                .push(motion.velocity(index, &half)[2].0[0]);
+            let [.., rate] = motion.velocity(index, &half);
+            sample.rates_rad_s.push(rate.0[0]);
             sample.poses.push(self.pose(index));
         }
         sample.feet_apart_m = self.lane().apart_m;
         let seen = motion.observe(&half, &self.slides);
-        let joints = self.structure.joints.len();
-        for joint in 0..joints {
+        for joint in 0..self.structure.joints.len() {
             let pressure = self.pressure(joint);
             if pressure.normal_n >= self.course().least_load_n() {
                 let needed = pressure.shear_n.abs() / pressure.normal_n;
@@ -577,11 +573,9 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
         }
-        let bound = self.structure.ties.iter();
-        let ties = bound.zip(&motion.ties);
-        sample
-            .ties
-            .extend(ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory)));
+        let ties = self.structure.ties.iter().zip(&motion.ties);
+        let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
+        sample.ties.extend(ties);
         if let Some(sliding) = &self.course().of_row.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);
         }

@@ -220,12 +220,11 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
-        self.start_energy = self.energy();
+        let (energy, sway) = (self.energy(), self.sway_kg_m());
+        self.start_energy = energy;
         self.stands = open == 0;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
-        let sway = self.sway_kg_m();
-        self.course
-            .released(rotations, self.start_energy, sway, open > 0);
+        self.course.released(rotations, energy, sway, open > 0);
         Ok(())
     }
 
@@ -259,13 +258,12 @@ impl<'a> LandingStepper<'a> {
             let blocks = self.blocks_of(index);
             self.load.free[blocks].fill(twist);
         }
-        let centres_m = &self.placement.centres_m;
-        let free = &mut self.load.free;
-        self.ties
-            .pull(centres_m, lasts_s, |block, velocity, turning| {
-                let turning = Twist::rotation(centres_m[block], turning);
-                free[block] = free[block] + (Twist::translation(velocity) + turning);
-            });
+        let (centres_m, free) = (&self.placement.centres_m, &mut self.load.free);
+        let gain = |block: usize, velocity, turning| {
+            let turning = Twist::rotation(centres_m[block], turning);
+            free[block] = free[block] + (Twist::translation(velocity) + turning);
+        };
+        self.ties.pull(centres_m, lasts_s, gain);
     }
 
     /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
@@ -320,11 +318,7 @@ impl<'a> LandingStepper<'a> {
     fn jump(&mut self, step: f64) {
         self.load.jumps.fill(Twist::ZERO);
         let count = self.pieces.len();
-        let boundaries = if self.row.supports == Supports::Both {
-            count + 1
-        } else {
-            count
-        };
+        let boundaries = count + usize::from(self.row.supports == Supports::Both);
         for index in 0..boundaries {
             let right = self.pieces.get(index);
             let joint = right.map_or(self.load.free.len(), |piece| piece.first);

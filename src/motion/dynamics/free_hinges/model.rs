@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::motion::motion;
 use super::settings::MANY_CASES_STEP_RATIO;
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, allow, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
@@ -66,20 +66,19 @@ impl RowOptions {
                 within(argument, value, range)?;
             }
         }
-        let wrong = |argument, value, allowed| Err(ArgumentError::new(argument, value, allowed));
-        match (self.longest_step_s, self.shortest_step_s) {
-            (_, Some(shortest_s)) if friction.is_some() => wrong(
-                "shortest_step_s",
-                shortest_s,
-                "left out where joints slip: then all steps are the longest".to_owned(),
-            ),
-            (Some(longest_s), Some(shortest_s)) if longest_s < shortest_s => wrong(
+        if let Some(shortest_s) = self.shortest_step_s {
+            let allowed = "left out where joints slip: then all steps are the longest";
+            allow(friction.is_none(), "shortest_step_s", shortest_s, allowed)?;
+            let longest_s = self.longest_step_s.unwrap_or(f64::INFINITY);
+            let allowed = format_args!("at least the shortest step, {shortest_s:?}");
+            allow(
+                longest_s >= shortest_s,
                 "longest_step_s",
                 longest_s,
-                format!("at least the shortest step, {shortest_s:?}"),
-            ),
-            _ => Ok(self),
+                allowed,
+            )?;
         }
+        Ok(self)
     }
 }
 

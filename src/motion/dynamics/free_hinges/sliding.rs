@@ -445,9 +445,8 @@ impl<'a> SlidingStepper<'a> {
         };
         // On a face that ends a block slides off, so its slide counts.
         let slides = self.slides().into_iter().zip(on_ground);
-        let slid: f64 = slides
-            .map(|(slide, on_ground)| if on_ground { 0.5 * slide.x } else { 0.0 })
-            .sum();
+        let slides = slides.filter(|(_, on_ground)| *on_ground);
+        let slid: f64 = slides.map(|(slide, _)| 0.5 * slide.x).sum();
         let mass = self.row.mass_kg();
         let sway =
             self.rest.moved_kg_m(&self.centres).x - mass * (slid + 0.5 * self.right.gone_m.x);
@@ -551,10 +550,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         sample.demand.friction = self.friction_demand;
         if thrust_line {
             let impulses = self.auxiliary.impulses.iter();
-            let corners = impulses.map(|impulse| [impulse.x, impulse.y]);
-            sample
-                .eccentricity_ratios
-                .extend(corners.map(eccentricity_ratio));
+            let ratios = impulses.map(|impulse| eccentricity_ratio([impulse.x, impulse.y]));
+            sample.eccentricity_ratios.extend(ratios);
         }
         Ok(kinetic_j)
     }

@@ -47,9 +47,8 @@ impl<'a> Ties<'a> {
             let force = line.along * memory.force_n.0[0];
             tie.ends.into_iter().zip([force, -force])
         });
-        ends.filter(|(anchor, _)| anchor.block.is_none() && anchor.support(feet_m) == 1)
-            .map(|(_, force)| force)
-            .sum()
+        let ends = ends.filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);
+        ends.map(|(_, force)| force).sum()
     }
 
     /// Stretches the ties to these poses of the blocks.
@@ -78,10 +77,9 @@ impl<'a> Ties<'a> {
 
     /// Their elastic energy, above that at the initial position.
     pub fn energy_j(&self) -> f64 {
-        let each = self
-            .memories()
-            .map(|(tie, memory)| memory.energy_j(tie).0[0]);
-        each.sum::<f64>() - self.at_rest_j
+        let memories = self.memories();
+        let each_j = memories.map(|(tie, memory)| memory.energy_j(tie).0[0]);
+        each_j.sum::<f64>() - self.at_rest_j
     }
 
     /// Energy that they dissipated by yielding and breaking.

@@ -151,20 +151,15 @@ impl GroundMotion {
     pub fn late_by(&self, delay_s: f64) -> Result<Self, GroundError> {
         within("delay_s", delay_s, TIME_S)?;
         let right = self.right_foot().map(|right| right.late_by(delay_s));
-        Ok(Self {
-            stops: self.stops,
-            right: right.transpose()?.map(Arc::new),
-            ..self.moved_by(delay_s, self.start_s())
-        })
+        let mut late = self.moved_by(delay_s, self.start_s());
+        late.right = right.transpose()?.map(Arc::new);
+        Ok(late)
     }
 
     /// The motion of this foot, earlier by a time in seconds. It starts where its acceleration begins if that is before time zero.
     fn earlier_by(&self, lead_s: f64) -> Self {
         let begins = self.pieces.iter().find(|piece| !piece.is_quiet());
-        Self {
-            stops: self.stops,
-            ..self.moved_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
-        }
+        self.moved_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
     }
 
     /// The pieces from this time on, with all their times changed by a delay.
@@ -175,15 +170,18 @@ impl GroundMotion {
             let (end_s, origin_s) = (piece.end_s + delay_s, piece.origin_s + delay_s);
             (end_s, origin_s, piece.formula)
         });
-        Self::join(from_s + delay_s, moved)
+        Self {
+            stops: self.stops,
+            ..Self::join(from_s + delay_s, moved)
+        }
     }
 
     /// Largest magnitudes of the horizontal and the vertical acceleration up to a time, in m/s2: pieces are
     /// monotone, so they are at ends of pieces, or at that time.
     #[must_use]
     pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
-        self.ends_until_m_s2(until_s)
-            .fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
+        let ends = self.ends_until_m_s2(until_s);
+        ends.fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
     }
 
     /// Largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left and to

@@ -7,43 +7,30 @@ use super::shape::Shape;
 /// One-sided formula of a piece in the time since its origin, horizontal and vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Formula {
-    Linear {
-        at_origin: Vector2<f64>,
-        slope: Vector2<f64>,
-    },
-    Shaped {
-        amplitude: Vector2<f64>,
-        shape: Shape,
-    },
+    /// A straight line: its acceleration at the origin, and its slope.
+    Linear(Vector2<f64>, Vector2<f64>),
+    /// An amplitude times a shape.
+    Shaped(Vector2<f64>, Shape),
 }
 
 impl Formula {
     pub fn constant(acceleration: Vector2<f64>) -> Self {
-        Self::Linear {
-            at_origin: acceleration,
-            slope: Vector2::zeros(),
-        }
+        Self::Linear(acceleration, Vector2::zeros())
     }
 
     /// The formula times a factor.
     pub fn scaled(self, factor: f64) -> Self {
         match self {
-            Self::Linear { at_origin, slope } => Self::Linear {
-                at_origin: at_origin * factor,
-                slope: slope * factor,
-            },
-            Self::Shaped { amplitude, shape } => Self::Shaped {
-                amplitude: amplitude * factor,
-                shape,
-            },
+            Self::Linear(at_origin, slope) => Self::Linear(at_origin * factor, slope * factor),
+            Self::Shaped(amplitude, shape) => Self::Shaped(amplitude * factor, shape),
         }
     }
 
     /// Acceleration and its rate of change.
     pub fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
-            Self::Linear { at_origin, slope } => (at_origin + slope * since_s, slope),
-            Self::Shaped { amplitude, shape } => {
+            Self::Linear(at_origin, slope) => (at_origin + slope * since_s, slope),
+            Self::Shaped(amplitude, shape) => {
                 let (value, rate) = shape.at(since_s);
                 (amplitude * value, amplitude * rate)
             }
@@ -53,10 +40,10 @@ impl Formula {
     /// Integral of the acceleration between two times.
     fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
         match *self {
-            Self::Linear { at_origin, slope } => {
+            Self::Linear(at_origin, slope) => {
                 (at_origin + slope * (0.5 * (from_s + to_s))) * (to_s - from_s)
             }
-            Self::Shaped { amplitude, shape } => amplitude * shape.integral(from_s, to_s),
+            Self::Shaped(amplitude, shape) => amplitude * shape.integral(from_s, to_s),
         }
     }
 }
@@ -110,8 +97,8 @@ impl Piece {
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         match self.formula {
-            Formula::Linear { .. } => f64::INFINITY,
-            Formula::Shaped { .. } => 0.25 * (self.end_s - self.start_s),
+            Formula::Linear(..) => f64::INFINITY,
+            Formula::Shaped(..) => 0.25 * (self.end_s - self.start_s),
         }
     }
 

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::error::{ACCELERATION_M_S2, DURATION_S, GroundError, TIME_S};
 use super::motion::GroundMotion;
 use super::piece::Formula;
-use super::shape::{Shape, Sine, WaveTrain};
+use super::shape::{Gabor, Shape, Sine, WaveTrain};
 use crate::argument::within;
 
 named! {
@@ -160,16 +160,14 @@ impl PulseShape {
     /// Ends in the time since the start, and formulas.
     fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
-        let shaped = |amplitude, shape| Formula::Shaped { amplitude, shape };
         let sine = |periods: f64, phase_rad: f64| {
             let sine = Sine {
                 amplitude: 1.0,
                 frequency_rad_s: periods * 2.0 * PI / t,
                 phase_rad,
             };
-            shaped(a, Shape::Sine(sine))
+            Formula::Shaped(a, Shape::Sine(sine))
         };
-        let linear = |at_origin, slope| Formula::Linear { at_origin, slope };
         let cut =
             |ends: &[f64], formula: Formula| ends.iter().map(|end| (end * t, formula)).collect();
         match self.pulse {
@@ -183,13 +181,13 @@ impl PulseShape {
             Pulse::OneCosine => cut(&[0.5, 1.0], sine(1.0, 0.5 * PI)),
             Pulse::Triangular => {
                 let slope = 2.0 * a / t;
-                let (up, down) = (linear(Vector2::zeros(), slope), linear(2.0 * a, -slope));
-                vec![(0.5 * t, up), (t, down)]
+                let up = Formula::Linear(Vector2::zeros(), slope);
+                vec![(0.5 * t, up), (t, Formula::Linear(2.0 * a, -slope))]
             }
             Pulse::Ricker => {
                 // The troughs of the wavelet are at x^2 = 3/2.
                 let trough = 1.5_f64.sqrt() / PI;
-                let ricker = shaped(a, Shape::Ricker { period_s: t });
+                let ricker = Formula::Shaped(a, Shape::Ricker(t));
                 cut(&[2.0 - trough, 2.0, 2.0 + trough, 4.0], ricker)
             }
             Pulse::AntisymmetricRicker => {
@@ -198,7 +196,7 @@ impl PulseShape {
                 let peak = inner * 6.0_f64.sqrt() * (-0.5 * inner * inner).exp();
                 let ends =
                     [-outer, -inner, inner, outer].map(|y| 2.5 + y * 3.0_f64.sqrt() / (2.0 * PI));
-                let wavelet = shaped(a / peak, Shape::AntisymmetricRicker { period_s: t });
+                let wavelet = Formula::Shaped(a / peak, Shape::AntisymmetricRicker(t));
                 cut(&[&ends[..], &[5.0]].concat(), wavelet)
             }
             Pulse::MavroeidisPapageorgiou | Pulse::Gabor | Pulse::WindowedSine => {
@@ -233,13 +231,12 @@ impl CutTrain {
             }
             Pulse::Gabor => {
                 let centre_s = 3.0 * cycles * t / PI;
-                let frequency_rad_s = 2.0 * PI / t;
-                let shape = Shape::Gabor {
+                let gabor = Gabor {
                     centre_s,
-                    frequency_rad_s,
+                    frequency_rad_s: 2.0 * PI / t,
                     train,
                 };
-                (shape, 2.0 * centre_s)
+                (Shape::Gabor(gabor), 2.0 * centre_s)
             }
             _ => {
                 // The windowed sine: sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
@@ -261,10 +258,7 @@ impl CutTrain {
 
     /// Its pieces, scaled so that the largest extremum is the amplitude.
     fn pieces(&self, amplitude: Vector2<f64>) -> Vec<(f64, Formula)> {
-        let formula = Formula::Shaped {
-            amplitude: amplitude / self.peak,
-            shape: self.shape,
-        };
+        let formula = Formula::Shaped(amplitude / self.peak, self.shape);
         self.ends_s.iter().map(|end| (*end, formula)).collect()
     }
 }

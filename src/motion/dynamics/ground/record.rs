@@ -72,10 +72,7 @@ impl GroundMotion {
         let mut components = [horizontal, vertical];
         let lines = corners.windows(2).map(|ends| {
             let [x, y] = components.each_mut().map(|samples| line(samples, ends));
-            let formula = Formula::Linear {
-                at_origin: Vector2::new(x.0, y.0),
-                slope: Vector2::new(x.1, y.1),
-            };
+            let formula = Formula::Linear(Vector2::new(x.0, y.0), Vector2::new(x.1, y.1));
             (start_s + ends[1], start_s + ends[0], formula)
         });
         let first_s = start_s + corners.first().copied().unwrap_or(0.0);

@@ -50,6 +50,22 @@ impl Sine {
     }
 }
 
+/// A cosine under a bell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gabor {
+    pub(super) centre_s: f64,
+    pub(super) frequency_rad_s: f64,
+    pub(super) train: WaveTrain,
+}
+
+impl Gabor {
+    /// Angle of the oscillation from the middle of the bell, and sine and cosine with its phase.
+    fn angle(&self, since_s: f64) -> (f64, (f64, f64)) {
+        let angle = self.frequency_rad_s * (since_s - self.centre_s);
+        (angle, (angle + self.train.phase_rad).sin_cos())
+    }
+}
+
 /// Nodes, on both sides of the middle, and weights of the Gauss-Legendre rule of eight points on `[-1, 1]`.
 /// Source: Abramowitz and Stegun, table 25.4.
 const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
@@ -65,17 +81,11 @@ pub enum Shape {
     Sine(Sine),
     /// A sum of sines: an oscillation under a cosine-shaped envelope.
     Beat([Sine; 3]),
-    Ricker {
-        period_s: f64,
-    },
-    AntisymmetricRicker {
-        period_s: f64,
-    },
-    Gabor {
-        centre_s: f64,
-        frequency_rad_s: f64,
-        train: WaveTrain,
-    },
+    /// Of this period, in seconds.
+    Ricker(f64),
+    /// Of this period, in seconds.
+    AntisymmetricRicker(f64),
+    Gabor(Gabor),
 }
 
 impl Shape {
@@ -87,7 +97,7 @@ impl Shape {
                 .iter()
                 .map(|sine| sine.at(since_s))
                 .fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1)),
-            Self::Ricker { period_s } => {
+            Self::Ricker(period_s) => {
                 let scale = PI / period_s;
                 let x = scale * (since_s - 2.0 * period_s);
                 let bell = (-x * x).exp();
@@ -95,7 +105,7 @@ impl Shape {
                 let rate = bell * scale * 2.0 * x * (square - 3.0);
                 (bell * (1.0 - square), rate)
             }
-            Self::AntisymmetricRicker { period_s } => {
+            Self::AntisymmetricRicker(period_s) => {
                 let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
                 let y = scale * (since_s - 2.5 * period_s);
                 let bell = (-0.5 * y * y).exp();
@@ -103,16 +113,11 @@ impl Shape {
                 let rate = bell * scale * (square * (6.0 - square) - 3.0);
                 (bell * y * (square - 3.0), rate)
             }
-            Self::Gabor {
-                centre_s,
-                frequency_rad_s,
-                train,
-            } => {
-                let angle = frequency_rad_s * (since_s - centre_s);
-                let (sin, cos) = (angle + train.phase_rad).sin_cos();
-                let square = train.cycles * train.cycles;
+            Self::Gabor(gabor) => {
+                let (angle, (sin, cos)) = gabor.angle(since_s);
+                let square = gabor.train.cycles * gabor.train.cycles;
                 let bell = (-angle * angle / square).exp();
-                let rate = -bell * frequency_rad_s * (2.0 * angle / square * cos + sin);
+                let rate = -bell * gabor.frequency_rad_s * (2.0 * angle / square * cos + sin);
                 (bell * cos, rate)
             }
         }
@@ -123,7 +128,7 @@ impl Shape {
         match *self {
             Self::Sine(sine) => sine.integral(from_s, to_s),
             Self::Beat(sines) => sines.iter().map(|sine| sine.integral(from_s, to_s)).sum(),
-            Self::Ricker { period_s } => {
+            Self::Ricker(period_s) => {
                 let scale = PI / period_s;
                 let antiderivative = |since_s: f64| {
                     let x = scale * (since_s - 2.0 * period_s);
@@ -131,7 +136,7 @@ impl Shape {
                 };
                 (antiderivative(to_s) - antiderivative(from_s)) / scale
             }
-            Self::AntisymmetricRicker { period_s } => {
+            Self::AntisymmetricRicker(period_s) => {
                 let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
                 let antiderivative = |since_s: f64| {
                     let y = scale * (since_s - 2.5 * period_s);
@@ -141,18 +146,15 @@ impl Shape {
             }
             // Its antiderivative is an error function of a complex argument: quadrature is simpler, and exact to
             // rounding over the half period that a piece lasts.
-            Self::Gabor { .. } => {
+            Self::Gabor(_) => {
                 let quarter_s = 0.25 * (to_s - from_s);
                 let quarters = [0.5, 1.5, 2.5, 3.5].map(|part| from_s + part * quarter_s);
                 let panel = |middle_s: f64| {
-                    GAUSS_LEGENDRE_8
-                        .iter()
-                        .map(|(node, weight)| {
-                            let offset_s = 0.5 * quarter_s * node;
-                            weight
-                                * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
-                        })
-                        .sum::<f64>()
+                    let pair = |(node, weight): (f64, f64)| {
+                        let offset_s = 0.5 * quarter_s * node;
+                        weight * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
+                    };
+                    GAUSS_LEGENDRE_8.map(pair).iter().sum::<f64>()
                 };
                 0.5 * quarter_s * quarters.map(panel).iter().sum::<f64>()
             }
@@ -164,28 +166,21 @@ impl Shape {
         // The rate of change up to a positive factor, and a bound of the slope of this function.
         let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
             Self::Beat(sines) => {
-                let steepest = sines
-                    .iter()
-                    .map(|sine| sine.amplitude.abs() * sine.frequency_rad_s.powi(2))
-                    .sum();
+                let bend = |sine: Sine| sine.amplitude.abs() * sine.frequency_rad_s.powi(2);
+                let steepest = sines.map(bend).into_iter().sum();
                 (Box::new(|since_s| self.at(since_s).1), steepest)
             }
-            Self::Gabor {
-                centre_s,
-                frequency_rad_s,
-                train,
-            } => {
-                let bend = 2.0 / (train.cycles * train.cycles);
+            Self::Gabor(gabor) => {
+                let bend = 2.0 / (gabor.train.cycles * gabor.train.cycles);
                 let rate = move |since_s: f64| {
-                    let angle = frequency_rad_s * (since_s - centre_s);
-                    let (sin, cos) = (angle + train.phase_rad).sin_cos();
+                    let (angle, (sin, cos)) = gabor.angle(since_s);
                     -(bend * angle * cos + sin)
                 };
-                let widest = frequency_rad_s * centre_s;
-                let steepest = frequency_rad_s * (bend * (1.0 + widest) + 1.0);
+                let widest = gabor.frequency_rad_s * gabor.centre_s;
+                let steepest = gabor.frequency_rad_s * (bend * (1.0 + widest) + 1.0);
                 (Box::new(rate), steepest)
             }
-            Self::Sine(_) | Self::Ricker { .. } | Self::AntisymmetricRicker { .. } => {
+            Self::Sine(_) | Self::Ricker(_) | Self::AntisymmetricRicker(_) => {
                 unreachable!("their extrema are known in closed form")
             }
         };

@@ -35,23 +35,18 @@ pub enum Phase<S> {
 }
 
 /// A mechanism that moves.
-#[derive(Debug)]
-pub struct Swing<'a, M> {
+pub type Swing<'a, M> = SwingOf<&'a Link<M>>;
+
+/// A mechanism that moves, with its link.
+#[derive(Clone, Copy, Debug)]
+pub struct SwingOf<L> {
     /// To which side.
     pub sway: Sway,
     /// Impacts since it last left rest: the index of the link.
     pub impacts: usize,
     /// The mechanism.
-    pub link: &'a Link<M>,
+    pub link: L,
 }
-
-// Not derived, because that would require the mechanism to be `Clone`.
-impl<M> Clone for Swing<'_, M> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-impl<M> Copy for Swing<'_, M> {}
 
 impl<S: Copy> Phase<S> {
     /// The mechanism that moves or moved; `None` at rest.
@@ -351,11 +346,9 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         // Apart from terms of the relative size of its height, a hop is a parabola: the sixth derivative,
         // to which the method is sensitive, is of the order of the square of that size. The error of a step
         // h is taken as height^2 (h/hop)^6.
-        let part = (relative_tolerance / (height * height))
-            .powf(1.0 / 6.0)
-            .min(1.0);
+        let part = (relative_tolerance / (height * height)).powf(1.0 / 6.0);
         let longest_s = hop_s.min(self.piece(now.piece).longest_step_s());
-        (part * hop_s, longest_s)
+        (part.min(1.0) * hop_s, longest_s)
     }
 
     fn guards(&self, mode: Self::Mode) -> &'static [Guard] {

@@ -7,7 +7,6 @@ use super::integrator::Step;
 use super::posture::{Now, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::Sampler;
-use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Details, Event, EventKind, Impact, Outcome, Summary};
 use crate::dynamics::model::{
@@ -226,11 +225,7 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
 ) -> Result<Rocking<'a, C>, SimulationError> {
     check(ground, request)?;
     if let Some(initial) = request.initial {
-        let limit_rad = chain.limit_rad(initial.sway);
-        if initial.rotation_rad >= limit_rad {
-            let allowed = format!("below {limit_rad:?}, the limit position of the first mechanism");
-            return Err(ArgumentError::new("rotation_rad", initial.rotation_rad, allowed).into());
-        }
+        initial.check(chain.limit_rad(initial.sway))?;
     }
     if ground.right_foot().is_some() {
         return Err(SimulationError::Feet);

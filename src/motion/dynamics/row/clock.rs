@@ -47,9 +47,8 @@ pub struct Marks {
 
 impl Marks {
     pub fn new(settings: Settings, start_s: f64) -> Self {
-        let steps = settings
-            .output_step_s
-            .map_or(0.0, |step_s| start_s / step_s);
+        let step_s = settings.output_step_s;
+        let steps = step_s.map_or(0.0, |step_s| start_s / step_s);
         Self {
             settings,
             start_s,

@@ -426,25 +426,23 @@ impl<'a> Course<'a> {
         before_fall.thrust = self.thrust;
         before_fall.largest_stress = self.elastic.largest_stress;
         if let Some(sliding) = &self.of_row.sliding {
-            before_fall
-                .largest_slips_m
-                .clone_from(&sliding.largest_offsets_m);
+            let slips_m = &sliding.largest_offsets_m;
+            before_fall.largest_slips_m.clone_from(slips_m);
         }
         before_fall.ties.clone_from(&self.of_row.ties);
     }
 
     /// Takes the results back to those of the instant at which it fell without return.
     fn take_back_the_fall(&mut self) {
-        let before_fall = std::mem::take(&mut self.before_fall);
+        let before_fall = mem::take(&mut self.before_fall);
         self.peak_rotations_rad = before_fall.peak_rotations_rad;
         self.impacts = before_fall.impacts;
         self.of_row.half_cycles.truncate(before_fall.half_cycles);
         self.cycle = None;
-        let cycle = before_fall.cycle.map(|cycle| HalfCycle {
-            duration_s: before_fall.time_s - cycle.start_s,
-            ..cycle
-        });
-        self.of_row.half_cycles.extend(cycle);
+        if let Some(mut cycle) = before_fall.cycle {
+            cycle.duration_s = before_fall.time_s - cycle.start_s;
+            self.of_row.half_cycles.push(cycle);
+        }
         self.thrust = before_fall.thrust;
         self.elastic.largest_stress = before_fall.largest_stress;
         if let Some(sliding) = &mut self.of_row.sliding {
@@ -472,9 +470,8 @@ impl<'a> Course<'a> {
     fn end_cycle(&mut self, energy: Option<f64>) {
         if let Some(mut cycle) = self.cycle.take() {
             cycle.duration_s = self.time - cycle.start_s;
-            let ratio = energy
-                .zip(self.cycle_energy)
-                .map(|(after, before)| after / before);
+            let energies = energy.zip(self.cycle_energy);
+            let ratio = energies.map(|(after, before)| after / before);
             cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
             self.of_row.half_cycles.push(cycle);
             self.cycle_energy = energy;

@@ -176,7 +176,6 @@ impl RigidRow {
 
     /// Rotations of the blocks when the first mechanism is open this far.
     pub fn released(&self, initial: Initial) -> Result<Vec<f64>, ArgumentError> {
-        let refused = |allowed| ArgumentError::new("rotation_rad", initial.rotation_rad, allowed);
         let blocks = self.row.blocks.len();
         // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
         let side = initial.sway.sign();
@@ -187,17 +186,16 @@ impl RigidRow {
             }
             _ => {
                 let allowed = "left out: this row does not start as a mechanism from which it could be released";
-                return Err(refused(allowed.to_owned()));
+                return Err(ArgumentError::new(
+                    "rotation_rad",
+                    initial.rotation_rad,
+                    allowed,
+                ));
             }
         };
         let first = row.link_from(initial.sway, 0);
         let link = first.expect("a row that starts as four links has its first mechanism");
-        if initial.rotation_rad >= link.limit_rad {
-            let limit_rad = link.limit_rad;
-            return Err(refused(format!(
-                "below {limit_rad:?}, the limit position of the first mechanism"
-            )));
-        }
+        initial.check(link.limit_rad)?;
         let mut bodies_rad = link.mechanism.rotations(initial.rotation_rad);
         if initial.sway == Sway::Left {
             bodies_rad.reverse();

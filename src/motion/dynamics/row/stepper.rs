@@ -156,9 +156,8 @@ pub trait Stepper<'a>: Sized {
     fn sample(&mut self) -> Result<(), RowMotionError> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
-        sample
-            .rotations_rad
-            .extend(self.turns().map(|(rotation, _)| rotation));
+        let rotations = self.turns().map(|(rotation, _)| rotation);
+        sample.rotations_rad.extend(rotations);
         for joint in 0..self.course().task.row.joints.len() {
             let gaps = self.gaps(joint);
             sample.gaps_m.push(gaps);

@@ -147,10 +147,8 @@ impl LandingStepper<'_> {
         opened.clear();
         let gaps = self.placement.gaps_m.iter().enumerate();
         let stood = &self.rest.touching;
-        opened.extend(
-            gaps.filter(|(joint, _)| stood[*joint] == [true; 2])
-                .filter_map(|(joint, gaps)| open_hinge(joint, *gaps)),
-        );
+        let shut = gaps.filter(|(joint, _)| stood[*joint] == [true; 2]);
+        opened.extend(shut.filter_map(|(joint, gaps)| open_hinge(joint, *gaps)));
         self.stands = opened.is_empty() && !self.right_support_is_gone();
         if !self.stands {
             // Until then it stood still.
@@ -219,9 +217,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         sample.rates_rad_s.extend(rates);
         if thrust_line {
             let impulses = self.program.corner_impulses().iter().copied();
-            sample
-                .eccentricity_ratios
-                .extend(impulses.map(eccentricity_ratio));
+            let ratios = impulses.map(eccentricity_ratio);
+            sample.eccentricity_ratios.extend(ratios);
         }
         let right_j = self.work_of_right_support(self.course.time - self.kicked_s);
         std::mem::swap(&mut self.program, &mut self.auxiliary);
@@ -241,10 +238,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
 
     fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
         let rates = self.program.velocities.iter().map(|twist| twist.rate);
-        let poses = self.placement.poses.iter();
-        self.rest
-            .turned_rad(poses.map(Pose::rotation_rad))
-            .zip(rates)
+        let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
+        self.rest.turned_rad(rotations).zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
