@@ -70,18 +70,18 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
-/// Two numbers between which a function falls below zero, of an interval at whose upper end alone it is negative, or no number: neighbours, or
+/// Two numbers between which a function falls below zero, of an interval at whose upper end alone its value, which is given, is negative, or no number: neighbours, or
 /// two between which it falls by no more than this rounding, or, where it ends, that are no farther apart than this.
 ///
 /// It evaluates the function as often as [`bisect`] at worst, and far less where the function is smooth: Oliveira and Takahashi, "An enhancement of the
 /// bisection method average performance preserving minmax optimality", ACM Trans. Math. Softw. 47 (2020).
 pub fn falls_below_zero(
     mut low: f64,
-    mut high: f64,
+    (mut high, mut at_high): (f64, f64),
     rounding: f64,
     mut value: impl FnMut(f64) -> f64,
 ) -> (f64, f64) {
-    let (mut at_low, mut at_high) = (value(low), value(high));
+    let mut at_low = value(low);
     let (interval, ulp) = (high - low, f64::EPSILON * low.abs().max(high.abs()));
     let mut spare = 2.0 * interval;
     let found = |low: f64, high: f64, at_low: f64, at_high: f64| {
@@ -140,7 +140,7 @@ mod tests {
         let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
         for (value, most) in [(smooth as fn(f64) -> f64, 15), (cliff, 60)] {
             let mut asked = 0;
-            let (low, high) = falls_below_zero(1.0, 2.0, 0.0, |x| {
+            let (low, high) = falls_below_zero(1.0, (2.0, value(2.0)), 0.0, |x| {
                 asked += 1;
                 value(x)
             });
@@ -155,7 +155,7 @@ mod tests {
         let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
         for (value, most) in [(noisy as fn(f64) -> f64, 12), (cliff, 30)] {
             let mut asked = 0;
-            let (low, high) = falls_below_zero(1.0, 2.0, 1e-8, |x| {
+            let (low, high) = falls_below_zero(1.0, (2.0, value(2.0)), 1e-8, |x| {
                 asked += 1;
                 value(x)
             });

@@ -391,7 +391,9 @@ impl<'a> Follower<'a> {
         while low < to {
             let next = (low + step * unit).min(to);
             let condition = way(next);
-            let held = self.holds(&condition);
+            let state = self.state_in(&condition);
+            let margin_there = self.margin(state.as_ref());
+            let held = state.filter(|_| margin_there >= 0.0);
             let goes_evenly = |state: &State| self.goes_evenly(state, &rates, next - low);
             let evenly = held.as_ref().is_some_and(goes_evenly);
             if step > STEP && !evenly {
@@ -410,14 +412,11 @@ impl<'a> Follower<'a> {
                 low = next;
                 continue;
             }
-            let margin = |at: f64| {
-                let state = self.state_in(&way(at));
-                state.map_or(f64::NAN, |state| state.margin() + self.slack)
-            };
+            let margin = |at: f64| self.margin(self.state_in(&way(at)).as_ref());
             // Where ties hold it, its forces are found to this much.
             let is_held = self.is_held_by_ties();
             let rounding = if is_held { self.slack } else { 0.0 };
-            let (last, _) = falls_below_zero(low, next, rounding, margin);
+            let (last, _) = falls_below_zero(low, (next, margin_there), rounding, margin);
             self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {
                 Some(at) => low = at,
@@ -447,10 +446,9 @@ impl<'a> Follower<'a> {
         !before.is_empty() && before_and_now.all(alike) && ties.eq(there.ties.iter().map(yielded))
     }
 
-    /// The row in a condition in which the present hinges hold it; `None` where they do not.
-    fn holds(&self, condition: &Condition) -> Option<State> {
-        let state = self.state_in(condition)?;
-        state.holds(self.slack).then_some(state)
+    /// Margin of a state above the slack; not a number if there is none.
+    fn margin(&self, state: Option<&State>) -> f64 {
+        state.map_or(f64::NAN, |state| state.margin() + self.slack)
     }
 
     /// Places the row on its hinges in a condition in which they hold it.
