@@ -159,9 +159,8 @@ impl Job {
         let models = arguments.models.read(&input)?;
         let origin = Rc::new(Origin::of(&models[0]));
         let root = arguments.root(&input)?;
-        let tasks = arguments
-            .suite
-            .tasks(models, root.as_ref(), Scenario::check_for_run);
+        let suite = arguments.suite;
+        let tasks = suite.tasks(models, root.as_ref(), Scenario::check_for_run);
         let tasks = tasks.map_err(|failure| input.about(failure))?.into_iter();
         let file = path.display();
         let job = |(record, scenarios, place): (String, _, _)| Self {
@@ -210,10 +209,8 @@ impl Job {
         let folder = folder.map(|place| open(place, &[OVERLAY])).transpose()?;
         let mut own = Vec::new();
         for (run, scenario) in runs.iter().zip(scenarios) {
-            let place = self
-                .place
-                .as_ref()
-                .map(|place| place.of_model(scenario, several));
+            let place = self.place.as_ref();
+            let place = place.map(|place| place.of_model(scenario, several));
             own.push(arguments.compute(run, scenario, place.as_ref())?);
         }
         let name = |(one, own): (&Scenario, &RunResults<'_>)| {
@@ -348,10 +345,8 @@ impl Arguments {
             (self.film.is_some(), "--film"),
             (self.poses, "--poses"),
         ];
-        let mut given = writes
-            .into_iter()
-            .filter(|(given, _)| *given && place.is_none());
-        if let Some((_, option)) = given.next() {
+        let mut writes = writes.into_iter().filter(|(given, _)| *given);
+        if let (Some((_, option)), None) = (writes.next(), place) {
             let message = format!("{option} writes a file: name a folder for it with --out");
             return Err(message.into());
         }
@@ -394,11 +389,8 @@ impl From<RunError> for Failure {
 }
 
 fn time_s(text: &str) -> Result<f64, String> {
-    number(
-        text,
-        -1e9..=1e9,
-        "give times in seconds, such as 0.2,0.5,1.0",
-    )
+    let remedy = "give times in seconds, such as 0.2,0.5,1.0";
+    number(text, -1e9..=1e9, remedy)
 }
 
 fn a_second(text: &str) -> Result<f64, String> {

@@ -49,10 +49,9 @@ impl SetOption {
 
     /// Reads the text of a scenario file.
     pub fn open<'a>(&'a self, path: &'a Path) -> Result<Input<'a>, Failure> {
-        let source = if is_stdin(path) {
-            Source::of_reader(io::stdin().lock(), "<stdin>")?
-        } else {
-            Source::of_file(path)?
+        let source = match is_stdin(path) {
+            true => Source::of_reader(io::stdin().lock(), "<stdin>")?,
+            false => Source::of_file(path)?,
         };
         Ok(Input {
             path,
@@ -85,9 +84,8 @@ impl SuiteOption {
         check: impl Fn(&Scenario) -> Result<(), String>,
     ) -> Result<Vec<Task>, Failure> {
         let mut tasks: Vec<Task> = Vec::new();
-        let records = models
-            .iter()
-            .flat_map(|model| model.by_record().into_iter().enumerate());
+        let records = models.iter();
+        let records = records.flat_map(|model| model.by_record().into_iter().enumerate());
         for (index, (record, scenario)) in records.filter(|_| self.suite) {
             if let Some((_, scenarios, _)) = tasks.get_mut(index) {
                 scenarios.push(scenario);
@@ -140,10 +138,9 @@ impl Input<'_> {
             statics,
         };
         let scenario = Scenario::of(&self.source, &changes)?;
-        Ok(if self.no_uncertain {
-            scenario.without_uncertain()
-        } else {
-            scenario
+        Ok(match self.no_uncertain {
+            true => scenario.without_uncertain(),
+            false => scenario,
         })
     }
 
@@ -223,31 +220,25 @@ impl Destination {
 
     /// Locks the folder and everything below it for a command, before anything is written. The results of its last run are removed when
     /// those of this run are published. Warns of results of other commands that come from another scenario.
-    pub fn locked_for(self, writer: Writer, origin: &Origin) -> Result<Self, Failure> {
+    pub fn locked_for(mut self, writer: Writer, origin: &Origin) -> Result<Self, Failure> {
         let batch = Batch::lock(&self.path, true).map_err(elsewhere)?;
         batch.replace(writer.last_run(&self.path));
         super::warn(&writer.warnings(&self.path, origin));
-        Ok(Self {
-            locked: Some((batch, writer)),
-            ..self
-        })
+        self.locked = Some((batch, writer));
+        Ok(self)
     }
 
     /// Locks the folder for a part of a study: other parts may be computed in it at the same time.
-    pub fn locked_for_a_part(self, writer: Writer) -> Result<Self, Failure> {
+    pub fn locked_for_a_part(mut self, writer: Writer) -> Result<Self, Failure> {
         let batch = Batch::lock(&self.path, false).map_err(elsewhere)?;
-        Ok(Self {
-            locked: Some((batch, writer)),
-            ..self
-        })
+        self.locked = Some((batch, writer));
+        Ok(self)
     }
 
     /// Destination in a folder that this command has already locked.
-    pub fn locked_with(self, outer: &Self) -> Self {
-        Self {
-            locked: outer.locked.clone(),
-            ..self
-        }
+    pub fn locked_with(mut self, outer: &Self) -> Self {
+        self.locked.clone_from(&outer.locked);
+        self
     }
 
     /// The folder inside this one for the comparison of several models.
@@ -334,11 +325,9 @@ impl Destination {
             let remedy = "choose another folder with --out, or remove that one";
             return Err(format!("{path} holds the results of {theirs}: {remedy}").into());
         }
-        Ok(Self {
-            path,
-            origin,
-            ..Self::default()
-        })
+        let mut place = Self::of(&path);
+        place.origin = origin;
+        Ok(place)
     }
 
     /// Prepares results in the folder, which are not published yet.
@@ -353,11 +342,8 @@ impl Destination {
             PictureFormat::Pdf => ", pictures also as PDF",
             _ => ", pictures also as PNG",
         });
-        format!(
-            "{}: {}{also}",
-            self.path.display(),
-            results.names().join(", ")
-        )
+        let (path, names) = (self.path.display(), results.names().join(", "));
+        format!("{path}: {names}{also}")
     }
 
     /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.

@@ -169,19 +169,14 @@ impl<'s> Session<'s> {
         scenarios: &[Scenario],
         place: &Destination,
     ) -> Result<Option<Results>, Failure> {
-        let Work {
-            threads,
-            resume,
-            shard,
-        } = self.work;
+        let work = self.work;
         let task = Task {
             folder: place.path(),
-            shard: shard.unwrap_or(Shard::WHOLE),
-            resume,
+            shard: work.shard.unwrap_or(Shard::WHOLE),
+            resume: work.resume,
         };
-        let runner = Runner {
-            threads: threads.and_then(|n| NonZeroUsize::new(n.into())),
-        };
+        let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
+        let runner = Runner { threads };
         let mut shown = None;
         let mut watch = |progress: Progress| {
             let Progress { done, all } = progress;

@@ -156,11 +156,8 @@ pub const VERIFY: StudyKind = StudyKind {
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind =
     StudyKind::of::<Ensemble<'_, Histories>>(|scenarios, _, style, rows| {
-        run(
-            Ensemble::new(&scenarios[0], Histories::of(&scenarios[0])),
-            style,
-            rows,
-        )
+        let question = Histories::of(&scenarios[0]);
+        run(Ensemble::new(&scenarios[0], question), style, rows)
     });
 /// The factor from which samples of the uncertain numbers overturn.
 pub const UNCERTAIN_THRESHOLD: StudyKind =
@@ -171,11 +168,8 @@ pub const UNCERTAIN_THRESHOLD: StudyKind =
 /// The records that overturn samples of the uncertain numbers.
 pub const UNCERTAIN_SUITE: StudyKind =
     StudyKind::of::<Ensemble<'_, Capacities>>(|scenarios, _, style, rows| {
-        run(
-            Ensemble::new(&scenarios[0], Capacities::of(&scenarios[0])),
-            style,
-            rows,
-        )
+        let question = Capacities::of(&scenarios[0]);
+        run(Ensemble::new(&scenarios[0], question), style, rows)
     });
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind =
@@ -264,10 +258,8 @@ pub fn merge(
     given: Option<&Scenario>,
     style: ChooseStyle<'_>,
 ) -> Result<(StudyKind, Results), StudyError> {
-    let header = parts
-        .first()
-        .map(|part| part::read_header(part))
-        .transpose()?;
+    let header = parts.first().map(|part| part::read_header(part));
+    let header = header.transpose()?;
     let study = header.as_ref().map_or("", |header| &header.study);
     let (Some(kind), Some(header)) = (StudyKind::of_name(study), &header) else {
         return Err(StudyError::Scenario(format!(

@@ -470,10 +470,8 @@ impl PartFile {
             return Ok(());
         }
         let what = "it was removed while it was written; compute this part again";
-        Err(self.cannot("keep")(io::Error::new(
-            io::ErrorKind::NotFound,
-            what,
-        )))
+        let gone = io::Error::new(io::ErrorKind::NotFound, what);
+        Err(self.cannot("keep")(gone))
     }
 
     fn cannot(&self, what: &'static str) -> impl FnOnce(io::Error) -> PartError + use<> {

@@ -222,8 +222,7 @@ pub(crate) fn counts(cases: impl Iterator<Item = Words>) -> String {
     for words in cases {
         *counts.entry(words).or_insert(0_usize) += 1;
     }
-    let parts = counts
-        .into_iter()
-        .map(|((_, words), count)| format!("{count} {words}"));
+    let counts = counts.into_iter();
+    let parts = counts.map(|((_, words), count)| format!("{count} {words}"));
     parts.collect::<Vec<_>>().join(", ")
 }

@@ -18,16 +18,15 @@ use crate::studies::statistics::Share;
 type CellRow = Result<usize, NoAnswer>;
 
 fn cell_row(result: CellResult) -> CellRow {
+    let invalid = |why: &str| Err(NoAnswer::Invalid(why.to_owned()));
     match result {
         CellResult::Ended(ending) => {
             let outcome = ending.outcome_name();
             let place = OUTCOMES.iter().position(|name| *name == outcome);
             place.ok_or(NoAnswer::Incomplete)
         }
-        CellResult::CannotStand => Err(NoAnswer::Invalid("it cannot stand".to_owned())),
-        CellResult::NotFourLinks => Err(NoAnswer::Invalid(
-            "it is too thick for four links".to_owned(),
-        )),
+        CellResult::CannotStand => invalid("it cannot stand"),
+        CellResult::NotFourLinks => invalid("it is too thick for four links"),
         CellResult::Failed(reason) => Err(NoAnswer::Failed(reason)),
     }
 }
@@ -277,10 +276,8 @@ impl CellsOfSamples<'_> {
         let values = &self.map.values[1];
         let logarithmic =
             y.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
-        let columns = counts.chunks(values.len());
-        columns
-            .map(|column| Crossing::of(column, logarithmic))
-            .collect()
+        let crossing = |column| Crossing::of(column, logarithmic);
+        counts.chunks(values.len()).map(crossing).collect()
     }
 
     /// The part of the cells that certainly overturn, as the answer of each sample; the scenario itself comes first.

@@ -93,9 +93,7 @@ impl Question for FirstEdges {
         let band = low.zip(median).zip(high);
         let band = band.map(|((low, median), high)| [low, median, high]);
         let at_one = share_up_to(samples, 1.0);
-        let count = |condition: fn(&FirstEdge) -> bool| {
-            samples.answers().filter(|edge| condition(edge)).count()
-        };
+        let count = |condition: fn(&&_) -> bool| samples.answers().filter(condition).count();
         let probabilities = probabilities(samples);
         let names = ["probability", "probability_low", "probability_high"];
         let shares = [
@@ -129,11 +127,8 @@ impl Question for FirstEdges {
     }
 
     fn settings(&self) -> Vec<String> {
-        let (from, to, stride) = (
-            self.factors.first(),
-            self.factors.last(),
-            self.factors.stride(),
-        );
+        let factors = self.factors;
+        let (from, to, stride) = (factors.first(), factors.last(), factors.stride());
         vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
     }
 }
@@ -206,10 +201,9 @@ fn draw(
     probabilities: &[ProbabilityAt],
 ) -> String {
     let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
-    let factors = probabilities.iter().map(|at| at.0).chain(own);
-    let ends = factors
-        .chain([1.0])
-        .flat_map(|factor| [0.97 * factor, 1.03 * factor]);
+    let factors = probabilities.iter().map(|at| at.0);
+    let factors = factors.chain(own).chain([1.0]);
+    let ends = factors.flat_map(|factor| [0.97 * factor, 1.03 * factor]);
     let x = Scale::around(ends, figure.ticks(8));
     let y = Scale::exactly(0.0, 1.0, 5);
     // The share rises at each factor at which a sample overturns.

@@ -67,9 +67,8 @@ impl Histories {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
-        let summary = model
-            .simulate(scenario.ground_motion(), &request, None)
-            .map_err(|error| error.to_string())?;
+        let summary = model.simulate(scenario.ground_motion(), &request, None);
+        let summary = summary.map_err(|error| error.to_string())?;
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
         // A history that ends early may last longer in another sample.
@@ -77,15 +76,12 @@ impl Histories {
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
+        let structure = scenario.structure().clone();
         Ok(Self {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
-            own: (
-                scenario.structure().clone(),
-                *scenario.motion(),
-                many_cases(scenario)?,
-            ),
+            own: (structure, *scenario.motion(), many_cases(scenario)?),
         })
     }
 }
@@ -136,13 +132,11 @@ impl Question for Histories {
             let answer = line.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
+        let potential = |one: &HistoryAnswer| one.potential_over_barrier;
+        let rotation = |one: &HistoryAnswer| one.peak_rotation_rad;
         all.push(match has_joints {
-            true => of_answer("peak_potential_over_barrier", |one: &HistoryAnswer| {
-                one.potential_over_barrier
-            }),
-            false => of_answer("peak_rotation_rad", |one: &HistoryAnswer| {
-                one.peak_rotation_rad
-            }),
+            true => of_answer("peak_potential_over_barrier", potential),
+            false => of_answer("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
         Ok(Findings {
@@ -224,10 +218,9 @@ impl HistoryAnswer {
     /// The largest rotation; infinite if it overturned.
     #[must_use]
     pub fn peak_rad(&self) -> f64 {
-        if self.overturned_itself() {
-            f64::INFINITY
-        } else {
-            self.peak_rotation_rad
+        match self.overturned_itself() {
+            true => f64::INFINITY,
+            false => self.peak_rotation_rad,
         }
     }
 
@@ -357,9 +350,8 @@ impl Histories {
             incipient_g: [None; 2],
         };
         panels.ground(90.0, &subject, None);
-        let values = bands
-            .iter()
-            .flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
+        let values = bands.iter();
+        let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
         let y = around(&[], values, 6);
         let model = scenario.model().ok();
         let body = model.and_then(|model| model.bodies().get(self.body).cloned());

@@ -38,10 +38,8 @@ impl Capacities {
     /// Explains what to change.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
-        let suite = scenario
-            .suite
-            .as_ref()
-            .ok_or("the scenario has no [suite], whose records shake the samples")?;
+        let suite = scenario.suite.as_ref();
+        let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
         Ok(Self {
             levels: suite.levels.values(),
             suite: suite.clone(),
@@ -202,10 +200,8 @@ fn distribution(intensities: Vec<f64>) -> [Option<f64>; 2] {
     let intensities = ascending(intensities);
     let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
     let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
-    [
-        median,
-        low.zip(high).map(|(low, high)| 0.5 * (high / low).ln()),
-    ]
+    let dispersion = low.zip(high).map(|(low, high)| 0.5 * (high / low).ln());
+    [median, dispersion]
 }
 
 /// The edges that count. Mirrored records do not count if each has exactly the edges of the record itself, as with four links of a
@@ -249,9 +245,8 @@ impl<'a> Counted<'a> {
         let count = self.question.suite.records.len();
         let all: Vec<usize> = (0..count).collect();
         let found = self.distributions(&all);
-        let drawn: Vec<_> = bootstrap(count)
-            .map(|drawn| self.distributions(&drawn))
-            .collect();
+        let draws = bootstrap(count);
+        let drawn: Vec<_> = draws.map(|drawn| self.distributions(&drawn)).collect();
         let estimated = |which: usize| {
             let of = |number: usize| {
                 // If any draw lacks the number, there is no interval.
@@ -294,14 +289,12 @@ impl<'a> Counted<'a> {
             let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
             (!edges.is_empty()).then(|| overturned as f64 / edges.len() as f64)
         };
+        let own = |level: &f64| share(self.of_itself().collect(), *level);
+        let all = |level: &f64| share(self.of_samples().collect(), *level);
         let columns = [
             column(self.question.suite.measure.column(), |level: &f64| *level),
-            column("record_to_record", |level: &f64| {
-                share(self.of_itself().collect(), *level)
-            }),
-            column("both", |level: &f64| {
-                share(self.of_samples().collect(), *level)
-            }),
+            column("record_to_record", own),
+            column("both", all),
         ];
         csv(columns, &self.question.levels)
     }
@@ -361,9 +354,8 @@ impl Capacities {
             Mark::staircase(name, stroke, (x, 0.0), rises)
         };
         let single = samples.answers().take(MOST_FAINT);
-        let mut marks: Vec<Mark> = single
-            .map(|edges| steps("sample", FAINT, edges.iter().collect()))
-            .collect();
+        let single = single.map(|edges| steps("sample", FAINT, edges.iter().collect()));
+        let mut marks: Vec<Mark> = single.collect();
         marks.push(steps("both", ALL, samples.answers().flatten().collect()));
         if let Ok(own) = samples.own {
             marks.push(steps("own", OWN, own.iter().collect()));

@@ -167,18 +167,13 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
                 .collect(),
         };
         let mut influences = self.influences.iter();
-        let known = influences
-            .clone()
-            .find(|influence| influence.numbers.is_some());
-        let decides = known
-            .or(influences.next_back())
-            .map_or(String::new(), Influence::in_words);
-        let mut words = vec![
-            self.first
-                .map_or("no sample has an answer".to_owned(), |first| {
-                    format!("{first};\n    {decides};\n    {NOT_CONSIDERED}")
-                }),
-        ];
+        let mut known = influences.clone();
+        let known = known.find(|influence| influence.numbers.is_some());
+        let decides = known.or(influences.next_back());
+        let decides = decides.map_or(String::new(), Influence::in_words);
+        let first = self.first;
+        let first = first.map(|first| format!("{first};\n    {decides};\n    {NOT_CONSIDERED}"));
+        let mut words = vec![first.unwrap_or("no sample has an answer".to_owned())];
         words.extend(self.lines);
         for (reasons, what) in [
             (invalid, "make no valid structure"),

@@ -25,9 +25,7 @@ use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_links::{FourLinkError, FourLinks};
 use crate::mechanics::stability::StabilityError;
-use crate::scenario::{
-    Axis, Ground, ModelError, Motion, PulseGround, Quantity, Scaling, Scenario, Structure,
-};
+use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
 
 /// The result of a cell.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -228,30 +226,26 @@ impl<'a> OverturningMap<'a> {
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
         let depends = |on: &[Quantity]| axes.map(|axis| on.contains(&axis.quantity));
-        let shapes = [
+        let mut shapes = vec![
             Quantity::ThicknessRatio,
             Quantity::Embrace,
             Quantity::Restitution,
             Quantity::Other,
         ];
-        let mut structures = depends(&shapes);
         if scenario.motion().hinges().has_joints() {
-            for (depends, of_size) in structures.iter_mut().zip(depends(&[Quantity::MeanRadius])) {
-                *depends |= of_size;
-            }
+            shapes.push(Quantity::MeanRadius);
         }
         let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
         let variants = depends(&[Quantity::Other]);
+        let has_variants = variants.contains(&true);
         Some(Self {
             scenario,
             axes,
             repeat: map.repeat,
-            structures: Shared::new(counts, structures),
+            structures: Shared::new(counts, depends(&shapes)),
             pulses: Shared::new(counts, depends(&durations)),
             base: Arc::new(sample),
-            variants: variants
-                .contains(&true)
-                .then(|| Shared::new(counts, variants)),
+            variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
         })
     }
@@ -287,10 +281,8 @@ impl<'a> OverturningMap<'a> {
 
     /// The value of a quantity in a cell, if it varies.
     fn value(&self, index: usize, quantity: Quantity) -> Option<f64> {
-        let axis = self
-            .axes
-            .iter()
-            .position(|axis| axis.quantity == quantity)?;
+        let mut axes = self.axes.iter();
+        let axis = axes.position(|axis| axis.quantity == quantity)?;
         Some(self.coordinates(index)[axis])
     }
 
@@ -360,13 +352,9 @@ impl<'a> OverturningMap<'a> {
                 let shape = self.pulses.get(self.place(index), || {
                     let of_frequency = value(Quantity::Frequency).map(f64::recip);
                     let duration_s = of_frequency.or(value(Quantity::Duration));
-                    let duration_s = duration_s.unwrap_or(pulse.duration_s);
-                    let pulse = pulse.clone();
-                    PulseGround {
-                        duration_s,
-                        ..pulse
-                    }
-                    .shape()
+                    let mut pulse = pulse.clone();
+                    pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
+                    pulse.shape()
                 });
                 let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
                 let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
@@ -392,10 +380,8 @@ impl<'a> OverturningMap<'a> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
-        let structure = self
-            .structure(index, &scenario)
-            .map_err(FourLinkError::from);
-        let structure = structure.map_err(ModelError::from)?;
+        let structure = self.structure(index, &scenario);
+        let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
         let request = scenario.request_on(&ground, &structure);
         Ok((standing, (ground, request)))
     }
@@ -409,10 +395,8 @@ impl<'a> OverturningMap<'a> {
                 ended.map(|ending| Ok((ending?, None))).collect()
             }
         };
-        let ended = ended.into_iter();
-        ended
-            .map(|ended| ended.map_err(CellResult::Failed))
-            .collect()
+        let known = |ended: Result<Ended, String>| ended.map_err(CellResult::Failed);
+        ended.into_iter().map(known).collect()
     }
 }
 

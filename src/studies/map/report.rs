@@ -39,13 +39,13 @@ impl OverturningMap<'_> {
             column(x, |row: &CellRow| number(row.x)),
             column(y, |row: &CellRow| number(row.y)),
         ];
-        all.extend(columns::columns(
-            self.scenario.motion().hinges().has_joints(),
-            |row: &CellRow| match &row.result {
+        let has_joints = self.scenario.motion().hinges().has_joints();
+        all.extend(columns::columns(has_joints, |row: &CellRow| {
+            match &row.result {
                 CellResult::Ended(ending) => Ok(ending),
                 other => Err(other.outcome_name()),
-            },
-        ));
+            }
+        }));
         if self.repeat {
             all.push(column("outcomes", |row: &CellRow| {
                 let outcomes = row.outcomes.as_ref();
@@ -118,12 +118,9 @@ impl Style {
         if scenario.motion().hinges().has_joints() {
             return Err("is for four links and columns: free hinges have no p");
         }
-        let model = scenario.mechanisms();
-        let scales = model
-            .ok()
-            .and_then(|model| Scales::new(&*model, scenario.gravity_m_s2()))
-            .ok_or("needs a mechanism that has an unstable equilibrium")?;
-        let gravity_m_s2 = scenario.gravity_m_s2();
+        let (model, gravity_m_s2) = (scenario.mechanisms().ok(), scenario.gravity_m_s2());
+        let scales = model.and_then(|model| Scales::new(&*model, gravity_m_s2));
+        let scales = scales.ok_or("needs a mechanism that has an unstable equilibrium")?;
         let [right, left] = scales.incipient_m_s2;
         Ok([scales.frequency_rad_s, gravity_m_s2 / right.min(left)])
     }

@@ -158,10 +158,8 @@ impl Fragility {
             independent.max(standard_error(&covariance, &gradient))
         });
         let (eta, margin) = (self.line.at(log), QUANTILE_95 * error);
-        (
-            normal_probability(eta - margin),
-            normal_probability(eta + margin),
-        )
+        let [low, high] = [eta - margin, eta + margin].map(normal_probability);
+        (low, high)
     }
 }
 
@@ -207,7 +205,6 @@ pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
 pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
     let levels = fractions(observations);
     demand_two_levels(&levels)?;
-    let levels: Vec<LogLevel> = levels.iter().map(LogLevel::from).collect();
     demand_overlap_and_growth(&levels)?;
     let best = Likelihood::largest(&levels).ok_or(NoFit::Undetermined)?;
     Fragility::new(&best, observations).ok_or(NoFit::Undetermined)
@@ -234,34 +231,27 @@ fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     }
 }
 
-/// The cases of a level, as the likelihood needs them.
-struct LogLevel {
-    intensity: f64,
-    log: f64,
-    survived: f64,
-    overturned: f64,
-}
-
-impl From<&Fraction> for LogLevel {
-    fn from(level: &Fraction) -> Self {
-        Self {
-            intensity: level.intensity,
-            log: level.intensity.ln(),
-            survived: (level.cases - level.overturned) as f64,
-            overturned: level.overturned as f64,
-        }
+impl Fraction {
+    fn log(&self) -> f64 {
+        self.intensity.ln()
     }
-}
 
-impl LogLevel {
+    /// Number of the cases that overturned, and of the others.
+    const fn numbers(&self) -> [f64; 2] {
+        [
+            self.overturned as f64,
+            (self.cases - self.overturned) as f64,
+        ]
+    }
+
     /// The log-probability of the outcomes of its cases, at the linear predictor `eta`.
     fn log_probability(&self, eta: f64) -> LogProbability {
-        let fall = LogProbability::at(eta);
-        let survival = LogProbability::at(-eta);
+        let [overturned, survived] = self.numbers();
+        let [fall, survival] = [eta, -eta].map(LogProbability::at);
         LogProbability {
-            value: self.overturned * fall.value + self.survived * survival.value,
-            slope: self.overturned * fall.slope - self.survived * survival.slope,
-            bend: self.overturned * fall.bend + self.survived * survival.bend,
+            value: overturned * fall.value + survived * survival.value,
+            slope: overturned * fall.slope - survived * survival.slope,
+            bend: overturned * fall.bend + survived * survival.bend,
         }
     }
 }
@@ -275,22 +265,21 @@ const ROUNDING: f64 = 1e-12;
 /// line's slope is that of the derivative of the likelihood by the slope, taken at zero slope and the
 /// likeliest level. With `n` cases this derivative is `n phi(a)` times the mean logarithm of the intensities
 /// that overturned minus that of the intensities that did not.
-fn demand_overlap_and_growth(levels: &[LogLevel]) -> Result<(), NoFit> {
-    let last_survival = levels.iter().rfind(|level| level.survived > 0.0);
-    let first_fall = levels.iter().find(|level| level.overturned > 0.0);
+fn demand_overlap_and_growth(levels: &[Fraction]) -> Result<(), NoFit> {
+    let last_survival = levels.iter().rfind(|level| level.overturned < level.cases);
+    let first_fall = levels.iter().find(|level| level.overturned > 0);
     let (Some(survival), Some(fall)) = (last_survival, first_fall) else {
         return Ok(());
     };
-    if survival.log <= fall.log {
+    if survival.log() <= fall.log() {
         return Err(NoFit::Separated(survival.intensity, fall.intensity));
     }
-    let mean_log = |count: fn(&LogLevel) -> f64| {
-        let sum: f64 = levels.iter().map(|level| count(level) * level.log).sum();
-        sum / levels.iter().map(count).sum::<f64>()
-    };
-    let survived = mean_log(|level| level.survived);
-    let overturned = mean_log(|level| level.overturned);
-    let range = levels[levels.len() - 1].log - levels[0].log;
+    let [overturned, survived] = [0, 1].map(|kind| {
+        let counts = levels.iter().map(|level| level.numbers()[kind]);
+        let logs = levels.iter().zip(counts.clone());
+        logs.map(|(level, count)| count * level.log()).sum::<f64>() / counts.sum::<f64>()
+    });
+    let range = levels[levels.len() - 1].log() - levels[0].log();
     if overturned - survived <= ROUNDING * range {
         return Err(NoFit::NotIncreasing(survived.exp(), overturned.exp()));
     }
@@ -333,26 +322,25 @@ const HALVINGS: usize = 60;
 const SHORT: f64 = 1e-20;
 
 impl Likelihood {
-    fn at(levels: &[LogLevel], line: Line) -> Self {
+    fn at(levels: &[Fraction], mut line: Line) -> Self {
         let terms = levels.iter();
-        let terms = terms.map(|level| level.log_probability(line.at(level.log)));
+        let terms = terms.map(|level| level.log_probability(line.at(level.log())));
         let terms: Vec<LogProbability> = terms.collect();
         let information: f64 = terms.iter().map(|term| term.bend).sum();
         let lever: f64 = (levels.iter().zip(&terms))
-            .map(|(level, term)| term.bend * (level.log - line.pivot))
+            .map(|(level, term)| term.bend * (level.log() - line.pivot))
             .sum();
         let pivot = line.pivot + lever / information;
+        line.coefficients.x = line.at(pivot);
+        line.pivot = pivot;
         let mut likelihood = Self {
-            line: Line {
-                pivot,
-                coefficients: Vector2::new(line.at(pivot), line.coefficients.y),
-            },
+            line,
             logarithm: 0.0,
             score: Vector2::zeros(),
             information: Vector2::zeros(),
         };
         for (level, term) in levels.iter().zip(&terms) {
-            let arm = level.log - pivot;
+            let arm = level.log() - pivot;
             likelihood.logarithm += term.value;
             likelihood.score += Vector2::new(term.slope, term.slope * arm);
             likelihood.information += Vector2::new(term.bend, term.bend * arm * arm);
@@ -362,9 +350,9 @@ impl Likelihood {
 
     /// The largest likelihood, by Newton's method with step halving, starting from equal chances everywhere.
     /// `None` if it is too far away to be found.
-    fn largest(levels: &[LogLevel]) -> Option<Self> {
+    fn largest(levels: &[Fraction]) -> Option<Self> {
         let equal_chances = Line {
-            pivot: levels[0].log,
+            pivot: levels[0].log(),
             coefficients: Vector2::zeros(),
         };
         let mut best = Self::at(levels, equal_chances);
@@ -375,19 +363,11 @@ impl Likelihood {
             }
             // Near the maximum a good step gains less than the rounding error.
             let least = best.logarithm * (1.0 + ROUNDING);
-            let Line {
-                pivot,
-                coefficients,
-            } = best.line;
+            let mut line = best.line;
+            let from = line.coefficients;
             let next = |step: Vector2<f64>| {
-                let coefficients = coefficients + step;
-                Self::at(
-                    levels,
-                    Line {
-                        pivot,
-                        coefficients,
-                    },
-                )
+                line.coefficients = from + step;
+                Self::at(levels, line)
             };
             let steps = std::iter::successors(Some(step), |step| Some(step * 0.5));
             let mut nexts = steps.take(HALVINGS).map(next);
@@ -458,9 +438,9 @@ fn clustered_covariance(
     let mut squares = Matrix2::zeros();
     // Derivatives by level and slope of the log-probability of the outcome of a case.
     let score = |case: &Observation| {
-        let case = LogLevel::from(&fractions(&[*case])[0]);
-        let slope = case.log_probability(line.at(case.log)).slope;
-        Vector2::new(slope, slope * (case.log - line.pivot))
+        let case = fractions(&[*case])[0];
+        let slope = case.log_probability(line.at(case.log())).slope;
+        Vector2::new(slope, slope * (case.log() - line.pivot))
     };
     for record in sorted.chunk_by(|a, b| a.record == b.record) {
         let score: Vector2<f64> = record.iter().map(score).sum();
@@ -497,9 +477,8 @@ impl LogProbability {
     fn at(eta: f64) -> Self {
         if eta < TAIL {
             // Laplace's continued fraction: with t = -eta, h - t = 1/(t + 2/(t + 3/(t + ...))).
-            let excess = (1..=TERMS)
-                .rev()
-                .fold(0.0, |rest, k| f64::from(k) / (rest - eta));
+            let terms = (1..=TERMS).rev().map(f64::from);
+            let excess = terms.fold(0.0, |rest, k| k / (rest - eta));
             let slope = excess - eta;
             return Self {
                 value: -0.5 * eta * eta - (slope * (2.0 * PI).sqrt()).ln(),
@@ -511,10 +490,9 @@ impl LogProbability {
         let slope = (-0.5 * eta * eta).exp() / ((2.0 * PI).sqrt() * probability);
         Self {
             // Above zero the digits are in the complement.
-            value: if eta > 0.0 {
-                (-normal_probability(-eta)).ln_1p()
-            } else {
-                probability.ln()
+            value: match eta > 0.0 {
+                true => (-normal_probability(-eta)).ln_1p(),
+                false => probability.ln(),
             },
             slope,
             bend: slope * (slope + eta),

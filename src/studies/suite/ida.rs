@@ -26,17 +26,10 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     let largest = survived.filter_map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
     let (y_label, y) = heading.axis(results, figure);
-    let label = if over_critical {
-        "peak / critical rotation; arrows: overturned"
-    } else {
-        "peak rotation (rad); arrows: overturned"
-    };
-    let mut chart = Chart::new(480.0, (label, x), (y_label, y));
-    if over_critical {
-        chart
-            .marks
-            .push(Mark::upright("critical", CRITICAL, 1.0, y));
-    }
+    let label = format!("{}; arrows: overturned", peak_in_words(over_critical));
+    let mut chart = Chart::new(480.0, (&label, x), (y_label, y));
+    let critical = Mark::upright("critical", CRITICAL, 1.0, y);
+    chart.marks.extend(over_critical.then_some(critical));
     let records = results.shakes();
     let are_named = records.len() <= NAMED;
     for (cases, named) in records.iter().zip(CURVES.into_iter().cycle()) {
@@ -48,21 +41,19 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         chart.marks.extend(of_record(&name, stroke, cases, results));
     }
     if !are_named {
-        let both = if results.mirrored_count {
-            ", also mirrored"
-        } else {
-            ""
+        let both = match results.mirrored_count {
+            true => ", also mirrored",
+            false => "",
         };
         let count = results.record_count();
         let all = format!("a curve for each of {count} records{both}");
         chart.keys.push(Key::line(all, MANY));
     }
-    if results.has_uncertain() {
-        let sign = Sign::Circle(4.0, UNCERTAIN);
-        chart
-            .keys
-            .push(Key::new("uncertain whether it overturns", sign));
-    }
+    let circle = Sign::Circle(4.0, UNCERTAIN);
+    let uncertain = Key::new("uncertain whether it overturns", circle);
+    chart
+        .keys
+        .extend(results.has_uncertain().then_some(uncertain));
     let levels = fractiles(results);
     let fractiles = FRACTILES.into_iter().map(|(name, stroke, fractile)| {
         let known = levels.iter();
@@ -85,12 +76,11 @@ fn of_record(
 ) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases are no points of the curve: it is interrupted there.
-    let points = cases
-        .iter()
-        .filter_map(|case| match case.overturned_itself() {
-            true => Some((f64::NAN, level(case))),
-            false => Some((peak(case)?, level(case))),
-        });
+    let points = cases.iter();
+    let points = points.filter_map(|case| match case.overturned_itself() {
+        true => Some((f64::NAN, level(case))),
+        false => Some((peak(case)?, level(case))),
+    });
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {
@@ -213,11 +203,7 @@ pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -
     let peaks = peaks(results);
     let largest = peaks.last().map_or(1.0, |(peak, _)| *peak).max(1e-3);
     let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
-    let label = if over_critical(results) {
-        "peak / critical rotation"
-    } else {
-        "peak rotation (rad)"
-    };
+    let label = peak_in_words(over_critical(results));
     let y_axis = ("share with at most this peak", Scale::exactly(0.0, 1.0, 5));
     let words = "share of all records and levels; overturned cases are beyond";
     let chart = Chart {
@@ -229,6 +215,13 @@ pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -
 }
 
 const PEAKS: Stroke = Stroke::new(color::BLUE, 2.0, "");
+
+const fn peak_in_words(over_critical: bool) -> &'static str {
+    match over_critical {
+        true => "peak / critical rotation",
+        false => "peak rotation (rad)",
+    }
+}
 
 /// Whether all peaks are known over the critical rotation.
 fn over_critical(results: &SuiteFragility) -> bool {

@@ -190,9 +190,27 @@ impl Study for RecordSuite<'_> {
             upper.then(|| self.edge(index, below, survives_below.is_some()))?
         };
         let edges: Vec<Option<(f64, bool)>> = (0..indices.len()).map(edge).collect();
+        let row = |((index, result), edge): ((&usize, _), Option<(f64, bool)>)| {
+            let (level, record, mirrored) = self.place(*index);
+            let series = &self.suite.records[record];
+            let own_g = series.peak_g(self.scenario.gravity_m_s2());
+            let (scale, peak_g) = match self.suite.measure {
+                Measure::Scale => (level, level * own_g),
+                Measure::PeakG => (level / own_g, level),
+            };
+            CaseRow {
+                record: series.file.clone(),
+                mirrored,
+                scale,
+                peak_g,
+                result: check_finite(&[scale, peak_g]).and(result),
+                edge: edge.map(|(edge, _)| edge),
+                edge_at_most: edge.is_some_and(|(_, at_most)| at_most),
+                strength: Some(self.strengths[record]),
+            }
+        };
         let rows = indices.iter().zip(results).zip(edges);
-        rows.map(|((index, result), edge)| self.case_row(*index, result, edge))
-            .collect()
+        rows.map(row).collect()
     }
 }
 
@@ -257,31 +275,6 @@ impl RecordSuite<'_> {
             answer == Some(true)
         });
         Some((lowest, at_most))
-    }
-
-    fn case_row(
-        &self,
-        index: usize,
-        result: Result<Ending, String>,
-        edge: Option<(f64, bool)>,
-    ) -> CaseRow {
-        let (level, record, mirrored) = self.place(index);
-        let series = &self.suite.records[record];
-        let own_g = series.peak_g(self.scenario.gravity_m_s2());
-        let (scale, peak_g) = match self.suite.measure {
-            Measure::Scale => (level, level * own_g),
-            Measure::PeakG => (level / own_g, level),
-        };
-        CaseRow {
-            record: series.file.clone(),
-            mirrored,
-            scale,
-            peak_g,
-            result: check_finite(&[scale, peak_g]).and(result),
-            edge: edge.map(|(edge, _)| edge),
-            edge_at_most: edge.is_some_and(|(_, at_most)| at_most),
-            strength: Some(self.strengths[record]),
-        }
     }
 }
 
@@ -430,10 +423,9 @@ impl SuiteFragility {
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
         for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
-            let levels = cases
-                .iter()
-                .map(|case| (case.level(self.measure), case.verdict()));
-            let mut survival = Survival::of_levels(&levels.collect::<Vec<_>>());
+            let level = |case: &CaseRow| (case.level(self.measure), case.verdict());
+            let levels: Vec<_> = cases.iter().map(level).collect();
+            let mut survival = Survival::of_levels(&levels);
             let overturns = |case: &CaseRow| case.verdict() == Some(Verdict::Overturns);
             if let Some(first) = cases.iter().position(overturns) {
                 let is_known_below = first == 0 || cases[first - 1].known_verdict().is_some();
@@ -484,10 +476,8 @@ impl SuiteFragility {
 
 /// The cases that count: all, or those whose record is not mirrored.
 fn counting(cases: &[CaseRow], mirrored_count: bool) -> Vec<&CaseRow> {
-    let cases = cases.iter();
-    cases
-        .filter(|case| mirrored_count || !case.mirrored)
-        .collect()
+    let counts = |case: &&CaseRow| mirrored_count || !case.mirrored;
+    cases.iter().filter(counts).collect()
 }
 
 /// Whether every mirrored case has the result of the original, to the other side.

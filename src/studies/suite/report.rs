@@ -117,9 +117,7 @@ impl Heading {
         let words = self.words(&results, &capacities, &measures, &remarks);
         let efficiencies = csv(efficiency_columns(), &measures)?;
         let incomplete = remarks.incomplete_in_words();
-        let with_uncertain = results
-            .has_uncertain()
-            .then_some(&results.fit_with_uncertain);
+        let second = &results.fit_with_uncertain;
         let summary = Summary {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
@@ -133,29 +131,25 @@ impl Heading {
             mirrored_cases_count: results.mirrored_count,
             records_that_never_overturn: results.always(Verdict::Survives),
             records_that_always_overturn: results.always(Verdict::Overturns),
-            with_uncertain_as_overturned: with_uncertain.map(Curve::from),
+            with_uncertain_as_overturned: results.has_uncertain().then(|| second.into()),
             remarks,
         };
-        let captions = results
-            .curves()
-            .into_iter()
-            .map(|(taken, curve)| match curve {
-                Ok(curve) => format!("{curve}{taken}"),
-                Err(reason) => format!("no curve: {reason}{taken}"),
-            });
+        let curves = results.curves().into_iter();
+        let captions = curves.map(|(taken, curve)| match curve {
+            Ok(curve) => format!("{curve}{taken}"),
+            Err(reason) => format!("no curve: {reason}{taken}"),
+        });
         let caption = captions.collect::<Vec<_>>().join("; ");
         let mut fractiles = vec![column(self.measure.column(), |at: &Fractiles| at.intensity)];
         fractiles
             .extend(fields!(|at: &Fractiles| at => cases, overturned, peak_16, peak_50, peak_84));
+        let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
         let others = [
             picture::draw(figure, self, &results, &caption).into_bytes(),
             ida::draw(figure, self, &results).into_bytes(),
             ida::draw_peaks(figure, self, &results).into_bytes(),
             csv(fractiles, &ida::fractiles(&results))?,
-            csv(
-                [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])],
-                &ida::peaks(&results),
-            )?,
+            csv(peaks, &ida::peaks(&results))?,
             csv(capacity_columns(), &capacities)?,
             efficiencies,
             csv(self.level_columns(), &results.levels)?,
@@ -193,15 +187,11 @@ impl Heading {
             counts(results.cases.iter().map(outcome))
         )];
         let column = self.measure.column();
-        lines.extend(
-            results
-                .curves()
-                .into_iter()
-                .map(|(taken, curve)| match curve {
-                    Ok(curve) => format!("fragility over {column}{taken}: {curve}\n    ({FIT})"),
-                    Err(reason) => format!("no fragility curve{taken}: {reason}"),
-                }),
-        );
+        let curves = results.curves().into_iter();
+        lines.extend(curves.map(|(taken, curve)| match curve {
+            Ok(curve) => format!("fragility over {column}{taken}: {curve}\n    ({FIT})"),
+            Err(reason) => format!("no fragility curve{taken}: {reason}"),
+        }));
         lines.extend(self.measures_in_words(capacities, measures));
         for (case, survival) in results.survivals() {
             let words = survival::in_words(&survival, unit(self.measure));
@@ -236,10 +226,8 @@ impl Heading {
             let interval = interval.map_or(String::new(), |[low, high]| {
                 format!(" ({low:.2} to {high:.2})")
             });
-            format!(
-                "{}{at} {:.2}{interval}",
-                one.words, one.dispersion_of_factor
-            )
+            let (words, dispersion) = (one.words, one.dispersion_of_factor);
+            format!("{words}{at} {dispersion:.2}{interval}")
         };
         let others: Vec<String> = others.iter().map(of).collect();
         let all = capacities.len();
@@ -276,9 +264,8 @@ impl Heading {
             let names = ["", "_low", "_high"].map(|end| format!("{name}{end}"));
             list(names, move |level: &FragilityRow| each(curve(level)))
         };
-        let mut all = vec![column(self.measure.column(), |level: &FragilityRow| {
-            level.intensity
-        })];
+        let intensity = |level: &FragilityRow| level.intensity;
+        let mut all = vec![column(self.measure.column(), intensity)];
         all.extend(fields!(
             |level: &FragilityRow| level.counts => cases, overturned, still_rocking, incomplete, failed
         ));
@@ -286,15 +273,11 @@ impl Heading {
         all.push(curve("probability", |level| level.curve));
         if self.has_joints() {
             // The number of uncertain cases, and the columns that count them as overturned.
+            let fraction = FragilityRow::fraction_with_uncertain;
             all.extend([
                 column("uncertain", |level: &FragilityRow| level.counts.uncertain),
-                column(
-                    "fraction_with_uncertain",
-                    FragilityRow::fraction_with_uncertain,
-                ),
-                curve("probability_with_uncertain", |level| {
-                    level.curve_with_uncertain
-                }),
+                column("fraction_with_uncertain", fraction),
+                curve("probability_with_uncertain", |of| of.curve_with_uncertain),
             ]);
         }
         all

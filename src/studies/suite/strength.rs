@@ -29,11 +29,8 @@ impl Strength {
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
         let intensity = Intensity::of(&samples, gravity_m_s2);
-        let Spectral {
-            period_s,
-            damping_percent,
-        } = spectral;
-        let displacement_m = peak_displacement(&samples, period_s, damping_percent);
+        let period_s = spectral.period_s;
+        let displacement_m = peak_displacement(&samples, period_s, spectral.damping_percent);
         let omega = 2.0 * std::f64::consts::PI / period_s;
         Self {
             velocity_m_s: intensity.velocity_m_s.value,
@@ -97,9 +94,9 @@ impl SuiteFragility {
     }
 
     fn capacity<'a>(&self, levels: &[&'a CaseRow]) -> Capacity<'a> {
-        let first = levels
-            .iter()
-            .position(|case| case.verdict() == Some(Verdict::Overturns));
+        let overturns = |case: &&CaseRow| case.verdict() == Some(Verdict::Overturns);
+        let first = levels.iter().position(overturns);
+        let below = first.and_then(|first| levels[first.checked_sub(1)?].known_verdict());
         let own = levels[first.unwrap_or(0)];
         let level = first.map(|_| own.overturns_from(self.measure));
         let scale = level.map(|level| own.scale * level / own.level(self.measure));
@@ -112,12 +109,7 @@ impl SuiteFragility {
             record: &own.record,
             mirrored: own.mirrored,
             scale,
-            at_most: first.is_some_and(|first| {
-                let below = first
-                    .checked_sub(1)
-                    .map(|below| levels[below].known_verdict());
-                below.flatten().is_none() || own.edge_at_most
-            }),
+            at_most: first.is_some() && (below.is_none() || own.edge_at_most),
             in_measures: [
                 peak_g,
                 of(|strength| strength.velocity_m_s, 1),

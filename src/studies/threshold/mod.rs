@@ -234,9 +234,8 @@ pub fn thresholds(
     let samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
     let changes = samples.chunks(factors.len()).enumerate();
     let changes = changes.flat_map(|(model, samples)| {
-        let pairs = samples
-            .windows(2)
-            .map(move |pair| (model, &pair[0], &pair[1]));
+        let pairs = samples.windows(2);
+        let pairs = pairs.map(move |pair| (model, &pair[0], &pair[1]));
         pairs.filter(|(_, below, above)| {
             let both = below.verdict().zip(above.verdict());
             both.is_some_and(|(below, above)| below != above)
@@ -252,10 +251,8 @@ pub fn thresholds(
     })?;
     let threshold = |(model, samples): (usize, &[FactorSample])| {
         let (mut samples, mut edges) = (samples.to_vec(), Vec::new());
-        let own = changes
-            .iter()
-            .zip(&found)
-            .filter(|((of, ..), _)| *of == model);
+        let own = changes.iter().zip(&found);
+        let own = own.filter(|((of, ..), _)| *of == model);
         for found in own.flat_map(|(_, found)| found) {
             match found {
                 Ok(edge) => edges.push(*edge),
@@ -303,9 +300,8 @@ pub fn results(
     let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
     let models = scenarios.iter().map(|scenario| scenario.model());
-    let models: Vec<Box<dyn Model>> = models
-        .collect::<Result<_, _>>()
-        .map_err(StudyError::scenario)?;
+    let models: Result<Vec<_>, _> = models.collect();
+    let models = models.map_err(StudyError::scenario)?;
     let names = scenarios.iter().map(|scenario| scenario.model_name());
     let models: Vec<(&str, &dyn Model)> = names.zip(models.iter().map(|model| &**model)).collect();
     let (ground, request) = (scenario.ground_motion(), scenario.request());

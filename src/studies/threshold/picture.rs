@@ -58,10 +58,9 @@ pub fn draw(
         keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
     let (first, last) = (factors.first(), factors.last());
-    let x = if last < 2.0 * first {
-        Scale::exactly(first, last, figure.ticks(8))
-    } else {
-        Scale::logarithmic(first, last)
+    let x = match last < 2.0 * first {
+        true => Scale::exactly(first, last, figure.ticks(8)),
+        false => Scale::logarithmic(first, last),
     };
     let y = scale(thresholds, least, peak);
     let mut sheet = Sheet::new(figure, title);
@@ -127,10 +126,9 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut listed = Vec::new();
     for (threshold, name) in thresholds.iter().zip(names) {
-        let name = if names.len() > 1 {
-            format!("{name} ")
-        } else {
-            String::new()
+        let name = match names {
+            [_] => String::new(),
+            _ => format!("{name} "),
         };
         for (verdict, range) in &threshold.ranges {
             if place(range.to) - place(range.from) < NARROW_PX {
@@ -204,10 +202,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut from = axes.x.low;
     let mut bands = Vec::new();
-    let runs: Vec<_> = threshold
-        .samples
-        .chunk_by(|a, b| kind_of(a) == kind_of(b))
-        .collect();
+    let samples = &threshold.samples;
+    let runs = samples.chunk_by(|a, b| kind_of(a) == kind_of(b));
+    let runs: Vec<_> = runs.collect();
     for (index, run) in runs.iter().enumerate() {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);
@@ -235,11 +232,8 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let Frame { left, width, .. } = axes.frame;
     drawing.outline(&axes.frame, Stroke::new(color::BLACK, 0.8, ""));
     let places: Vec<f64> = edges.iter().map(|edge| place(*edge)).collect();
-    for ((edge, at), beside) in edges
-        .iter()
-        .zip(&places)
-        .zip(spread(&places, left, left + width))
-    {
+    let besides = spread(&places, left, left + width);
+    for ((edge, at), beside) in edges.iter().zip(&places).zip(besides) {
         let foot = Vector2::new(*at, top);
         let head = Vector2::new(beside, top - 14.0);
         drawing.line(foot, head, EDGE);
@@ -255,11 +249,8 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
         let mut foot = frame.left - frame.height;
         while foot < right {
             let from = Vector2::new(foot, bottom);
-            drawing.line(
-                from,
-                from + Vector2::new(frame.height, -frame.height),
-                HATCH,
-            );
+            let to = from + Vector2::new(frame.height, -frame.height);
+            drawing.line(from, to, HATCH);
             foot += HATCH_PX;
         }
     });

@@ -421,13 +421,10 @@ impl Threshold {
             ))
         };
         let reasons = |failed: bool| {
-            let summaries = histories
-                .clone()
-                .filter(|sample| sample.result.is_err() == failed);
-            let reasons = summaries.map(SampleSummary::of);
-            reasons
-                .filter_map(|sample| Some((sample.factor, sample.reason?)))
-                .collect()
+            let samples = histories.clone().map(SampleSummary::of);
+            let of_kind = samples.filter(|sample| sample.history.is_none() == failed);
+            let reasons = of_kind.filter_map(|sample| Some((sample.factor, sample.reason?)));
+            reasons.collect()
         };
         let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
         lines.extend(self.samples.iter().find(falls).map(|first| {
@@ -437,10 +434,9 @@ impl Threshold {
         lines.extend(listed("failed", reasons(true)));
         let incomplete = self.remarks().incomplete_in_words();
         lines.extend(incomplete.map(|words| format!("  {words}")));
-        let rocking = histories.filter(|sample| {
-            let ending = sample.result.as_ref();
-            ending.is_ok_and(|ending| ending.outcome == Outcome::StillRocking)
-        });
+        let outcomes = histories.flat_map(|sample| &sample.result);
+        let outcomes = outcomes.map(|ending| ending.outcome);
+        let rocking = outcomes.filter(|outcome| *outcome == Outcome::StillRocking);
         let rocking = rocking.count();
         lines.extend((rocking > 0).then(|| {
             format!("  still rocking at the end of the run, which counts as survived: {rocking} of {all} histories")
