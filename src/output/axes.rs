@@ -110,10 +110,9 @@ impl Scale {
         (0..=count)
             .map(|i| {
                 let value = (first + f64::from(i)) * step + 0.0;
-                let text = if plain {
-                    format!("{value:.digits$}")
-                } else {
-                    format!("{value:.1e}")
+                let text = match plain {
+                    true => format!("{value:.digits$}"),
+                    false => format!("{value:.1e}"),
                 };
                 (value, text)
             })

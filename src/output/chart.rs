@@ -85,18 +85,15 @@ impl Chart {
         let figure = sheet.figure;
         let height = Height::Plot(figure.height_px(self.height_px));
         sheet.part(height, move |drawing, part| {
-            let left_px = if self.is_panel {
-                PANEL_LEFT_PX
-            } else {
-                LEFT_PX
-            };
+            let is_panel = self.is_panel;
+            let left_px = if is_panel { PANEL_LEFT_PX } else { LEFT_PX };
             let axes = Axes {
                 frame: figure.right_of(left_px, part),
                 x: self.x.1,
                 y: self.y.1,
             };
             draw(drawing, &axes, &self.below);
-            axes.draw(drawing, &self.y.0, self.is_panel);
+            axes.draw(drawing, &self.y.0, is_panel);
             axes.label_x(drawing, &self.x.0);
             draw(drawing, &axes, &self.marks);
         })

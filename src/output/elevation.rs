@@ -73,11 +73,8 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
-    let above_px = if scene.loads(&[]).is_empty() {
-        6.0
-    } else {
-        ARROW_PX + 26.0
-    };
+    let has_none = scene.loads(&[]).is_empty();
+    let above_px = if has_none { 6.0 } else { ARROW_PX + 26.0 };
     // Supports extend a little beyond the structure.
     let left_px = room(DimensionSide::Left) + 10.0;
     let width_px = figure.width_px - left_px - (room(DimensionSide::Right) + 10.0);
@@ -235,8 +232,37 @@ pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
 /// The dimensions of a structure, beside it.
 pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let levels = levels(&scene.dimensions);
+    let [low, high] = scene.frame_m().map(|corner| place.px(corner));
     for (dimension, level) in scene.dimensions.iter().zip(levels) {
-        draw_dimension(drawing, place, scene.frame_m(), dimension, level);
+        let away = BESIDE_PX + APART_PX * f64::from(level);
+        let ends = dimension.ends_m.map(|end| place.px(end));
+        let tick = Vector2::new(4.0, -4.0);
+        let feet = ends.map(|end| match dimension.side {
+            DimensionSide::Below => Vector2::new(end.x, low.y + away),
+            DimensionSide::Left => Vector2::new(low.x - away, end.y),
+            DimensionSide::Right => Vector2::new(high.x + away, end.y),
+        });
+        for (end, foot) in ends.into_iter().zip(feet) {
+            drawing.line(end, foot, EXTENSION);
+            drawing.line(foot - tick, foot + tick, DIMENSION);
+        }
+        drawing.curve("dimension", feet, DIMENSION);
+        let middle = 0.5 * (feet[0] + feet[1]);
+        let beside = 5.0;
+        let is_short = (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside;
+        let outside = Vector2::new(beside + 0.75 * TEXT_PX, 0.0);
+        let (at, anchor, turn_deg) = match dimension.side {
+            // A text without room between the ends is on their right.
+            DimensionSide::Below if is_short => {
+                let end = feet[0].sup(&feet[1]);
+                (end + Vector2::new(beside + 3.0, 4.5), Anchor::Start, 0.0)
+            }
+            DimensionSide::Below => (middle - Vector2::new(0.0, beside), Anchor::Middle, 0.0),
+            // Vertical texts are on the outer side, where ticks do not reach them.
+            DimensionSide::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
+            DimensionSide::Right => (middle + outside, Anchor::Middle, 90.0),
+        };
+        drawing.label(at, anchor, turn_deg, &dimension.text);
     }
 }
 
@@ -296,49 +322,6 @@ fn levels(dimensions: &[Dimension]) -> Vec<u32> {
         levels.push(free.unwrap_or(0));
     }
     levels
-}
-
-fn draw_dimension(
-    drawing: &mut Drawing,
-    place: &Place,
-    [low_m, high_m]: [Vector2<f64>; 2],
-    dimension: &Dimension,
-    level: u32,
-) {
-    let away = BESIDE_PX + APART_PX * f64::from(level);
-    let (low, high) = (place.px(low_m), place.px(high_m));
-    let ends = dimension.ends_m.map(|end| place.px(end));
-    let tick = Vector2::new(4.0, -4.0);
-    let feet = ends.map(|end| match dimension.side {
-        DimensionSide::Below => Vector2::new(end.x, low.y + away),
-        DimensionSide::Left => Vector2::new(low.x - away, end.y),
-        DimensionSide::Right => Vector2::new(high.x + away, end.y),
-    });
-    for (end, foot) in ends.into_iter().zip(feet) {
-        drawing.line(end, foot, EXTENSION);
-        drawing.line(foot - tick, foot + tick, DIMENSION);
-    }
-    drawing.curve("dimension", feet, DIMENSION);
-    let middle = 0.5 * (feet[0] + feet[1]);
-    let beside = 5.0;
-    let (at, anchor, turn_deg) = match dimension.side {
-        // A text without room between the ends is on their right.
-        DimensionSide::Below
-            if (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside =>
-        {
-            let end = feet[0].sup(&feet[1]);
-            (end + Vector2::new(beside + 3.0, 4.5), Anchor::Start, 0.0)
-        }
-        DimensionSide::Below => (middle - Vector2::new(0.0, beside), Anchor::Middle, 0.0),
-        // Vertical texts are on the outer side, where ticks do not reach them.
-        DimensionSide::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
-        DimensionSide::Right => (
-            middle + Vector2::new(beside + 0.75 * TEXT_PX, 0.0),
-            Anchor::Middle,
-            90.0,
-        ),
-    };
-    drawing.label(at, anchor, turn_deg, &dimension.text);
 }
 
 /// Numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth as there is room.

@@ -290,9 +290,8 @@ impl Folder {
                 for format in PictureFormat::OTHERS {
                     let other = format!("{stem}.{}", format.name());
                     if self.pictures == Some(format) {
-                        let converted =
-                            converted(&file, format).map_err(self.cannot_write(&other))?;
-                        self.add(&other, &converted)?;
+                        let bytes = converted(&file, format).map_err(self.cannot_write(&other))?;
+                        self.add(&other, &bytes)?;
                     } else {
                         self.obsolete.push(other);
                     }
@@ -358,10 +357,9 @@ fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);
     };
-    let locked = if alone {
-        folder.try_lock()
-    } else {
-        folder.try_lock_shared()
+    let locked = match alone {
+        true => folder.try_lock(),
+        false => folder.try_lock_shared(),
     };
     match locked {
         Ok(()) => Ok(Some(folder)),

@@ -116,9 +116,8 @@ impl Panels {
         states: Option<&States>,
     ) {
         let points = ground::curve_g(subject.ground, subject.gravity_m_s2, self.x.high);
-        let largest = points
-            .iter()
-            .fold(0.0_f64, |most, point| most.max(point.1.abs()));
+        let sizes_g = points.iter().map(|point| point.1.abs());
+        let largest = sizes_g.fold(0.0, f64::max);
         let [right, left] = subject.incipient_g;
         // Ground that accelerates to the left pushes to the right. Levels far beyond the ground motion would flatten its curve.
         let levels = [right.map(|g| -g), left].into_iter().flatten();
@@ -204,10 +203,8 @@ fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
         let shape = Shape::Range(ends, OPACITY);
         Mark::new(name, Stroke::new(fill, 0.0, ""), shape)
     };
-    let changes = states
-        .changes
-        .iter()
-        .map(|(time_s, state)| (time_s.min(end_s), *state));
+    let changes = states.changes.iter();
+    let changes = changes.map(|(time_s, state)| (time_s.min(end_s), *state));
     let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
     // The end of the last visible band.
     let mut drawn_s = start_s;

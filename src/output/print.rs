@@ -129,11 +129,8 @@ mod converted {
         let failed = |what: &str| PrintError::Failed(what.to_owned());
         let tree = tree(picture)?;
         let header = picture.lines().next().unwrap_or_default();
-        let dpi = if header.contains("mm\"") {
-            PRINT_DPI
-        } else {
-            SCREEN_DPI
-        };
+        let is_print = header.contains("mm\"");
+        let dpi = if is_print { PRINT_DPI } else { SCREEN_DPI };
         let size = tree.size();
         let scale = dpi / CSS_DPI;
         let scaled = tiny_skia::Size::from_wh(scale * size.width(), scale * size.height());

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::figure::Figure;
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{LINE_PX, TEXT_PX, Text};
+use crate::bisection::{Width, bisect};
 
 /// Largest number of lines of a title; the rest is cut off.
 const TITLE_LINES: usize = 3;
@@ -109,11 +110,8 @@ impl<'a> Sheet<'a> {
         let height_px = above_px + below_first + BELOW_TEXT_PX;
         self.part(Height::Fixed(height_px), move |drawing, frame| {
             for (middle, lines) in paragraphs {
-                let mut at = Vector2::new(middle, frame.top + above_px);
-                for line in lines {
-                    drawing.label(at, Anchor::Middle, 0.0, line);
-                    at.y += LINE_PX;
-                }
+                let at = Vector2::new(middle, frame.top + above_px);
+                draw_lines(drawing, at, Anchor::Middle, lines);
             }
         });
     }
@@ -137,20 +135,15 @@ impl<'a> Sheet<'a> {
             placed.push((at, sign, lines));
             at += Vector2::new(advance, more);
         }
-        self.part(
-            Height::Fixed(at.y + 0.5 * LEGEND_ROW_PX),
-            move |drawing, frame| {
-                for (at, sign, lines) in placed {
-                    let at = at + Vector2::new(0.0, frame.top);
-                    sign.draw(drawing, at);
-                    let mut at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
-                    for line in lines {
-                        drawing.label(at, Anchor::Start, 0.0, line);
-                        at.y += LINE_PX;
-                    }
-                }
-            },
-        );
+        let height = Height::Fixed(at.y + 0.5 * LEGEND_ROW_PX);
+        self.part(height, move |drawing, frame| {
+            for (at, sign, lines) in placed {
+                let at = at + Vector2::new(0.0, frame.top);
+                sign.draw(drawing, at);
+                let at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
+                draw_lines(drawing, at, Anchor::Start, lines);
+            }
+        });
     }
 
     /// Draws the picture, as high as the figure wants it and its texts allow.
@@ -188,16 +181,16 @@ fn stretch(height: &dyn Fn(f64) -> f64, wanted_px: f64) -> f64 {
     if height(1.0) == wanted_px {
         return 1.0;
     }
-    let (mut low, mut high) = (LEAST_STRETCH, MOST_STRETCH);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if height(middle) < wanted_px {
-            low = middle;
-        } else {
-            high = middle;
-        }
+    let is_enough = |stretch: f64| height(stretch) >= wanted_px;
+    bisect(LEAST_STRETCH, MOST_STRETCH, Width::Rounding, is_enough).1
+}
+
+/// Draws lines of text below one another, the first at this place.
+fn draw_lines(drawing: &mut Drawing, mut at: Vector2<f64>, anchor: Anchor, lines: Vec<Text>) {
+    for line in lines {
+        drawing.label(at, anchor, 0.0, line);
+        at.y += LINE_PX;
     }
-    high
 }
 
 /// An entry of a legend.

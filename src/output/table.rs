@@ -93,10 +93,9 @@ pub(crate) fn numbers<'a, R>(
     names: impl IntoIterator<Item = String>,
     numbers: impl Fn(&R) -> &[f64] + 'a,
 ) -> Column<'a, R> {
-    Column {
-        names: names.into_iter().map(Cow::Owned).collect(),
-        cells: Box::new(move |row, _, cells| cells.push(Cell::Numbers(numbers(row).into()))),
-    }
+    several(names, move |row, cells| {
+        cells.push(Cell::Numbers(numbers(row).into()))
+    })
 }
 
 impl From<f64> for Cell<'_> {

@@ -259,10 +259,8 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
         first: impact.first,
         scene,
     };
-    let (before, after) = (
-        of.open(impact.index.checked_sub(1)?)?,
-        of.open(impact.index)?,
-    );
+    let before = of.open(impact.index.checked_sub(1)?)?;
+    let after = of.open(impact.index)?;
     let title = format!(
         "Impact {}{}: restitution (kinetic energy after/before) r = {:.6}; {}",
         impact.index,
@@ -334,27 +332,18 @@ impl Spot<'_> {
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
         let hinges = cuts.iter().map(|section| {
-            let edge = Edge::Intrados;
-            let hinge = match seen.joint(*section) {
-                Some(joint) => Hinge::Joint {
-                    joint,
-                    edge: Some(edge),
-                },
-                None => Hinge::Section {
-                    angle_rad: *section,
-                    edge,
-                },
-            };
+            let (angle_rad, edge) = (*section, Edge::Intrados);
+            let in_ring = Hinge::Section { angle_rad, edge };
+            let edge = Some(edge);
+            let at_joint = seen.joint(angle_rad);
+            let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
             open_at(hinge, Vector2::zeros())
         });
         let hinges: Vec<OpenHinge> = hinges.collect();
-        let view = self.view(&[], &hinges);
+        let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
         view.draw_carried(drawing, true);
         view.draw_blocks(drawing, |_, body| match body {
-            Some(body) => (
-                format!("body {}", body + 1),
-                ["#eeeeee", "#e0e0e0"][body % 2],
-            ),
+            Some(body) => (format!("body {}", body + 1), greys[body % 2]),
             None => ("still".to_owned(), "#ffffff"),
         });
         for (number, ends) in (1..).zip(cuts.windows(2)) {

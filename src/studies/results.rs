@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use askama::Template;
 use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
@@ -9,6 +10,7 @@ use thiserror::Error;
 use super::part::PartError;
 use super::runner::{RunnerError, Study};
 use crate::output::summary::summary_of;
+use crate::output::template::render;
 use crate::output::{Figure, Folder, OutputError, pretty};
 use crate::scenario::ScenarioErrors;
 
@@ -126,6 +128,16 @@ pub struct Answer {
     pub json: Value,
     /// The answer in words.
     pub text: String,
+}
+
+impl Answer {
+    /// The answer of a summary, whose words are a template.
+    pub(super) fn of(summary: &(impl Serialize + Template)) -> Result<Self, OutputError> {
+        Ok(Self {
+            json: summary_of(summary)?,
+            text: render(summary),
+        })
+    }
 }
 
 /// The style of results.

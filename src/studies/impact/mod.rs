@@ -138,7 +138,7 @@ pub fn chain_answer(
 ) -> Result<Answer, StudyError> {
     let impacts = |side| chain(model, side, count);
     let summary = Summary::new(scenario, model, (&[first], count), impacts);
-    Ok(summary.answer()?)
+    Ok(Answer::of(&summary)?)
 }
 
 /// The chain of four links with its impulses, and the requested details of one impact.
@@ -171,5 +171,5 @@ pub fn four_links_answer(
             summary.certificate = Some(Certificate::of(impact, &projection));
         }
     }
-    Ok(summary.answer()?)
+    Ok(Answer::of(&summary)?)
 }

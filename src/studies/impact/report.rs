@@ -19,11 +19,9 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, degrees};
-use crate::output::summary::summary_of;
 use crate::output::table::{Cell, column, csv};
-use crate::output::template::{filters, render};
+use crate::output::template::filters;
 use crate::scenario::Scenario;
-use crate::studies::results::Answer;
 
 /// Impacts of the structure of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
@@ -431,17 +429,6 @@ impl Summary {
             model: impact.model,
             restitution_factor: impact.restitution_factor,
         }
-    }
-
-    /// JSON and words.
-    ///
-    /// # Errors
-    /// When a number is not finite.
-    pub(super) fn answer(&self) -> Result<Answer, OutputError> {
-        Ok(Answer {
-            json: summary_of(self)?,
-            text: render(self),
-        })
     }
 
     /// One or two chains, with the mechanisms before them.

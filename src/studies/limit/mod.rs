@@ -57,7 +57,8 @@ pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
     let row = || scenario.structure().row().map_err(RowModelError::from);
     let coefficient = scenario.motion().friction_coefficient();
     if let Some(movements) = scenario.motion().supports() {
-        return Ok(of_moved_row(scenario, &row()?, &movements, coefficient)?.answer()?);
+        let summary = of_moved_row(scenario, &row()?, &movements, coefficient)?;
+        return Ok(Answer::of(&summary)?);
     }
     let mut summary = match scenario.row()? {
         Some(row) => of_row(scenario, &row)?,
@@ -66,7 +67,7 @@ pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient)?);
     }
-    Ok(summary.answer()?)
+    Ok(Answer::of(&summary)?)
 }
 
 /// Limit analysis of an undeformed row by the static programme.

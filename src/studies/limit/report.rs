@@ -16,9 +16,8 @@ use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
-use crate::output::summary::{Named, summary_of};
-use crate::output::template::{filters, render};
-use crate::studies::results::Answer;
+use crate::output::summary::Named;
+use crate::output::template::filters;
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]
@@ -230,17 +229,6 @@ impl Summary {
             bodies,
             ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
         }
-    }
-
-    /// JSON and words.
-    ///
-    /// # Errors
-    /// When a number is not finite.
-    pub(super) fn answer(&self) -> Result<Answer, OutputError> {
-        Ok(Answer {
-            json: summary_of(self)?,
-            text: render(self),
-        })
     }
 
     /// Why the push at which the structure falls was not found.

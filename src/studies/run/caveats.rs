@@ -26,11 +26,8 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     let mut warnings = scenario.unlikely_of(model);
     let structure = scenario.structure();
     // The ground cannot hold a column down; an arch is four links as long as its line of thrust stays almost inside.
-    let most = if structure.thrusts() {
-        EXCESS_LEVELS[1]
-    } else {
-        0.0
-    };
+    let thrusts = structure.thrusts();
+    let most = if thrusts { EXCESS_LEVELS[1] } else { 0.0 };
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
     let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
     warnings.extend(no_verdict(scenario, history));
@@ -121,11 +118,8 @@ pub(super) fn trust(
             "{grade}: the thrust line leaves the arch by {value:.4} t at most"
         )]);
     }
-    let safe = if value > most {
-        ", not on the safe side"
-    } else {
-        ""
-    };
+    let above = value > most;
+    let safe = if above { ", not on the safe side" } else { "" };
     let give = match structure.circular() {
         Some(arch) if arch.voussoirs.is_none() => "give `voussoirs` and ",
         _ => "",

@@ -43,7 +43,7 @@ use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder, SimulationError};
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::variation::{Variation, Variations, Varied};
+use crate::dynamics::variation::{Variations, Varied};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::summary::summary_of;
@@ -235,7 +235,10 @@ impl<'a> Run<'a> {
         let mut collected = Collected::new(self, folder.is_some());
         let repeats = self.options.repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
-        let variations = Variations::start(self.variations()?, ground, &request);
+        let variations = self.options.repeat.then(|| scenario.variations());
+        let variations = variations.transpose();
+        let variations = variations.map_err(SimulationError::computation)?;
+        let variations = Variations::start(variations.unwrap_or_default(), ground, &request);
         let (history, rows) = {
             let mut recording = Recording {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
@@ -279,15 +282,6 @@ impl<'a> Run<'a> {
             folder,
             rows,
         })
-    }
-
-    /// The structure with other properties that are as likely as its own; empty without `repeat`.
-    fn variations(&self) -> Result<Vec<Variation>, RunError> {
-        if !self.options.repeat {
-            return Ok(Vec::new());
-        }
-        let variations = self.scenario.variations();
-        variations.map_err(|error| SimulationError::computation(error).into())
     }
 
     /// The subject of the pictures.
@@ -578,7 +572,7 @@ impl Recorder for Recording<'_, '_> {
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
         if let Some(report) = &mut self.collected.report {
-            report.push_fall(sample);
+            report.fall.push(sample);
         }
         let snapshots = self.collected.snapshots.iter_mut();
         for film in snapshots.filter(|snapshots| snapshots.is_film()) {
@@ -589,7 +583,7 @@ impl Recorder for Recording<'_, '_> {
 
     fn fell(&mut self, end: FallEnd) {
         if let Some(report) = &mut self.collected.report {
-            report.end_fall(end);
+            report.fall_end = Some(end);
         }
     }
 }

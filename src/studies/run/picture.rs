@@ -44,7 +44,7 @@ const COLUMNS_OF_ALL: usize = 16_000;
 const LEAST_COLUMNS: usize = 200;
 
 /// Collects the samples of a history, thinned, and draws them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
     bodies: Vec<String>,
     rotations_rad: Vec<Envelope>,
@@ -88,18 +88,9 @@ impl Timeline {
         Self {
             rotations_rad: envelopes(bodies.len()),
             bodies,
-            excess_ratio: Envelope::default(),
-            energy: Envelope::default(),
-            in_barriers: false,
-            feet_mm: Default::default(),
             slips_mm: envelopes(model.shape().slipping),
             joints: model.row().map(OpenJoints::new),
-            phase: 0,
-            phase_from_s: 0.0,
-            far: Vec::new(),
-            states: States::default(),
-            impacts_s: Vec::new(),
-            end_s: 0.0,
+            ..Self::default()
         }
     }
 
@@ -113,11 +104,8 @@ impl Timeline {
         let in_mm = |metres: &f64| 1e3 * metres;
         let rotations_rad = sample.rotations_rad.iter().copied();
         push(&mut self.rotations_rad, time_s, rotations_rad);
-        push(
-            &mut self.slips_mm,
-            time_s,
-            sample.offsets_m.iter().map(in_mm),
-        );
+        let slips_mm = sample.offsets_m.iter().map(in_mm);
+        push(&mut self.slips_mm, time_s, slips_mm);
         let apart_mm = sample.feet_apart_m.iter().map(in_mm);
         push(&mut self.feet_mm, time_s, apart_mm);
         let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);

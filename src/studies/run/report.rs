@@ -45,6 +45,11 @@ const COORDINATE_RATIO: f64 = 5e-5;
 /// The code for a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
+// The library that draws the curves.
+const PLOT_STYLE: &str = include_str!("../../../vendor/uplot/uPlot.min.css");
+const PLOT_SCRIPT: &str = include_str!("../../../vendor/uplot/uPlot.iife.min.js");
+const PLOT_LICENCE: &str = include_str!("../../../vendor/uplot/LICENSE");
+
 /// Collects the samples of a history, thinned, for its page.
 #[derive(Clone, Debug)]
 pub struct Report {
@@ -53,8 +58,8 @@ pub struct Report {
     gravity_m_s2: f64,
     film: Film,
     /// The fall after a structure has overturned, and its end.
-    fall: Film,
-    fall_end: Option<FallEnd>,
+    pub(super) fall: Film,
+    pub(super) fall_end: Option<FallEnd>,
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
@@ -93,16 +98,6 @@ impl Report {
         self.excess_ratio.push(time_s, excess_ratio);
     }
 
-    /// Takes a sample of the fall after the structure has overturned.
-    pub fn push_fall(&mut self, sample: &Sample) {
-        self.fall.push(sample);
-    }
-
-    /// Takes the end of that fall.
-    pub fn end_fall(&mut self, end: FallEnd) {
-        self.fall_end = Some(end);
-    }
-
     /// The page for a scenario, with its observed points: the report on its samples, if there are any, the verdict, and the other words of `run`.
     #[must_use]
     pub fn page(
@@ -118,11 +113,9 @@ impl Report {
         let mut frames = self.film.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
-        let what = format!(
-            "{}; {}",
-            scenario.structure().described(),
-            ground_in_words(scenario)
-        );
+        let (structure, shaken) = (scenario.structure().described(), ground_in_words(scenario));
+        let what = format!("{structure}; {shaken}");
+        let data = self.data(ground, &frames, ends_at, (history, points));
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         filled(
             include_str!("report/page.html"),
@@ -138,22 +131,10 @@ impl Report {
                 ("STYLE", include_str!("report/page.css")),
                 ("STAGE", include_str!("report/stage.js")),
                 ("SCRIPT", include_str!("report/page.js")),
-                (
-                    "PLOT_STYLE",
-                    include_str!("../../../vendor/uplot/uPlot.min.css"),
-                ),
-                (
-                    "PLOT_SCRIPT",
-                    include_str!("../../../vendor/uplot/uPlot.iife.min.js"),
-                ),
-                (
-                    "PLOT_LICENCE",
-                    include_str!("../../../vendor/uplot/LICENSE"),
-                ),
-                (
-                    "DATA",
-                    &script_safe(&self.data(ground, &frames, ends_at, (history, points))),
-                ),
+                ("PLOT_STYLE", PLOT_STYLE),
+                ("PLOT_SCRIPT", PLOT_SCRIPT),
+                ("PLOT_LICENCE", PLOT_LICENCE),
+                ("DATA", &script_safe(&data)),
             ],
         )
     }
@@ -351,10 +332,8 @@ fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
     }
     let body = history.largest_body();
     let turned = |frame: &&&Sample| {
-        frame
-            .poses
-            .get(body)
-            .map_or(0.0, |pose| pose.rotation_rad().abs())
+        let pose = frame.poses.get(body);
+        pose.map_or(0.0, |pose| pose.rotation_rad().abs())
     };
     let farthest = frames.iter().max_by(|a, b| turned(a).total_cmp(&turned(b)));
     farthest.map_or(0.0, |frame| frame.time_s)

@@ -93,21 +93,15 @@ impl Snapshots {
                 times_s => format!("  snapshots at {times_s} s are {place} instant\n"),
             }
         };
-        let before = line(
-            &|time_s| time_s < start_s,
-            "before the start: they show its first",
-        );
-        before
-            + &line(
-                &|time_s| time_s > end_s,
-                "after the end: they show its last",
-            )
+        let early = "before the start: they show its first";
+        let late = "after the end: they show its last";
+        line(&|time_s| time_s < start_s, early) + &line(&|time_s| time_s > end_s, late)
     }
 
     /// The largest joint stress in any of the pictures, in Pa.
     fn largest_pa(&self) -> f64 {
-        let samples = self.taken.iter().filter_map(|(_, sample)| sample.as_ref());
-        let pressures = samples.flat_map(|sample| &sample.pressures);
+        let pressures = self.shown().into_iter();
+        let pressures = pressures.flat_map(|sample| &sample.pressures);
         let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
         stresses_pa.fold(0.0, f64::max)
     }
@@ -165,10 +159,9 @@ impl Snapshots {
     }
 
     fn caption(&self) -> String {
-        let mut caption = if self.exaggeration == 1.0 {
-            "to scale".to_owned()
-        } else {
-            format!("displacements times {}", self.exaggeration)
+        let mut caption = match self.exaggeration {
+            1.0 => "to scale".to_owned(),
+            exaggeration => format!("displacements times {exaggeration}"),
         };
         caption += "; dashed: at rest; circles: open hinges; blue: thrust line";
         let largest_pa = self.largest_pa();

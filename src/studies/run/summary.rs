@@ -270,13 +270,8 @@ impl<'a> Summary<'a> {
     /// The summary of a motion, with the peaks of its observed points.
     #[must_use]
     pub fn of(evidence: &Evidence<'a>, points: Vec<PointPeaks>) -> Self {
-        let Evidence {
-            scenario,
-            model,
-            history,
-            repeated,
-            varied,
-        } = *evidence;
+        let (scenario, model, history) = (evidence.scenario, evidence.model, evidence.history);
+        let mechanisms = model.as_mechanisms();
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
         // The cost of a computation is reported here; the results do not contain it.
@@ -298,9 +293,7 @@ impl<'a> Summary<'a> {
                 largest_friction_demand_time_s: thrust.largest_friction.time_s,
             }),
             steps: history.cost.steps,
-            mechanisms: model
-                .as_mechanisms()
-                .map(|model| OfMechanisms::of(scenario, model, history)),
+            mechanisms: mechanisms.map(|model| OfMechanisms::of(scenario, model, history)),
             row: history.row().map(|row| OfRow {
                 largest_peak_rotation_rad: history.largest_rotation_rad(),
                 half_cycles: history.half_cycles(),
@@ -310,13 +303,13 @@ impl<'a> Summary<'a> {
                 friction_coefficient: scenario.motion().friction_coefficient(),
                 iterations: history.cost.evaluations,
             }),
-            repeatability: repeated.map(|repeated| match repeated {
+            repeatability: evidence.repeated.map(|repeated| match repeated {
                 Ok(repeatability) => Repeated::of(repeatability),
                 Err(reason) => Repeated::Failed {
                     failed: reason.to_string(),
                 },
             }),
-            variations: varied.iter().map(OneVariation::of).collect(),
+            variations: evidence.varied.iter().map(OneVariation::of).collect(),
             points,
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
         }
@@ -357,13 +350,11 @@ impl<'a> Repeated<'a> {
         let names = ["own"].into_iter();
         let names = names.chain(repeatability.repeated.iter().copied());
         let named = names.map(key).zip(&repeatability.outcomes);
+        let outcomes = named.clone().map(|(key, one)| (key, one.name()));
+        let sways = named.map(|(key, one)| (key, one.overturning_sway()));
         Self::Compared {
-            outcomes: Named(named.clone().map(|(key, one)| (key, one.name())).collect()),
-            overturning_sways: Named(
-                named
-                    .map(|(key, one)| (key, one.overturning_sway()))
-                    .collect(),
-            ),
+            outcomes: Named(outcomes.collect()),
+            overturning_sways: Named(sways.collect()),
             repeatability,
         }
     }

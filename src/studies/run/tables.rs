@@ -7,7 +7,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
-use crate::output::table::{Cell, Column, column, numbers, row_number, several};
+use crate::output::table::{Cell, Column, column, list, numbers, row_number, several};
 
 use super::Scales;
 
@@ -27,61 +27,53 @@ pub(super) fn rotations(
     let bodies = model.bodies();
     let rates = columns(&bodies, "rate", "rad_s");
     let mut all = vec![
-        of_sample("time_s", |sample| sample.time_s),
-        of_sample("ground_acceleration_m_s2", |sample| {
+        column("time_s", |sample: &Sample| sample.time_s),
+        column("ground_acceleration_m_s2", |sample: &Sample| {
             sample.ground_acceleration_m_s2
         }),
-        of_sample("phase", |sample| sample.phase),
-        of_sample("state", |sample| sample.state.name()),
+        column("phase", |sample: &Sample| sample.phase),
+        column("state", |sample: &Sample| sample.state.name()),
         numbers(columns(&bodies, "rotation", "rad"), |sample: &Sample| {
             &sample.rotations_rad
         }),
         numbers(rates, |sample: &Sample| &sample.rates_rad_s),
         match model.row() {
-            Some(_) => of_sample("open_joints", |sample| sample.hinges.len()),
-            None => of_sample("thrust_excess_ratio", |sample| sample.demand.excess_ratio),
+            Some(_) => column("open_joints", |sample: &Sample| sample.hinges.len()),
+            None => column("thrust_excess_ratio", |sample: &Sample| {
+                sample.demand.excess_ratio
+            }),
         },
-        of_sample("friction_demand", |sample| sample.demand.friction),
+        column("friction_demand", |sample: &Sample| sample.demand.friction),
     ];
     if ground.has_vertical() {
-        all.push(of_sample("vertical_acceleration_m_s2", |sample| {
+        all.push(column("vertical_acceleration_m_s2", |sample: &Sample| {
             sample.vertical_acceleration_m_s2
         }));
     }
     if ground.right_foot().is_some() {
-        all.push(of_sample("right_foot_x_m", |sample| sample.feet_apart_m.x));
-        all.push(of_sample("right_foot_y_m", |sample| sample.feet_apart_m.y));
+        all.push(column("right_foot_x_m", |sample: &Sample| {
+            sample.feet_apart_m.x
+        }));
+        all.push(column("right_foot_y_m", |sample: &Sample| {
+            sample.feet_apart_m.y
+        }));
     }
     if let Some(scales) = scales {
         all.extend([
-            of_sample("p_t", move |sample| sample.time_s * scales.frequency_rad_s),
-            of_sample("acceleration_over_incipient", move |sample| {
+            column("p_t", move |sample: &Sample| {
+                sample.time_s * scales.frequency_rad_s
+            }),
+            column("acceleration_over_incipient", move |sample: &Sample| {
                 // Ground that accelerates to the right pushes to the left.
                 let ground_m_s2 = sample.ground_acceleration_m_s2;
                 ground_m_s2 / scales.incipient_m_s2[usize::from(ground_m_s2 > 0.0)]
             }),
-            of_sample("rotation_over_critical", |sample| {
+            column("rotation_over_critical", |sample: &Sample| {
                 sample.rotation_over_critical.unwrap_or(0.0)
             }),
         ]);
     }
     all
-}
-
-/// A column with a quantity of a sample.
-fn of_sample<C: Into<Cell<'static>>>(
-    name: &'static str,
-    cell: impl Fn(&Sample) -> C + 'static,
-) -> Column<'static, Sample> {
-    column(name, cell)
-}
-
-/// A column with a quantity of an event.
-fn of_event<C: Into<Cell<'static>>>(
-    name: &'static str,
-    cell: impl Fn(&Event) -> C + 'static,
-) -> Column<'static, Event> {
-    column(name, cell)
 }
 
 /// Columns of `poses.csv`, one row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
@@ -97,7 +89,7 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
             .flat_map(move |(quantity, unit)| columns(body, quantity, unit))
     });
     vec![
-        of_sample("time_s", |sample| sample.time_s),
+        column("time_s", |sample: &Sample| sample.time_s),
         several(names, |sample: &Sample, cells| {
             let poses = sample.poses.iter();
             let values = poses
@@ -136,7 +128,7 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
         .flat_map(|tie| ["force_n", "elongation_m"].map(|what| format!("tie_{tie}_{what}")));
     let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
     vec![
-        of_sample("time_s", |sample| sample.time_s),
+        column("time_s", |sample: &Sample| sample.time_s),
         numbers(gaps, |sample: &Sample| sample.gaps_m.as_flattened()),
         numbers(slips, |sample: &Sample| &sample.offsets_m),
         several(pressures, |sample: &Sample, cells| {
@@ -176,15 +168,15 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// Rows of blocks have thousands of impacts and hundreds of bodies, so the columns of bodies are left out.
 pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
-        of_event("time_s", |event| event.time_s),
+        column("time_s", |event: &Event| event.time_s),
         row_number("phase"),
-        of_event("kind", |event| event.kind.name()),
-        of_event("sway", |event| event.state.sway().map(Sway::name)),
-        of_event("mechanism", |event| event.mechanism),
+        column("kind", |event: &Event| event.kind.name()),
+        column("sway", |event: &Event| event.state.sway().map(Sway::name)),
+        column("mechanism", |event: &Event| event.mechanism),
     ];
-    let energy = of_event("energy_j", |event| event.energy_j);
+    let energy = column("energy_j", |event: &Event| event.energy_j);
     if model.shape().ties > 0 {
-        all.push(of_event("tie", |event| event.tie.map(|tie| tie + 1)));
+        all.push(column("tie", |event: &Event| event.tie.map(|tie| tie + 1)));
     }
     match model.as_mechanisms() {
         Some(model) => {
@@ -200,8 +192,8 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
         }
         None => all.extend([
             energy,
-            of_event("joints_open", |event| joint_numbers(&event.hinges)),
-            of_event("edges_open", |event| joint_edges(&event.hinges)),
+            column("joints_open", |event: &Event| joint_numbers(&event.hinges)),
+            column("edges_open", |event: &Event| joint_edges(&event.hinges)),
         ]),
     }
     all
@@ -222,9 +214,10 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
 pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
     let (bodies, sections) = (model.bodies(), sections(model));
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
+    let impulses = by_hinge(sections, "impulse", ["x_n_s", "y_n_s"]);
     vec![
         row_number("impact"),
-        of_event("time_s", |event| event.time_s),
+        column("time_s", |event: &Event| event.time_s),
         of_impact("sway_before", |impact| impact.sway_before.name()),
         of_impact("sway_after", |impact| impact.sway_after().name()),
         of_impact("restitution", |impact| impact.restitution),
@@ -236,32 +229,24 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
         numbers(rates("after"), |event: &Event| {
             impact(event).map_or(&[][..], |impact| &impact.rates_after_rad_s)
         }),
-        several(
-            by_hinge(sections, |hinge| vec![format!("hinge_{hinge}_deg")]),
-            move |event: &Event, cells| {
-                let opened = hinge_cells(opened(event), sections);
-                let angles_deg = opened.into_iter().map(|(angle_deg, _)| angle_deg);
-                cells.extend(angles_deg.map(Cell::from));
+        list(
+            by_hinge(sections, "hinge", ["deg"]),
+            move |event: &Event| {
+                let opened = hinge_cells(opened(event), sections).into_iter();
+                opened.map(|(angle_deg, _)| angle_deg)
             },
         ),
-        several(
-            by_hinge(sections, |hinge| {
-                ["x", "y"]
-                    .map(|axis| format!("impulse_{hinge}_{axis}_n_s"))
-                    .into()
-            }),
-            move |event: &Event, cells| {
-                let impulses = impact(event).map_or(&[][..], |impact| &impact.impulses_n_s);
-                let known = impulses.iter().flat_map(|one| [Some(one.x), Some(one.y)]);
-                let all = known.chain(std::iter::repeat(None)).take(2 * sections);
-                cells.extend(all.map(Cell::from));
-            },
-        ),
-        several(
-            by_hinge(sections, |hinge| vec![format!("hinge_{hinge}_edge")]),
-            move |event: &Event, cells| {
-                let opened = hinge_cells(opened(event), sections);
-                cells.extend(opened.into_iter().map(|(_, edge)| Cell::from(edge)));
+        list(impulses, move |event: &Event| {
+            let impulses = impact(event).map_or(&[][..], |impact| &impact.impulses_n_s);
+            let known = impulses.iter().flat_map(|one| [Some(one.x), Some(one.y)]);
+            let all = known.chain(std::iter::repeat(None));
+            all.take(2 * sections).collect::<Vec<_>>()
+        }),
+        list(
+            by_hinge(sections, "hinge", ["edge"]),
+            move |event: &Event| {
+                let opened = hinge_cells(opened(event), sections).into_iter();
+                opened.map(|(_, edge)| edge)
             },
         ),
         hinges("closed", sections, |event| {
@@ -277,7 +262,7 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
 pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
-        of_event("time_s", |event| event.time_s),
+        column("time_s", |event: &Event| event.time_s),
         of_impact("joints_shut", |impact| joint_numbers(&impact.closed)),
         of_impact("edges_shut", |impact| joint_edges(&impact.closed)),
         of_impact("joints_opened", |impact| joint_numbers(&impact.opened)),
@@ -317,9 +302,10 @@ fn of_impact<C: Into<Cell<'static>>>(
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
 /// Names of columns, several for each of this many hinges.
-fn by_hinge(sections: usize, names: impl Fn(&str) -> Vec<String>) -> Vec<String> {
+fn by_hinge<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
-    hinges.flat_map(|hinge| names(hinge)).collect()
+    let names = hinges.flat_map(|hinge| parts.map(|part| format!("{what}_{hinge}_{part}")));
+    names.collect()
 }
 
 /// The number of hinges of a model's mechanisms that are at sections.
@@ -333,15 +319,9 @@ fn hinges(
     sections: usize,
     of: impl Fn(&Event) -> &[Hinge] + 'static,
 ) -> Column<'static, Event> {
-    let names = by_hinge(sections, |hinge| {
-        ["deg", "edge"]
-            .map(|part| format!("{what}_{hinge}_{part}"))
-            .into()
-    });
-    several(names, move |event: &Event, cells| {
-        for (angle_deg, edge) in hinge_cells(of(event), sections) {
-            cells.extend([Cell::from(angle_deg), Cell::from(edge)]);
-        }
+    list(by_hinge(sections, what, ["deg", "edge"]), move |event| {
+        let cells = hinge_cells(of(event), sections).into_iter();
+        cells.flat_map(|(angle_deg, edge)| [Cell::from(angle_deg), Cell::from(edge)])
     })
 }
 

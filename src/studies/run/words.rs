@@ -64,13 +64,8 @@ impl VerdictLine<'_> {
 
     /// The conditions of the outcome: friction that stone may not have, and properties that change the ending.
     fn doubts(&self) -> Vec<String> {
-        let Evidence {
-            scenario,
-            history,
-            varied,
-            ..
-        } = self.0;
-        let needed = caveats::friction_need(scenario, history).into_iter();
+        let (history, varied) = (self.0.history, self.0.varied);
+        let needed = caveats::friction_need(self.0.scenario, history).into_iter();
         let doubts = needed.chain(otherwise(history, varied));
         doubts
             .filter(|_| history.outcome != Outcome::Incomplete)
@@ -277,13 +272,8 @@ impl<'a> Words<'a> {
 
     /// The limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
     fn trust(&self) -> Option<Vec<String>> {
-        let Evidence {
-            scenario,
-            model,
-            history,
-            ..
-        } = self.evidence;
-        if model.as_mechanisms().is_none() {
+        let (scenario, history) = (self.evidence.scenario, self.evidence.history);
+        if self.evidence.model.as_mechanisms().is_none() {
             return self.sliding().is_none().then(Vec::new);
         }
         // No advice to compare with free hinges if they are compared already.

@@ -281,11 +281,9 @@ fn history_side(
     let overturned = peaks.iter().any(|peak| peak.overturned);
     let displacements = || peaks.iter().map(|peak| peak.displacement_m);
     let is_mean = peaks.len() >= FOR_THE_MEAN;
-    let least_m = if is_mean {
-        displacements().sum::<f64>() / peaks.len() as f64
-    } else {
-        displacements().fold(0.0, f64::max)
-    };
+    let mean_m = displacements().sum::<f64>() / peaks.len() as f64;
+    let largest_m = displacements().fold(0.0, f64::max);
+    let least_m = if is_mean { mean_m } else { largest_m };
     let incomplete = peaks.iter().any(|peak| peak.incomplete);
     let demand_m = (!overturned && !incomplete).then_some(least_m);
     let mean_interval_m = demand_m.filter(|_| is_mean).and_then(|_| {

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Basis, NoCheck};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control, Displaced};
+use crate::mechanics::capacity::{Capacity, Carried, Control, Displaced};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::friction::{self, FrictionError};
@@ -148,30 +148,18 @@ impl Way {
         bodies: &[MovingBody],
         crown: Carried,
         gravity_m_s2: f64,
-    ) -> Result<Self, CapacityError> {
+    ) -> Result<Self, String> {
         let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
             let at_m = own.centre_m;
             (own.mass_kg, Carried { at_m, body })
         });
         let masses: Vec<(f64, Carried)> = masses.collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
+        let centre = curve(Control::centre_of(&masses));
         Ok(Self {
-            centre: curve(Control::centre_of(&masses))?,
+            centre: centre.map_err(|error| error.to_string())?,
             crown: curve(Control::point(crown)).ok(),
         })
-    }
-
-    /// The motion of a row of blocks without ties, or why that is unknown.
-    fn of_row(
-        row: &Row,
-        sway: Sway,
-        bodies: &[MovingBody],
-        gravity_m_s2: f64,
-    ) -> Result<Self, String> {
-        let held = Held::new(row, sway).map_err(|error| error.to_string())?;
-        let crown = Bodies::of_row(&held).carry(row.crown());
-        let displaced = |part| held.displaced(part);
-        Self::new(sway, displaced, bodies, crown, gravity_m_s2).map_err(|error| error.to_string())
     }
 
     /// The largest friction coefficient needed up to a fraction of the ultimate displacement.
@@ -283,7 +271,7 @@ impl Found {
         let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
-            way: way.map_err(|error| error.to_string()),
+            way,
             bodies,
             ties: Vec::new(),
             body_of_block: Vec::new(),
@@ -341,20 +329,28 @@ impl Found {
             force_kg: tie.prestress_n / row.gravity_m_s2,
             lengthening: *lengthening,
         });
-        let way = if row.ties.is_empty() {
-            Way::of_row(row, sway, &bodies, gravity_m_s2)
-        } else {
-            Err(
-                "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does"
-                    .to_owned(),
+        let way = || {
+            if !row.ties.is_empty() {
+                return Err("the forces of ties change as the structure moves; this check does not follow them, quasi-static \
+                     capacity does"
+                    .to_owned());
+            }
+            let held = Held::new(row, sway).map_err(|error| error.to_string())?;
+            let crown = Bodies::of_row(&held).carry(row.crown());
+            Way::new(
+                sway,
+                |part| held.displaced(part),
+                &bodies,
+                crown,
+                gravity_m_s2,
             )
         };
         Self {
             hinges: hinges.collect(),
             ties: ties.collect(),
+            way: way(),
             bodies,
             body_of_block,
-            way,
         }
     }
 }

@@ -203,9 +203,8 @@ impl Method {
     /// Its name in words.
     const fn words(self) -> &'static str {
         match self {
-            Self::Activation => "activation",
             Self::Simplified => "q times activation",
-            Self::Displacement => "displacement",
+            named => named.name(),
         }
     }
 }
@@ -379,10 +378,8 @@ struct Basis<'a> {
 pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
     let settings = scenario.verify.clone().unwrap_or_default();
-    let (structure, own_friction) = (
-        scenario.structure(),
-        scenario.motion().friction_coefficient(),
-    );
+    let structure = scenario.structure();
+    let own_friction = scenario.motion().friction_coefficient();
     let (_, density_kg_m3) = structure.depth_and_density();
     let free = settings.free_standing.as_ref();
     let basis = Basis {
@@ -408,6 +405,8 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     let by_the_code = matches!(basis.demand, Demand::Code(_));
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
     let results = states.values().filter_map(|one| one.zeta_e);
+    let verdicts = states.iter().map(|(state, one)| (*state, one.verdict));
+    let has_top = structure.stands_on_one_support();
     let mut summary = Summary {
         program: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
@@ -416,10 +415,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
         scenario_sha256: sha256(scenario.to_resolved_toml().as_bytes()),
         files: scenario.files().to_vec(),
         zeta_e: results.fold(f64::INFINITY, f64::min),
-        verdict: states
-            .iter()
-            .map(|(state, one)| (*state, one.verdict))
-            .collect(),
+        verdict: verdicts.collect(),
         confidence_factor: basis.settings.confidence_factor,
         behaviour_factor: basis.settings.behaviour_factor,
         sides: basis.settings.sides,
@@ -435,11 +431,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
         not_covered: Vec::new(),
         scenario: scenario.to_json(),
         tie_places: structure.tie_places(),
-        top: if structure.stands_on_one_support() {
-            "top"
-        } else {
-            "crown"
-        },
+        top: if has_top { "top" } else { "crown" },
     };
     report::add_notes(scenario, &mut summary);
     Ok(summary)
@@ -482,10 +474,14 @@ impl Basis<'_> {
                 }
                 _ => None,
             };
+            let both_g = match (state, &self.demand) {
+                (LimitState::Slv, Demand::Code(_)) => start_ag_g.zip(spectrum.ag_g()),
+                _ => None,
+            };
             let mut side = SideCheck {
                 zeta_e: None,
                 activation,
-                simplified: self.simplified(state, start_ag_g, &spectrum),
+                simplified: both_g.map(|(start_g, ag_g)| self.simplified(start_g, ag_g)),
                 displacement,
             };
             side.zeta_e = side.governing().map(|(_, margin)| margin.zeta_e);
@@ -528,24 +524,14 @@ impl Basis<'_> {
         })
     }
 
-    /// The check of C8.7.1.2.1.7, for SLV, from the activation as `a_g` in g.
-    fn simplified(
-        &self,
-        state: LimitState,
-        start_ag_g: Option<f64>,
-        spectrum: &Spectrum,
-    ) -> Option<Simplified> {
-        if state != LimitState::Slv || matches!(self.demand, Demand::Points(_)) {
-            return None;
-        }
-        let activation_ag_g = start_ag_g?;
+    /// The check of C8.7.1.2.1.7, from the activation and the demand as `a_g` in g.
+    fn simplified(&self, activation_ag_g: f64, ag_g: f64) -> Simplified {
         let q = self.settings.behaviour_factor;
-        let ag_g = spectrum.ag_g()?;
-        Some(Simplified {
+        Simplified {
             activation_ag_g,
             q,
             margin: Margin::new(q * activation_ag_g / ag_g, Some(ag_g)),
-        })
+        }
     }
 
     /// The check of C8.7.1.2.1.8, with the activation as `a_g` in g.
@@ -583,13 +569,10 @@ impl Basis<'_> {
             by_displacement_ag_g: by_displacement.ag_capacity_g,
             activation_governs: activation_ag_g.is_some(),
             ag_capacity_following_g: match spectrum {
-                Spectrum::Ground(Ground { spectrum, .. }) => following_g(
-                    spectrum,
-                    capacity_m,
-                    period_s,
-                    damping_percent,
-                    gravity_m_s2,
-                ),
+                Spectrum::Ground(Ground { spectrum, .. }) => following_g(spectrum, |ground| {
+                    ground.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
+                        >= capacity_m
+                }),
                 Spectrum::Floor { .. } | Spectrum::Points { .. } => None,
             },
             zeta_e_crown: crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m),
@@ -611,12 +594,8 @@ impl Basis<'_> {
         let acceleration_g = self.held_g(curve, displacement_m, rule.divide_acceleration);
         let ratio_s2 = displacement_m / (acceleration_g * self.gravity_m_s2);
         let period_s = rule.period_factor * PI * ratio_s2.sqrt();
-        let demand_m = spectrum.displacement_m(
-            period_s,
-            self.t0_s,
-            rule.damping_percent,
-            self.gravity_m_s2,
-        )?;
+        let (t0_s, percent, gravity_m_s2) = (self.t0_s, rule.damping_percent, self.gravity_m_s2);
+        let demand_m = spectrum.displacement_m(period_s, t0_s, percent, gravity_m_s2)?;
         let capacity_m = displacement_m / rule.divide_displacement;
         Ok((capacity_m, acceleration_g, period_s, demand_m))
     }
@@ -672,14 +651,11 @@ fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, Method
     Some((side, method, margin))
 }
 
-/// The least `a_g`, in g, at which the displacement demand reaches a capacity, while `S_S` and `T_D` vary with `a_g`;
-/// `None` beyond the range of the code.
+/// The least `a_g`, in g, whose spectrum reaches the capacity, while `S_S` and `T_D` vary with `a_g`; `None` beyond the range of the
+/// code.
 fn following_g(
     ground: &GroundSpectrum,
-    capacity_m: f64,
-    period_s: f64,
-    damping_percent: f64,
-    gravity_m_s2: f64,
+    reaches_capacity: impl Fn(&GroundSpectrum) -> bool,
 ) -> Option<f64> {
     let reaches = |ag_g: f64| {
         let hazard = Hazard {
@@ -690,18 +666,14 @@ fn following_g(
             soil: ground.soil,
             topographic_factor: ground.s_t,
         };
-        let spectrum = GroundSpectrum::new(hazard, site).ok()?;
-        let demand_m = spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2);
-        Some(demand_m >= capacity_m)
+        GroundSpectrum::new(hazard, site).is_ok_and(|ground| reaches_capacity(&ground))
     };
     // On soil D the demand falls for a while as a_g rises; the first crossing counts.
     let largest_g = (ground.t_e_s - 1.6) / 4.0;
     let steps = 400;
     let at = |step: i32| largest_g * f64::from(step) / f64::from(steps);
-    let first = (1..=steps).find(|step| reaches(at(*step)) == Some(true))?;
+    let first = (1..=steps).find(|step| reaches(at(*step)))?;
     let low = at(first - 1);
-    let (_, ag_g) = bisect(low, at(first), Width::Rounding, |ag_g| {
-        reaches(ag_g) == Some(true)
-    });
+    let (_, ag_g) = bisect(low, at(first), Width::Rounding, reaches);
     Some(ag_g)
 }

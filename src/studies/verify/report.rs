@@ -66,13 +66,9 @@ pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
             curve: picture::capacity(figure, check, *sway, mechanism),
         }
     };
+    let shown = check.mechanisms.iter().take(check.shown());
     render(&Page {
-        drawn: check
-            .mechanisms
-            .iter()
-            .take(check.shown())
-            .map(drawn)
-            .collect(),
+        drawn: shown.map(drawn).collect(),
         described: scenario.structure().described(),
         resolved: scenario.to_resolved_toml(),
         check,
