@@ -172,15 +172,11 @@ impl ElasticJoints {
     /// The longest step of a motion, in seconds.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
-        let default_s = || {
-            let longer = if self.many_cases {
-                MANY_CASES_STEP_RATIO
-            } else {
-                1.0
-            };
-            longer * Self::default_step_s(&self.structure)
-        };
-        self.steps_times * self.options.longest_step_s.unwrap_or_else(default_s)
+        let mut default_s = Self::default_step_s(&self.structure);
+        if self.many_cases {
+            default_s *= MANY_CASES_STEP_RATIO;
+        }
+        self.steps_times * self.options.longest_step_s.unwrap_or(default_s)
     }
 
     /// The default of the longest step, in seconds.

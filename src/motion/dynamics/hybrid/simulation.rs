@@ -366,10 +366,8 @@ impl<C: MechanismChain> Tally<'_, '_, C> {
 impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<'_, 'a, C> {
     fn step(&mut self, from: &Now<'a, C>, step: &Step<3>) -> ControlFlow<()> {
         self.note_step(from.mode, step);
-        match &mut self.sampler {
-            Some(sampler) => sampler.step(from, step),
-            None => ControlFlow::Continue(()),
-        }
+        let sampler = self.sampler.as_mut();
+        sampler.map_or(ControlFlow::Continue(()), |one| one.step(from, step))
     }
 
     fn transition(&mut self, transition: &RockingTransition<'a, C>) -> ControlFlow<()> {

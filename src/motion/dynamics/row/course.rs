@@ -221,10 +221,8 @@ impl<'a> Course<'a> {
         if time >= self.task.ground.end_s()
             && let Some(time_s) = rests_since()
         {
-            return Some(match self.standing() {
-                Some(standing) => (standing, time),
-                None => (Outcome::Rest, time_s),
-            });
+            let rest = (Outcome::Rest, time_s);
+            return Some(self.standing().map_or(rest, |standing| (standing, time)));
         }
         let over = time >= self.task.settings.end_s;
         over.then(|| (self.standing().unwrap_or(Outcome::StillRocking), time))

@@ -186,11 +186,8 @@ impl RigidRow {
             }
             _ => {
                 let allowed = "left out: this row does not start as a mechanism from which it could be released";
-                return Err(ArgumentError::new(
-                    "rotation_rad",
-                    initial.rotation_rad,
-                    allowed,
-                ));
+                let given_rad = initial.rotation_rad;
+                return Err(ArgumentError::new("rotation_rad", given_rad, allowed));
             }
         };
         let first = row.link_from(initial.sway, 0);
