@@ -138,10 +138,8 @@ impl Arch {
 
     /// The arch with its new shape, checked.
     fn reshaped(mut self) -> Result<Self, ArgumentError> {
-        let (ratio, range) = (
-            self.thickness_ratio,
-            MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND,
-        );
+        let ratio = self.thickness_ratio;
+        let range = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
         let allowed = format_args!("a number from {:?} to below {:?}", range.start, range.end);
         allow(range.contains(&ratio), "thickness_ratio", ratio, allowed)?;
         self.incipient = Arc::default();
@@ -264,10 +262,8 @@ impl Arch {
     /// When the arch cannot stand, or does not start as a four-link mechanism.
     pub fn incipient(&self) -> Result<&Incipient, LimitError> {
         let onset = || incipient(&self.ring(), self.sites());
-        self.incipient
-            .get_or_init(onset)
-            .as_ref()
-            .map_err(|error| *error)
+        let known = self.incipient.get_or_init(onset).as_ref();
+        known.map_err(|error| *error)
     }
 }
 

@@ -305,12 +305,8 @@ impl Row {
             let outline = ring.sector_outline(ends[0], ends[1]).into_iter();
             outline.map(|corner| corner * mean_radius_m).collect()
         });
-        let row = Self::new(
-            blocks.collect(),
-            joints.collect(),
-            Supports::Both,
-            mean_radius_m,
-        )?;
+        let (blocks, joints) = (blocks.collect(), joints.collect());
+        let row = Self::new(blocks, joints, Supports::Both, mean_radius_m)?;
         Ok(row.with_outlines_m(outlines_m.collect()))
     }
 
@@ -406,9 +402,8 @@ impl Row {
 
 fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
     let holds = value > 0.0 && value < f64::INFINITY;
-    holds
-        .then_some(())
-        .ok_or(RowError::Dimension { name, value })
+    let error = RowError::Dimension { name, value };
+    holds.then_some(()).ok_or(error)
 }
 
 /// Mass per unit of area.

@@ -375,8 +375,7 @@ impl Capacity {
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;
         let acceleration_g = self.oscillator_acceleration_g(part);
-        (acceleration_g > 0.0).then(|| {
-            2.0 * std::f64::consts::PI * (wanted_m / (gravity_m_s2 * acceleration_g)).sqrt()
-        })
+        let square_s2 = wanted_m / (gravity_m_s2 * acceleration_g);
+        (acceleration_g > 0.0).then(|| 2.0 * std::f64::consts::PI * square_s2.sqrt())
     }
 }

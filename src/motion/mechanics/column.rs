@@ -316,16 +316,11 @@ impl RockingColumn {
     pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
         let law = law.into();
         law.check()?;
-        let (drums, top_width_m) = (column.drum_heights_m().len(), column.top_width_m());
+        let (drums, top_m) = (column.drum_heights_m().len(), column.top_width_m());
         let one = "1 in Housner's model: a column of drums needs free hinges";
         allow(drums <= 1, "drums", drums as f64, one)?;
         let width = "the width in Housner's model: a taper needs free hinges";
-        allow(
-            top_width_m == column.width_m,
-            "top_width_m",
-            top_width_m,
-            width,
-        )?;
+        allow(top_m == column.width_m, "top_width_m", top_m, width)?;
         let diagonal_m = column.height_m.hypot(column.width_m);
         let half_diagonal_m = 0.5 * diagonal_m;
         let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);

@@ -302,13 +302,12 @@ impl Program {
         for (active, gaps) in self.active.iter_mut().zip(&placement.gaps_m) {
             *active = gaps.map(|gap| gap == 0.0);
         }
-        if !exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE)
-            || self.factor.pins.is_empty()
-        {
-            return false;
+        let independent = exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE);
+        let closes = independent && !self.factor.pins.is_empty();
+        if closes {
+            self.answer.take_closure(&self.factor, closure);
         }
-        self.answer.take_closure(&self.factor, closure);
-        true
+        closes
     }
 }
 

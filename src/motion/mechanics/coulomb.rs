@@ -273,12 +273,11 @@ impl Program {
     }
 
     fn set_velocities(&mut self) {
-        let joints = self.impulses.len();
         for block in 0..self.velocities.len() {
             let mut velocity =
                 self.free[block] + self.gradients[block][1].tr_mul(&self.impulses[block]);
-            if block + 1 < joints {
-                velocity += self.gradients[block + 1][0].tr_mul(&self.impulses[block + 1]);
+            if let Some(later) = self.impulses.get(block + 1) {
+                velocity += self.gradients[block + 1][0].tr_mul(later);
             }
             self.velocities[block] = velocity;
         }
@@ -330,19 +329,15 @@ impl Program {
                 }
             }
             let bound = self.coefficient * (impulse.x + impulse.y).max(0.0);
-            match mode.along {
-                Along::Stick => {
-                    let wrong = (impulse.z.abs() - bound) * compliance.z;
-                    if wrong > tolerance {
-                        mode.along = Along::Slip(impulse.z.signum());
-                        by = by.max(wrong);
-                    }
-                }
-                Along::Slip(sign) if sign * rate.z > tolerance => {
-                    mode.along = Along::Stick;
-                    by = by.max(sign * rate.z);
-                }
-                Along::Free | Along::Slip(_) => {}
+            let beyond = (impulse.z.abs() - bound) * compliance.z;
+            let (wrong, along) = match mode.along {
+                Along::Free => (0.0, Along::Free),
+                Along::Stick => (beyond, Along::Slip(impulse.z.signum())),
+                Along::Slip(sign) => (sign * rate.z, Along::Stick),
+            };
+            if wrong > tolerance {
+                mode.along = along;
+                by = by.max(wrong);
             }
             let mode = mode.settled();
             if mode != self.modes[joint] {
@@ -402,10 +397,8 @@ impl Program {
         let mut gain = Matrix3::zeros();
         for joint in 0..joints {
             let mut balance = system(self, joint);
-            if joint > 0 {
-                balance.matrix -= balance.coupling * gain;
-                balance.right -= balance.coupling * carried;
-            }
+            balance.matrix -= balance.coupling * gain;
+            balance.right -= balance.coupling * carried;
             let pivot = inverse(&balance.matrix);
             carried = pivot * balance.right;
             gain = pivot * balance.onward;

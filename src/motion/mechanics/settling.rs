@@ -354,11 +354,8 @@ impl<'a> Follower<'a> {
         // At the end of a way it lacks all the slack, with a force that a push may not even change: where the thrust vanishes, the force at
         // the crown. The slack is counted from there, so that the last digit of that force does not make it fall.
         let lacks = self.state().map_or(0.0, |state| -state.margin().min(0.0));
-        let mut pushed = Self {
-            snaps: Vec::new(),
-            slack: ROUNDING + lacks,
-            ..self.clone()
-        };
+        let mut pushed = self.clone();
+        pushed.slack = ROUNDING + lacks;
         let condition = self.condition;
         let way = move |push_g: f64| Condition {
             force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),

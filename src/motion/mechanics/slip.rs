@@ -11,7 +11,7 @@
 //! of the block's face, wherever it has slid. Gaps are measured normal to the line and the offset along it; the offset is that of the
 //! corner nearer to the line.
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
 use super::blocks::{Joint, Row};
 use super::geometry::field::turned;
@@ -248,13 +248,10 @@ impl Contact {
         ];
         let rows = |centre_m: Vector2<f64>, sign: f64| {
             let arm = self.middle_m - centre_m;
-            let mut rows = Matrix3::zeros();
-            for (row, (force, couple)) in forces.iter().zip(couples).enumerate() {
-                rows[(row, 0)] = sign * force.x;
-                rows[(row, 1)] = sign * force.y;
-                rows[(row, 2)] = sign * (arm.perp(force) + couple);
-            }
-            rows
+            Matrix3::from_rows(&[0, 1, 2].map(|row| {
+                let (force, turning) = (forces[row], arm.perp(&forces[row]) + couples[row]);
+                RowVector3::new(force.x, force.y, turning) * sign
+            }))
         };
         [rows(left_m, -1.0), rows(right_m, 1.0)]
     }

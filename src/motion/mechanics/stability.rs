@@ -141,6 +141,7 @@ pub fn limit_with_yielding_ties(
     let Some(at_rest) = onset(row, sway)? else {
         return Ok(None);
     };
+    let pushed = |push_g: f64| Vector2::new(sway.sign() * push_g, -1.0);
     let weight_n = row.mass_kg() * row.gravity_m_s2;
     let ties = row.ties.iter();
     let most = ties.map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST));
@@ -162,24 +163,19 @@ pub fn limit_with_yielding_ties(
         let ties_kg = forces.iter().map(|force| force * row.mass_kg());
         trial.ties_kg = ties_kg.collect();
         let mut lower_g = push_g;
-        let mut met = 0;
+        let known = highest.planes.len();
         // With the same forces, down to the push that they bear.
-        while trial
-            .moves(Vector2::new(sway.sign() * lower_g, -1.0), true)?
-            .is_some()
-        {
+        while trial.moves(pushed(lower_g), true)?.is_some() {
             let plane = Plane::new(row, trial.work(), &trial.lengthening(), sway);
             let bound_g = plane.bound_g(&forces);
             highest.planes.push(plane);
-            met += 1;
-            match bound_g {
-                Some(bound_g) if bound_g >= 0.0 && bound_g < lower_g * (1.0 - 1e-14) => {
-                    lower_g = bound_g;
-                }
-                _ => break,
-            }
+            let falls = |bound_g: &f64| *bound_g >= 0.0 && *bound_g < lower_g * (1.0 - 1e-14);
+            let Some(bound_g) = bound_g.filter(falls) else {
+                break;
+            };
+            lower_g = bound_g;
         }
-        if met == 0 {
+        if highest.planes.len() == known {
             break;
         }
     }
@@ -192,14 +188,11 @@ pub fn limit_with_yielding_ties(
         return Ok(None);
     }
     // The mechanism is that of a push a little larger.
-    let beyond = Vector2::new(sway.sign() * push_g * (1.0 + BEYOND), -1.0);
-    trial.moves(beyond, true)?;
+    trial.moves(pushed(push_g * (1.0 + BEYOND)), true)?;
     let ties = row.ties.iter().zip(&forces);
     let forces_n = ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n));
-    Ok(Some(TiedLimit {
-        onset: trial.onset(push_g),
-        forces_n: forces_n.collect(),
-    }))
+    let (onset, forces_n) = (trial.onset(push_g), forces_n.collect());
+    Ok(Some(TiedLimit { onset, forces_n }))
 }
 
 /// By what part a push is larger than the one that is just borne, to see the mechanism.
@@ -295,7 +288,11 @@ impl Highest {
     fn find(&mut self) -> Option<(f64, Vec<f64>)> {
         for exchange in 1..=MOST_EXCHANGES {
             if exchange % EXACT_EXCHANGES == 0 {
-                self.invert()?;
+                let width = self.basis.len();
+                let slopes = DMatrix::from_fn(width, width, |row, column| {
+                    self.planes[self.basis[row]].slopes[column]
+                });
+                self.inverse = slopes.try_inverse()?;
             }
             let at = self.corner();
             let Some(entering) = self.most_violated(&at) else {
@@ -351,16 +348,6 @@ impl Highest {
             other.axpy(-shares[index], &column, 1.0);
         }
         self.inverse.set_column(leaving, &column);
-        Some(())
-    }
-
-    /// Inverts the slopes of the basis anew.
-    fn invert(&mut self) -> Option<()> {
-        let width = self.basis.len();
-        let slopes = DMatrix::from_fn(width, width, |row, column| {
-            self.planes[self.basis[row]].slopes[column]
-        });
-        self.inverse = slopes.try_inverse()?;
         Some(())
     }
 }
@@ -429,8 +416,8 @@ impl<'a> Trial<'a> {
 
     /// Rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
-        let lines = self.lines.iter();
-        let rates = lines.map(|line| line.lengthening(&self.program.velocities));
+        let velocities = &self.program.velocities;
+        let rates = self.lines.iter().map(|line| line.lengthening(velocities));
         rates.collect()
     }
 
@@ -438,16 +425,15 @@ impl<'a> Trial<'a> {
         let rates = || self.program.open_joints();
         let most = rates().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
         let opens = rates().filter(|(_, rates)| rates.iter().any(|rate| *rate > 1e-9 * most));
-        opens
-            .map(|(joint, rates)| Opening {
-                joint,
-                hinge: match self.program.active[joint] {
-                    [true, _] => Some(Edge::Intrados),
-                    [_, true] => Some(Edge::Extrados),
-                    _ => None,
-                },
-                rates,
-            })
-            .collect()
+        let openings = opens.map(|(joint, rates)| Opening {
+            joint,
+            hinge: match self.program.active[joint] {
+                [true, _] => Some(Edge::Intrados),
+                [_, true] => Some(Edge::Extrados),
+                _ => None,
+            },
+            rates,
+        });
+        openings.collect()
     }
 }

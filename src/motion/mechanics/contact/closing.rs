@@ -42,36 +42,54 @@ impl Closer {
             if !self.program.close(placement, &closure, &self.none) {
                 return;
             }
-            let shuts = self.closing_change(placement);
+            let first_shut = self.program.first_shut(placement, 1.0);
+            (self.program).open_until(placement, first_shut, &mut self.change);
             self.backup.copy_from(placement);
             let change = &self.change;
             placement.open(|joint| change[joint]);
-            if !shuts && placement.closure_error() > 0.5 * error_m {
+            if first_shut.1.is_none() && placement.closure_error() > 0.5 * error_m {
                 placement.copy_from(&self.backup);
                 return;
             }
         }
     }
+}
 
-    /// Changes of the gaps by the solution of the closure, as far as the first corner shuts; whether one does.
-    fn closing_change(&mut self, placement: &Placement) -> bool {
-        let gaps_m = &placement.gaps_m;
-        let mut first = (1.0, None);
-        for (joint, changes) in self.program.open_joints() {
+/// How long open joints move, and the joint and the edge of the corner that shuts then.
+pub(in crate::mechanics) type FirstShut = (f64, Option<(usize, usize)>);
+
+impl Program {
+    /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
+    pub(in crate::mechanics) fn first_shut(
+        &self,
+        placement: &Placement,
+        longest: f64,
+    ) -> FirstShut {
+        let mut first = (longest, None);
+        for (joint, rates) in self.open_joints() {
             for edge in 0..2 {
-                let (gap, change) = (gaps_m[joint][edge], changes[edge]);
-                if gap > 0.0 && gap + first.0 * change < 0.0 {
-                    first = (gap / -change, Some((joint, edge)));
+                let (gap, rate) = (placement.gaps_m[joint][edge], rates[edge]);
+                if gap > 0.0 && gap + first.0 * rate < 0.0 {
+                    first = (-gap / rate, Some((joint, edge)));
                 }
             }
         }
-        self.change.fill([0.0; 2]);
-        for (joint, changes) in self.program.open_joints() {
-            self.change[joint] = changes.map(|change| change * first.0);
+        first
+    }
+
+    /// Changes of the gaps until then; the corner that shuts loses its whole gap.
+    pub(in crate::mechanics) fn open_until(
+        &self,
+        placement: &Placement,
+        (length, shut): FirstShut,
+        change_m: &mut [[f64; 2]],
+    ) {
+        change_m.fill([0.0; 2]);
+        for (joint, rates) in self.open_joints() {
+            change_m[joint] = rates.map(|rate| rate * length);
         }
-        if let Some((joint, edge)) = first.1 {
-            self.change[joint][edge] = -gaps_m[joint][edge];
+        if let Some((joint, edge)) = shut {
+            change_m[joint][edge] = -placement.gaps_m[joint][edge];
         }
-        first.1.is_some()
     }
 }

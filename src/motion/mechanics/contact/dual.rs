@@ -93,13 +93,10 @@ impl Program {
 
     /// Makes a closing corner active; others that would pull on the way are released. False when it is not possible
     /// within the iterations.
-    fn stop(&mut self, pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
+    fn stop(&mut self, mut pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
         let joint = self.factor.pins[pin].joint;
         let mut impulse = 0.0;
         loop {
-            let Some(pin) = self.factor.pins.iter().position(|pin| pin.joint == joint) else {
-                return false;
-            };
             self.response.take_unit(&self.factor, pin, edge);
             *iterations += 1;
             let compliance = self.response.rates[pin][edge];
@@ -127,9 +124,11 @@ impl Program {
             impulse += partial;
             self.active[blocked][blocked_edge] = false;
             self.factor.update(&self.active);
-            let Some(pin) = self.factor.pins.iter().position(|pin| pin.joint == joint) else {
+            let mut pins = self.factor.pins.iter();
+            let Some(found) = pins.position(|pin| pin.joint == joint) else {
                 return false;
             };
+            pin = found;
             let press = Press { pin, edge, impulse };
             self.answer.take_load(&self.factor, Some(press));
             *iterations += 1;

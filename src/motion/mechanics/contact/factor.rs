@@ -177,40 +177,24 @@ impl Factor {
                     -(body.inverse_mass * previous.axes[p].dot(&pin.axes[q])
                         + body.inverse_inertia * previous.turns[1][p] * pin.turns[0][q])
                 };
-                let mut b = Matrix2::new(
-                    coupling(0, 0),
-                    coupling(0, 1),
-                    coupling(1, 0),
-                    coupling(1, 1),
-                );
+                let mut b = Matrix2::from_fn(coupling);
                 if previous.parted {
-                    b.m21 = 0.0;
-                    b.m22 = 0.0;
+                    b.row_mut(1).fill(0.0);
                 }
                 if pin.parted {
-                    b.m12 = 0.0;
-                    b.m22 = 0.0;
+                    b.column_mut(1).fill(0.0);
                 }
                 pin.gain = previous.pivot * b;
-                let taken = b.transpose() * pin.gain;
-                own.m11 -= taken.m11;
-                own.m12 -= taken.m12;
-                own.m22 -= taken.m22;
+                own -= b.transpose() * pin.gain;
             }
+            least = lower(least, own.m11 / free[0]);
             if pin.parted {
-                least = lower(least, own.m11 / free[0]);
                 pin.pivot = Matrix2::new(1.0 / own.m11, 0.0, 0.0, 0.0);
             } else {
                 let determinant = own.m11 * own.m22 - own.m12 * own.m12;
-                least = lower(least, own.m11 / free[0]);
                 least = lower(least, determinant / (own.m11 * free[1]));
                 let inverse = 1.0 / determinant;
-                pin.pivot = Matrix2::new(
-                    own.m22 * inverse,
-                    -own.m12 * inverse,
-                    -own.m12 * inverse,
-                    own.m11 * inverse,
-                );
+                pin.pivot = Matrix2::new(own.m22, -own.m12, -own.m12, own.m11) * inverse;
             }
             self.least.push(least);
         }

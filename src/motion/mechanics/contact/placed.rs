@@ -2,7 +2,7 @@
 //! difference of two.
 
 use super::{Load, higher};
-use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::blocks::{Block, Row, Supports};
 use crate::mechanics::geometry::field::{Momentum, Twist};
 use crate::mechanics::geometry::ring::MassMoments;
 use crate::mechanics::joints::{Frame, Placement};
@@ -12,7 +12,7 @@ pub(super) struct Placed {
     pub supports: Supports,
     pub handedness: f64,
     /// Mass and moment of inertia of every block.
-    masses: Vec<(f64, f64)>,
+    blocks: Vec<Block>,
     pub frames: Vec<Frame>,
     /// Mass moments of every block.
     pub own: Vec<MassMoments>,
@@ -26,14 +26,10 @@ pub(super) struct Placed {
 impl Placed {
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
-        let masses = row
-            .blocks
-            .iter()
-            .map(|block| (block.mass_kg, block.inertia_kg_m2));
         Self {
             supports: row.supports,
             handedness: row.handedness,
-            masses: masses.collect(),
+            blocks: row.blocks.clone(),
             frames: Vec::with_capacity(joints),
             own: vec![MassMoments::default(); blocks],
             moments: vec![MassMoments::default(); blocks + 1],
@@ -48,12 +44,7 @@ impl Placed {
         self.frames.extend_from_slice(&placement.frames);
         let mut moments = MassMoments::default();
         for (block, centre) in placement.centres_m.iter().enumerate() {
-            let (mass, inertia) = self.masses[block];
-            let own = MassMoments {
-                mass,
-                first: centre * mass,
-                polar: inertia + mass * centre.norm_squared(),
-            };
+            let own = self.blocks[block].moments_at(*centre);
             moments = moments + own;
             self.own[block] = own;
             self.moments[block + 1] = moments;

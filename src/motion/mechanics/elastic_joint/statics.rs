@@ -139,23 +139,19 @@ impl ElasticStructure {
                 None => Ok(rest),
             };
         }
-        let would_rest = |other: Self| other.balanced(load_m_s2).is_some();
-        let without_slip = self.without_slip();
-        let law = &self.law;
-        if law.friction[0] > 0.0 && would_rest(without_slip.clone()) {
-            return Err(RestError::Friction);
-        }
-        if law.crushes && would_rest(without_slip.without_crushing()) {
-            return Err(RestError::Strength);
-        }
+        let (law, without_slip) = (&self.law, self.without_slip());
         let continuous = without_slip.continuous();
-        if would_rest(continuous.clone()) {
-            return Err(RestError::Points);
-        }
-        if would_rest(continuous.stiffness_times(1e3)) {
-            return Err(RestError::Stiffness);
-        }
-        Err(RestError::NotFound)
+        let uncrushed = without_slip.without_crushing();
+        let stiffer = continuous.stiffness_times(1e3);
+        let easier = [
+            (law.friction[0] > 0.0, without_slip, RestError::Friction),
+            (law.crushes, uncrushed, RestError::Strength),
+            (true, continuous, RestError::Points),
+            (true, stiffer, RestError::Stiffness),
+        ];
+        let mut causes = easier.into_iter();
+        let cause = causes.find(|(may, other, _)| *may && other.balanced(load_m_s2).is_some());
+        Err(cause.map_or(RestError::NotFound, |(.., error)| error))
     }
 
     /// Its rest once its supports have moved slowly, from the rest before: steps of the movement, each from the equilibrium
@@ -209,8 +205,7 @@ impl ElasticStructure {
             if let Some(tie) = found.broken_tie() {
                 return Err(RestError::TieOnTheWay { tie, part: next });
             }
-            let taken = found.steps - here.steps;
-            if taken <= QUICK_STEPS {
+            if found.steps - here.steps <= QUICK_STEPS {
                 stride = (1.5 * stride).min(longest);
             }
             before = Some((part, here.moved));

@@ -56,6 +56,10 @@ pub enum Curve {
 }
 
 impl Curve {
+    pub(crate) const fn line(from: Vector2<f64>, to: Vector2<f64>) -> Self {
+        Self::Line { from, to }
+    }
+
     /// The point at a part of the way, and its derivative with respect to the part.
     #[must_use]
     pub fn at(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
@@ -101,10 +105,7 @@ impl Curve {
     pub fn between(&self, from: f64, to: f64) -> Self {
         let mut piece = *self;
         match &mut piece {
-            Self::Line {
-                from: start,
-                to: end,
-            } => (*start, *end) = (self.point(from), self.point(to)),
+            Self::Line { .. } => piece = Self::line(self.point(from), self.point(to)),
             Self::Arc { angles_rad, .. } | Self::Ellipse { angles_rad, .. } => {
                 let [start, end] = *angles_rad;
                 *angles_rad = [from, to].map(|part| start + (end - start) * part);

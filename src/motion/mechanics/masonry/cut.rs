@@ -58,10 +58,8 @@ impl CutArch {
         let ends = [self.joints[voussoir][0], self.joints[voussoir + 1][0]];
         let intrados = pieces_between(&self.intrados, ends);
         let extrados = self.extrados_of(voussoir);
-        let line = |from: &Curve, to: &Curve, part: f64| Curve::Line {
-            from: from.point(part),
-            to: to.point(part),
-        };
+        let line =
+            |from: &Curve, to: &Curve, part: f64| Curve::line(from.point(part), to.point(part));
         let (inner, outer) = (&intrados, &extrados);
         let mut outline = vec![line(&inner[0], &outer[0], 0.0)];
         outline.extend(outer);

@@ -46,19 +46,15 @@ impl Fill {
         let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
             let pieces = arch.extrados_of(voussoir).into_iter();
-            let columns = pieces
-                .flat_map(|piece| below(&piece, level_m))
-                .map(|piece| {
-                    let (from, to) = (piece.point(0.0), piece.point(1.0));
-                    let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));
-                    let ends = [to, corners[0], corners[1], from];
-                    let sides = ends.windows(2).map(|ends| Curve::Line {
-                        from: ends[0],
-                        to: ends[1],
-                    });
-                    let outline = [piece].into_iter().chain(sides);
-                    Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
-                });
+            let pieces = pieces.flat_map(|piece| below(&piece, level_m));
+            let columns = pieces.map(|piece| {
+                let (from, to) = (piece.point(0.0), piece.point(1.0));
+                let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));
+                let ends = [to, corners[0], corners[1], from];
+                let sides = ends.windows(2).map(|ends| Curve::line(ends[0], ends[1]));
+                let outline = [piece].into_iter().chain(sides);
+                Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
+            });
             // Slivers, as at a level joint, weigh nothing.
             let heavy = columns.filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0);
             if let Some(below) = heavy.reduce(|sum, next| sum.with(&next)) {

@@ -134,10 +134,7 @@ impl GivenBlocks {
 
     pub(super) fn cut(&self) -> CutArch {
         let edge = |corner: fn(&Joint) -> Vector2<f64>| {
-            let line = |pair: &[Joint]| Curve::Line {
-                from: corner(&pair[0]),
-                to: corner(&pair[1]),
-            };
+            let line = |pair: &[Joint]| Curve::line(corner(&pair[0]), corner(&pair[1]));
             self.joints.windows(2).map(line).collect::<Vec<_>>()
         };
         let last = self.joints.len() - 1;

@@ -18,6 +18,7 @@ use crate::mechanics::geometry::curve::Curve;
 pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
     dimensions.check()?;
     let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
+    let thickness_m = dimensions.thickness_m;
     let allowed = format_args!(
         "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
         0.5 * span_m
@@ -26,14 +27,9 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
     let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
     // The centre of the left arc lies to the right of the middle.
     let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
-    let inner_m = radius_m - 0.5 * dimensions.thickness_m;
+    let inner_m = radius_m - 0.5 * thickness_m;
     let allowed = format_args!("below the span of {span_m:?}");
-    allow(
-        inner_m > centre.x,
-        "thickness_m",
-        dimensions.thickness_m,
-        allowed,
-    )?;
+    allow(inner_m > centre.x, "thickness_m", thickness_m, allowed)?;
     let arc = |radius: f64| Curve::Arc {
         centre,
         radius,
@@ -41,7 +37,7 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
         angles_rad: [PI, (-centre.x / radius).acos()],
     };
     let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
-    let outer_m = inner_m + dimensions.thickness_m;
+    let outer_m = inner_m + thickness_m;
     // Fraction of the extrados that lies opposite the intrados; the rest reaches on to the crown.
     let angle = |radius: f64| PI - (-centre.x / radius).acos();
     let shorter = angle(inner_m) / angle(outer_m);

@@ -14,11 +14,10 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{Condition, Pins, ROUNDING, SettlingError};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::contact::closing::Closer;
+use crate::mechanics::contact::closing::{Closer, FirstShut};
 use crate::mechanics::contact::{ContactError, Corners, Load, Program};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::joints::Placement;
 use crate::mechanics::stance::Stance;
 use crate::mechanics::tie::TieLine;
 
@@ -73,12 +72,8 @@ impl<'a> Step<'a> {
     fn new(row: &Row, stance: &'a Stance, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
         let ties = row.ties.iter().zip(&stance.ties);
         let most_kg = ties.map(|(tie, memory)| {
-            let most_n = if memory.is_broken() {
-                0.0
-            } else {
-                tie.yield_force_n
-            };
-            most_n / row.gravity_m_s2
+            let (broken, most_n) = (memory.is_broken(), tie.yield_force_n);
+            (if broken { 0.0 } else { most_n }) / row.gravity_m_s2
         });
         Self {
             stance,
@@ -165,11 +160,10 @@ impl<'a> Descent<'a> {
             if fastest <= STANDSTILL {
                 return Ok(true);
             }
-            let (length, shut) = self.first_shut(&stance.placement, longest);
-            lines = self.go_on(stance, length, shut);
-            longest = (0.9 * farthest_m / fastest)
-                .min(2.0 * longest)
-                .min(LONGEST * size_m);
+            let first_shut = self.program.first_shut(&stance.placement, longest);
+            lines = self.go_on(stance, first_shut);
+            let allowed = (2.0 * longest).min(LONGEST * size_m);
+            longest = (0.9 * farthest_m / fastest).min(allowed);
             let centres = start_m.iter().zip(&stance.placement.centres_m);
             let moved = centres.map(|(start, now)| (now - start).norm() / size_m);
             let turned = start_rad.iter().zip(turns(stance));
@@ -219,13 +213,13 @@ impl<'a> Descent<'a> {
             jumps[0] = moved[0];
             jumps[last] = jumps[last] - moved[1];
             self.solve(stance, &lines, force_g, self.row.size_m)?;
-            let (part, shut) = self.first_shut(&stance.placement, 1.0);
+            let (part, shut) = self.program.first_shut(&stance.placement, 1.0);
             here = match shut {
                 None => to.supports,
                 Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
             };
             stance.placement.move_supports(here);
-            lines = self.go_on(stance, part, shut);
+            lines = self.go_on(stance, (part, shut));
         }
         Ok(lines)
     }
@@ -380,12 +374,11 @@ impl<'a> Descent<'a> {
         let centres_m = &step.stance.placement.centres_m;
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
             let pairs = one.iter().zip(other).zip(row.blocks.iter().zip(centres_m));
-            pairs
-                .map(|((one, other), (block, centre_m))| {
-                    block.mass_kg * one.at(*centre_m).dot(&other.at(*centre_m))
-                        + block.inertia_kg_m2 * one.rate * other.rate
-                })
-                .sum()
+            let each = pairs.map(|((one, other), (block, centre_m))| {
+                block.mass_kg * one.at(*centre_m).dot(&other.at(*centre_m))
+                    + block.inertia_kg_m2 * one.rate * other.rate
+            });
+            each.sum()
         };
         let mut motions: Vec<Vec<Twist>> = Vec::new();
         while motions.len() < count.min(self.program.freedom()) {
@@ -410,10 +403,7 @@ impl<'a> Descent<'a> {
             {
                 break;
             }
-            for twist in &mut motion {
-                *twist = *twist * (1.0 / size);
-            }
-            motions.push(motion);
+            motions.push(motion.iter().map(|twist| *twist * (1.0 / size)).collect());
         }
         DMatrix::from_fn(count, motions.len(), |tie, motion| {
             step.lines[tie].lengthening(&motions[motion])
@@ -426,13 +416,6 @@ impl<'a> Descent<'a> {
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
         (self.load).push(self.row, &step.stance.placement, Vector2::zeros(), ties);
         self.program.solve_alike(&self.load);
-    }
-
-    /// By how much less the ties lack, each times its part of a way, for the whole of that way.
-    fn slope_along(&self, step: &Step<'_>, way_kg: &DVector<f64>) -> f64 {
-        let each = self.ties_m_kg.iter().zip(way_kg);
-        let elastic: f64 = each.map(|(m_kg, kg)| kg * kg * m_kg).sum();
-        elastic + step.length * step.lengthen.tr_mul(way_kg).norm_squared()
     }
 
     /// Changes the forces of ties on this way, each until it pulls with all or nothing, and all until the energy of the step falls hardly
@@ -448,11 +431,9 @@ impl<'a> Descent<'a> {
         let bounds = from_kg.iter().zip(way_kg).zip(&step.bounds_kg);
         let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
             let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
-            let part = (end_kg - kg) / change_kg;
-            if *change_kg == 0.0 {
-                f64::INFINITY
-            } else {
-                part
+            match *change_kg {
+                0.0 => f64::INFINITY,
+                change_kg => (end_kg - kg) / change_kg,
             }
         });
         let ends: Vec<f64> = ends.collect();
@@ -487,50 +468,21 @@ impl<'a> Descent<'a> {
             }
             // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
             self.learn_to_lengthen(step);
-            let next = part + left / self.slope_along(step, way_kg);
-            let lies_between = near < next && next < far;
-            part = if lies_between {
-                next
-            } else {
-                0.5 * (near + far)
-            };
+            let elastic = self.ties_m_kg.iter().zip(way_kg);
+            let elastic: f64 = elastic.map(|(m_kg, kg)| kg * kg * m_kg).sum();
+            let slope = elastic + step.length * step.lengthen.tr_mul(way_kg).norm_squared();
+            let next = part + left / slope;
+            let (middle, lies_between) = (0.5 * (near + far), near < next && next < far);
+            part = if lies_between { next } else { middle };
         }
         self.solve(step.stance, step.lines, step.force_g, 1.0)
     }
 
-    /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
-    fn first_shut(&self, placement: &Placement, longest: f64) -> (f64, Option<(usize, usize)>) {
-        let mut length = longest;
-        let mut first = None;
-        let gaps_m = &placement.gaps_m;
-        for (joint, rates) in self.program.open_joints() {
-            for edge in 0..2 {
-                let gap = gaps_m[joint][edge];
-                if gap > 0.0 && gap + length * rates[edge] < 0.0 {
-                    length = -gap / rates[edge];
-                    first = Some((joint, edge));
-                }
-            }
-        }
-        (length, first)
-    }
-
     /// Goes on with the last velocities for so long, until this corner shuts. Returns how the ties lie then.
-    fn go_on(
-        &mut self,
-        stance: &mut Stance,
-        length: f64,
-        shut: Option<(usize, usize)>,
-    ) -> Vec<TieLine> {
+    fn go_on(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
         let placement = &mut stance.placement;
-        let gaps_m = &placement.gaps_m;
-        let mut change = vec![[0.0; 2]; gaps_m.len()];
-        for (joint, rates) in self.program.open_joints() {
-            change[joint] = rates.map(|rate| rate * length);
-        }
-        if let Some((joint, edge)) = shut {
-            change[joint][edge] = -gaps_m[joint][edge];
-        }
+        let mut change = vec![[0.0; 2]; placement.gaps_m.len()];
+        (self.program).open_until(placement, first_shut, &mut change);
         placement.open(|joint| change[joint]);
         self.closer.close(placement);
         self.program.place(placement);

@@ -103,7 +103,10 @@ impl<'a> Held<'a> {
         let q_rad = part * self.end_rad;
         let poses = self.poses(q_rad).expect("its bodies meet on its way");
         let push_g = self.bears_g(q_rad).expect("its bodies meet on its way");
-        let condition = self.condition(push_g);
+        let condition = Condition {
+            supports: [Pose::UNDEFORMED; 2],
+            force_g: Vector2::new(self.sway.sign() * push_g, -1.0),
+        };
         let before = self.before(q_rad);
         let state = self.pins.state_at(self.row, &condition, &poses, before);
         Displaced {
@@ -177,13 +180,6 @@ impl<'a> Held<'a> {
     fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]
-    }
-
-    fn condition(&self, push_g: f64) -> Condition {
-        Condition {
-            supports: [Pose::UNDEFORMED; 2],
-            force_g: Vector2::new(self.sway.sign() * push_g, -1.0),
-        }
     }
 
     /// The push, in units of gravity, with which it is in equilibrium: its loads have no moment about any pin.

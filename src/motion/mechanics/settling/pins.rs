@@ -213,7 +213,6 @@ impl Pins {
         before: &[TieMemory<Lanes<1>>],
     ) -> Option<State> {
         let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
-        let body_of = |block: usize| self.part_of(block);
         let turn = |pair: &[Pose]| pair[1].rotation_rad() - pair[0].rotation_rad();
         let turns_rad: Vec<f64> = poses.windows(2).map(turn).collect();
         let mut openings_rad = turns_rad.clone();
@@ -244,7 +243,7 @@ impl Pins {
         for (index, joint) in row.joints.iter().enumerate() {
             let force = start + loads[index];
             // Either face of a shut joint, and the corner of a hinge, are where the block after it is.
-            let pose = poses[body_of(index)];
+            let pose = poses[self.part_of(index)];
             let hinge = self.hinges.iter().position(|hinge| hinge.joint == index);
             let mut along = pose.turned(joint.along());
             if let Some(index) = hinge {
@@ -266,7 +265,7 @@ impl Pins {
                 }
             });
         }
-        let rotations = (0..blocks).map(|block| poses[body_of(block)].rotation_rad());
+        let rotations = (self.parts(row)).map(|part| poses[part].rotation_rad());
         Some(State {
             hinges: self.hinges.clone(),
             turns_rad,
@@ -311,9 +310,8 @@ impl Pins {
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
         let per_weight = weight / row.gravity_m_s2;
-        let pulls = pulls
-            .iter()
-            .map(|(line, force_n)| (line, force_n * per_weight));
+        let pulls = pulls.iter();
+        let pulls = pulls.map(|(line, force_n)| (line, force_n * per_weight));
         let pulls = sum_pulls(row.blocks.len(), pulls);
         let mut loads = vec![Momentum::ZERO];
         loads.extend(own.zip(pulls).scan(Momentum::ZERO, |sum, (own, pull)| {
@@ -529,13 +527,12 @@ impl<'a> Chain<'a> {
     fn poses(&self) -> Vec<Pose> {
         let mut at = self.condition.supports[0].of(self.pins.pins_m[0]);
         let bodies = self.rotations_rad.iter().enumerate();
-        bodies
-            .map(|(body, rotation_rad)| {
-                let pose = Pose::about(self.pins.pins_m[body], at, *rotation_rad);
-                at = pose.of(self.pins.pins_m[body + 1]);
-                pose
-            })
-            .collect()
+        let poses = bodies.map(|(body, rotation_rad)| {
+            let pose = Pose::about(self.pins.pins_m[body], at, *rotation_rad);
+            at = pose.of(self.pins.pins_m[body + 1]);
+            pose
+        });
+        poses.collect()
     }
 
     /// Slopes and curvatures of the energy, without the right support.
@@ -623,9 +620,10 @@ impl<'a> Chain<'a> {
         let start_rad = self.rotations_rad.clone();
         for _ in 0..MOST_STEPS {
             let left = free.held_by(reaction);
-            if !self.is_stable(&left) {
-                return None;
-            }
+            // Stable is where the energy rises whatever the bodies do while the pins meet.
+            let pins = left.reach.transpose() * &left.reach;
+            let held = STIFFER * left.curvature.amax() / pins.amax();
+            (&left.curvature + pins * held).cholesky()?;
             let slopes = left.slopes.amax() / size_m;
             let rounding = BALANCED + 8.0 * f64::EPSILON * left.curvature.amax() / size_m;
             if slopes < rounding && left.parted.amax() < BALANCED * size_m {
@@ -652,13 +650,6 @@ impl<'a> Chain<'a> {
             free = self.unbalanced();
         }
         None
-    }
-
-    /// Whether the energy rises whatever the bodies do while the pins meet.
-    fn is_stable(&self, there: &Unbalanced) -> bool {
-        let pins = there.reach.transpose() * &there.reach;
-        let held = STIFFER * there.curvature.amax() / pins.amax();
-        (&there.curvature + pins * held).cholesky().is_some()
     }
 }
 
