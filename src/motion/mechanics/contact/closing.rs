@@ -67,8 +67,8 @@ impl Program {
     ) -> FirstShut {
         let mut first = (longest, None);
         for (joint, rates) in self.open_joints() {
-            for edge in 0..2 {
-                let (gap, rate) = (placement.gaps_m[joint][edge], rates[edge]);
+            for (edge, rate) in rates.into_iter().enumerate() {
+                let gap = placement.gaps_m[joint][edge];
                 if gap > 0.0 && gap + first.0 * rate < 0.0 {
                     first = (-gap / rate, Some((joint, edge)));
                 }
