@@ -128,7 +128,7 @@ impl Scenario {
         py: Python<'_>,
         read: impl FnOnce(&dyn MechanismModel) -> T + Send,
     ) -> PyResult<T> {
-        let has_joints = self.inner.motion().hinges().has_joints();
+        let has_joints = self.inner.motion.hinges().has_joints();
         let own = (!has_joints).then(|| self.model(py)).transpose()?;
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
             Some(model) => Ok(read(model)),
@@ -219,7 +219,7 @@ impl Scenario {
 
     /// The structure that stands on the ground, with its ties, as JSON with the dimensions that were given.
     fn structure_json(&self) -> PyResult<String> {
-        let structure = serde_json::to_value(self.inner.structure()).map_err(refused)?;
+        let structure = serde_json::to_value(&self.inner.structure).map_err(refused)?;
         let mut all = self.inner.to_json();
         if let Some(all) = all.as_object_mut() {
             all.retain(|table, _| table == "tie" || structure.get(table).is_some());

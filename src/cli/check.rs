@@ -62,15 +62,15 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
     super::warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
         let scene = drawn(&scenario)?;
-        let title = scenario.title().unwrap_or("Structure");
-        let mut text = scenario.structure().described();
+        let title = scenario.title.as_deref().unwrap_or("Structure");
+        let mut text = scenario.structure.described();
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";
         }
         let picture = elevation::draw(arguments.figure.get()?, title, &scene, &text);
         commands::write_picture(plot, &picture)?;
     }
-    let notes = scenario.structure().tie_places();
+    let notes = scenario.structure.tie_places();
     let notes: String = notes.iter().map(|note| format!("# {note}\n")).collect();
     Ok((
         notes + &scenario.to_resolved_toml(),
@@ -96,12 +96,12 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
 /// The blocks of the model of motion, or the structure itself if the model has none. If supports have moved, blocks are drawn in their
 /// positions at time 0.
 fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
-    let joints = scenario.motion().hinges().has_joints();
-    let Some(row) = scenario.structure().row().ok().filter(|_| joints) else {
-        return Ok(Scene::new(scenario.structure()));
+    let joints = scenario.motion.hinges().has_joints();
+    let Some(row) = scenario.structure.row().ok().filter(|_| joints) else {
+        return Ok(Scene::new(&scenario.structure));
     };
-    let scene = Scene::of_row(&row).of_structure(scenario.structure());
-    let Some(movements) = scenario.motion().supports() else {
+    let scene = Scene::of_row(&row).of_structure(&scenario.structure);
+    let Some(movements) = scenario.motion.supports() else {
         return Ok(scene);
     };
     let model = scenario

@@ -53,7 +53,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     if let Some(plot) = &arguments.plot {
         let first = arguments.first.get();
         let model = four_links(&scenario, "--plot is")?;
-        let (figure, scene) = (arguments.figure.get()?, Scene::new(scenario.structure()));
+        let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
         let picture = pictures::limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
@@ -79,7 +79,7 @@ impl From<NoLimit> for Failure {
 
 /// The four-link model of a scenario; the error for a column begins with `what`, a subject and its verb.
 pub fn four_links(scenario: &Scenario, what: &str) -> Result<FourLinks, Failure> {
-    let model = scenario.structure().four_links(scenario.motion().impact());
+    let model = scenario.structure.four_links(scenario.motion.impact());
     model
         .map_err(|error| {
             Failure::Input(match error {

@@ -57,7 +57,7 @@ impl Arguments {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.scenario.open()?.read_as_built()?;
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
-    if !scenario.structure().thrusts() && !arguments.of_arches_only() {
+    if !scenario.structure.thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
         let answer = chain_answer(&scenario, &*model, first, count)?;
         return commands::answer(&answer, arguments.format);
@@ -90,7 +90,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     if let Some(plot) = &arguments.plot {
-        let scene = Scene::new(scenario.structure());
+        let scene = Scene::new(&scenario.structure);
         let picture = pictures::impact(arguments.figure.get()?, &impact, &scene);
         let picture = picture.ok_or_else(|| {
             format!("--plot: impact {index} stops the arch; there is no mechanism after it to draw")

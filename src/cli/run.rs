@@ -214,7 +214,7 @@ impl Job {
             own.push(arguments.compute(run, scenario, place.as_ref())?);
         }
         let name = |(one, own): (&Scenario, &RunResults<'_>)| {
-            (one.motion().hinges().name().to_owned(), own.summary.clone())
+            (one.motion.hinges().name().to_owned(), own.summary.clone())
         };
         let summaries = scenarios.iter().zip(&own).map(name);
         let mut results = Results {
@@ -266,7 +266,8 @@ impl Job {
             return Ok(Vec::new());
         };
         let models = session.add_samples(catalogue::UNCERTAIN, &self.scenarios, place, results)?;
-        if let Some(compared) = session.compare(self.scenarios[0].title(), &models, place)? {
+        let title = self.scenarios[0].title.as_deref();
+        if let Some(compared) = session.compare(title, &models, place)? {
             // After the words on samples, before the heading of those on the scenario itself.
             let at = results.words.len() - ITSELF.len();
             let words = format!("{}\n", compared.words);
@@ -282,7 +283,7 @@ impl Job {
         if scenarios.len() > 1 && arguments.to_stdout() {
             return Err("--rotations - is for one model: choose one by --hinges".into());
         }
-        let mut models = scenarios.iter().map(|one| one.motion().hinges());
+        let mut models = scenarios.iter().map(|one| one.motion.hinges());
         if arguments.no_repeat && !models.clone().any(|model| model.has_joints()) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(message.into());

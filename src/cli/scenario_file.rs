@@ -270,7 +270,7 @@ impl Destination {
     /// The folder for a model of motion: one of its own inside this folder if there are several models.
     pub fn of_model(&self, scenario: &Scenario, several: bool) -> Self {
         match several {
-            true => self.within(scenario.motion().hinges().name()),
+            true => self.within(scenario.motion.hinges().name()),
             false => self.clone(),
         }
     }

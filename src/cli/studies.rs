@@ -70,7 +70,7 @@ impl MapOption {
     /// The style of a map.
     fn style(self, scenario: &Scenario, figure: Figure) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
-        let model = scenario.motion().hinges().model();
+        let model = scenario.motion.hinges().model();
         if by_peak && model.has_joints {
             return Err(format!(
                 "--color peak goes with four links and columns: {} have no critical rotation",
@@ -117,7 +117,7 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     warn_of(slice::from_ref(&scenario));
     OverturningMap::of(&scenario).map_err(|message| input.wrong(message))?;
     let style = arguments.map.style(&scenario, study.figure.get()?)?;
-    if scenario.uncertain().is_some() {
+    if scenario.uncertain.is_some() {
         CellsOfSamples::of(&scenario).map_err(|message| input.wrong(message))?;
     }
     let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
@@ -150,9 +150,9 @@ fn compute(
     for one in scenarios.chunks(1) {
         let place = place.of_model(&one[0], several);
         let found = session.with_samples(kinds, one, &place)?;
-        all.extend(found.map(|found| (one[0].motion().words(), found)));
+        all.extend(found.map(|found| (one[0].motion.words(), found)));
     }
-    let compared = session.compare(scenarios[0].title(), &all, &place)?;
+    let compared = session.compare(scenarios[0].title.as_deref(), &all, &place)?;
     session.publish(&place)?;
     if let (false, [(_, results)]) = (several, &all[..]) {
         return show(results, &place, study.format);
@@ -161,7 +161,7 @@ fn compute(
     for (scenario, (model, results)) in scenarios.iter().zip(&all) {
         say(model);
         show(results, &place.of_model(scenario, several), Format::Text)?;
-        let name = scenario.motion().hinges().name();
+        let name = scenario.motion.hinges().name();
         summaries.insert(name.to_owned(), results.summary.clone());
     }
     if let Some(compared) = compared {

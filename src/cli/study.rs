@@ -243,7 +243,7 @@ impl<'s> Session<'s> {
         scenarios: &[Scenario],
         place: &Destination,
     ) -> Result<Option<Results>, Failure> {
-        let has_samples = scenarios.iter().any(|one| one.uncertain().is_some());
+        let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
         let mut found = match has_samples && self.work.is_part() {
             true => None,
             false => self.compute(own, scenarios, place)?,
@@ -256,7 +256,7 @@ impl<'s> Session<'s> {
 
     /// Whether only a part of the samples is requested; an error if a scenario has no samples.
     pub fn is_part(&self, scenarios: &[Scenario]) -> Result<bool, Failure> {
-        if self.work.is_part() && scenarios.iter().any(|one| one.uncertain().is_none()) {
+        if self.work.is_part() && scenarios.iter().any(|one| one.uncertain.is_none()) {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
@@ -275,8 +275,8 @@ impl<'s> Session<'s> {
     ) -> Result<Vec<(&'static str, Results)>, Failure> {
         let several = scenarios.len() > 1;
         let (mut words, mut of_models) = (String::new(), Vec::new());
-        for scenario in scenarios.iter().filter(|one| one.uncertain().is_some()) {
-            let (name, model) = (scenario.motion().hinges().name(), scenario.motion().words());
+        for scenario in scenarios.iter().filter(|one| one.uncertain.is_some()) {
+            let (name, model) = (scenario.motion.hinges().name(), scenario.motion.words());
             let place = place.of_model(scenario, several).within(kind.name);
             let Some(found) = self.compute(kind, slice::from_ref(scenario), &place)? else {
                 continue;

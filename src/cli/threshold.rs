@@ -72,7 +72,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         say(ignored);
     }
-    let title = tasks[0].1[0].title();
+    let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
     let root = study.work.lock(root, THRESHOLD, &origin)?;
     let mut all = Vec::new();
@@ -104,7 +104,7 @@ fn thresholds_along(
     input: &Input<'_>,
 ) -> Result<(), Failure> {
     let scenario = study.models.read_one(input, "--along")?;
-    if scenario.uncertain().is_some() {
+    if scenario.uncertain.is_some() {
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
         return Err(input.wrong(message));
     }

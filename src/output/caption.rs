@@ -13,7 +13,7 @@ type Varies<'a> = &'a dyn Fn(&str) -> bool;
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     let varied: Vec<String> = axes.iter().map(|axis| varied_key(axis)).collect();
     let varies = |key: &str| varied.iter().any(|varied| varied == key);
-    let mut parts = vec![structure(scenario.structure(), &varies)];
+    let mut parts = vec![structure(&scenario.structure, &varies)];
     parts.extend(ground(scenario, &varies));
     parts.push(model(scenario, &varies));
     parts.join("; ")
@@ -118,7 +118,7 @@ fn ground(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
 }
 
 fn of_left_foot(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
-    match scenario.ground()? {
+    match scenario.ground.as_ref()? {
         Ground::Pulse(pulse) => {
             let kind = pulse.kind.name();
             let varies = |key: &str| {
@@ -152,14 +152,14 @@ fn files(record: &Record) -> String {
 }
 
 fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
-    if scenario.motion().hinges().has_joints() {
-        return scenario.motion().words().to_owned();
+    if scenario.motion.hinges().has_joints() {
+        return scenario.motion.words().to_owned();
     }
-    let name = match scenario.structure().thrusts() {
-        true => scenario.motion().words(),
+    let name = match scenario.structure.thrusts() {
+        true => scenario.motion.words(),
         false => "Housner's block",
     };
-    match scenario.motion().impact().model {
+    match scenario.motion.impact().model {
         ImpactModel::Prescribed { .. } if varies("impact.restitution") => {
             format!("{name}, restitution prescribed")
         }

@@ -122,16 +122,21 @@ pub struct Changes<'a> {
 ///
 /// A scenario is read from a text, which is checked. It can be written again: to TOML by
 /// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
+#[readonly::make]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    title: Option<String>,
-    structure: Structure,
+    /// Free text for the results, as [`shown`](fn@shown) shows it.
+    pub title: Option<String>,
+    /// The structure that stands on the ground.
+    pub structure: Structure,
     /// Ties of the structure, with the keys of the file.
     pub ties: Vec<TieTable>,
-    motion: Motion,
+    /// The model of motion.
+    pub motion: Motion,
     /// True if the model of motion ignores an `[impact]` of the text.
     ignores_impact: bool,
-    ground: Option<Ground>,
+    /// The ground motion; `None`: the ground stays still.
+    pub ground: Option<Ground>,
     /// `[ground]` with the keys of the text, if its files are missing or faulty in static analysis.
     unread_ground: Option<Value>,
     /// Motion of the right foot; `None`: that of the left foot.
@@ -148,7 +153,8 @@ pub struct Scenario {
     pub demand: Option<Demand>,
     /// The options of a check; `None`: the defaults.
     pub verify: Option<Verify>,
-    uncertain: Option<Uncertain>,
+    /// The uncertain numbers of the scenario; `None`: none.
+    pub uncertain: Option<Uncertain>,
     /// Tables that keep the keys of the text, because resolving them would replace an uncertain number.
     as_given: Entries,
     files: InputFiles,
@@ -160,30 +166,6 @@ pub struct Scenario {
 
 /// The contents of the scenario.
 impl Scenario {
-    /// Free text for the results, as [`shown`](fn@shown) shows it.
-    #[must_use]
-    pub fn title(&self) -> Option<&str> {
-        self.title.as_deref()
-    }
-
-    /// The structure that stands on the ground.
-    #[must_use]
-    pub const fn structure(&self) -> &Structure {
-        &self.structure
-    }
-
-    /// The model of motion.
-    #[must_use]
-    pub const fn motion(&self) -> &Motion {
-        &self.motion
-    }
-
-    /// The ground motion; `None`: the ground stays still.
-    #[must_use]
-    pub const fn ground(&self) -> Option<&Ground> {
-        self.ground.as_ref()
-    }
-
     /// The records of its ground, under both feet.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         let record = match &self.ground {
@@ -201,12 +183,6 @@ impl Scenario {
         let series = self.series().chain(suite);
         let named = series.map(|series| format!("{} {:08x}", series.file, series.checksum()));
         named.collect()
-    }
-
-    /// The uncertain numbers of the scenario; `None`: none.
-    #[must_use]
-    pub const fn uncertain(&self) -> Option<&Uncertain> {
-        self.uncertain.as_ref()
     }
 
     /// This scenario without uncertain numbers.

@@ -108,7 +108,7 @@ const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, un
 
 /// The limit of the results of many cases; `None` if the model of motion is not four links of an arch.
 pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
-    let four = scenario.motion().hinges() == Hinges::Four && scenario.structure().thrusts();
+    let four = scenario.motion.hinges() == Hinges::Four && scenario.structure.thrusts();
     four.then_some(FOUR_LINKS)
 }
 

@@ -466,7 +466,7 @@ fn measured_restitution_scales_that_of_the_model() {
 fn the_factor_is_read_and_written() {
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n[impact]\nrestitution_factor = 0.95\n";
     let scenario = archrock::Scenario::parse(text, "a.toml").unwrap();
-    assert_eq!(scenario.motion().impact().restitution_factor, 0.95);
+    assert_eq!(scenario.motion.impact().restitution_factor, 0.95);
     assert_eq!(
         archrock::Scenario::parse(&scenario.to_toml(), "a.toml").unwrap(),
         scenario

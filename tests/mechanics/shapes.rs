@@ -191,7 +191,7 @@ fn parse(folder: &Path, text: &str) -> Scenario {
 }
 
 fn row(scenario: &Scenario) -> Row {
-    match scenario.structure() {
+    match &scenario.structure {
         Structure::Masonry(masonry) => masonry.row.clone(),
         other => panic!("{other:?}"),
     }
@@ -407,7 +407,7 @@ fn resolved_scenarios_read_back_as_themselves() {
         let again = Scenario::parse(&scenario.to_toml(), "a.toml").unwrap();
         assert_eq!(scenario, again);
         assert_eq!(scenario.to_toml(), again.to_toml());
-        let piers = match scenario.structure() {
+        let piers = match &scenario.structure {
             Structure::Masonry(masonry) => masonry.piers,
             other => panic!("{other:?}"),
         };

@@ -707,8 +707,8 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.toml"), text).unwrap();
     let scenario = parsed(text);
-    let row = scenario.structure().row().unwrap();
-    let movements = scenario.motion().supports().unwrap();
+    let row = scenario.structure.row().unwrap();
+    let movements = scenario.motion.supports().unwrap();
     let mut follower = Follower::new(&row).unwrap();
     let way = |part: f64| movements * part;
     follower.move_supports(way, 0.0, 1.0).unwrap();

@@ -570,7 +570,7 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
                 breaks_at_strain = 0.05\n[[tie]]\nfrom_m = [-5.0, 0.5]\nto_m = [5.0, 0.5]\nstiffness_n_m = 1e7\n";
     let scenario = parsed(&format!("{arch}{ties}"));
     assert_eq!(parsed(&scenario.to_toml()), scenario);
-    let [first, second] = scenario.structure().ties() else {
+    let [first, second] = scenario.structure.ties() else {
         panic!("two ties");
     };
     let length_m = 2.0 * first.ends[1].at_m.x;
@@ -609,7 +609,7 @@ fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
         };
         let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 24\n";
         let ties: String = (0..count).map(tie).collect();
-        let row = parsed(&format!("{arch}{ties}")).structure().row().unwrap();
+        let row = parsed(&format!("{arch}{ties}")).structure.row().unwrap();
         let follower = Follower::new(&row).unwrap();
         pushes_g(&follower, Sway::Right)[1]
     };

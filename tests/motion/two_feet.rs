@@ -542,7 +542,7 @@ fn scenarios_have_a_right_foot_in_three_ways() {
             .unwrap_err()
             .contains("out of range")
     );
-    assert_eq!(own.with_ground(late.ground().cloned()).right_foot, None);
+    assert_eq!(own.with_ground(late.ground.clone()).right_foot, None);
 }
 
 #[test]

@@ -289,8 +289,8 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
     let text = format!("{UNEVEN_ARCH}{ON_A_PIER}");
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
-    let Structure::Masonry(masonry) = scenario.structure() else {
-        panic!("{:?}", scenario.structure());
+    let Structure::Masonry(masonry) = &scenario.structure else {
+        panic!("{:?}", &scenario.structure);
     };
     let outlines_m = &masonry.row.outlines_m;
     let corner = |outlines: &[Vec<Vector2<f64>>], block: usize| outlines[block][0];

@@ -78,7 +78,7 @@ fn defaults_are_those_of_python() {
 #[test]
 fn defaults() {
     let scenario = parse(ARCH).unwrap();
-    let Structure::Arch(arch) = scenario.structure() else {
+    let Structure::Arch(arch) = &scenario.structure else {
         panic!("an arch")
     };
     assert_eq!(
@@ -97,23 +97,18 @@ fn defaults() {
             gravity_m_s2: 9.81,
         }
     );
-    assert_eq!(
-        scenario.motion().impact(),
-        ImpactModel::MaxRestitution.into()
-    );
+    assert_eq!(scenario.motion.impact(), ImpactModel::MaxRestitution.into());
+    assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
     assert!(
-        scenario.title().is_none() && scenario.ground().is_none() && scenario.initial.is_none()
-    );
-    assert!(
-        !scenario.motion().hinges().has_joints()
+        !scenario.motion.hinges().has_joints()
             && scenario.map.is_none()
             && scenario.suite.is_none()
     );
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(scenario.motion(), &Motion::FreeHinges(FreeTable::default()));
-    let Structure::Column(column) = scenario.structure() else {
+    assert_eq!(&scenario.motion, &Motion::FreeHinges(FreeTable::default()));
+    let Structure::Column(column) = &scenario.structure else {
         panic!("a column")
     };
     assert_eq!(
@@ -148,14 +143,14 @@ fn every_key_of_a_row() {
         options: steps,
         ..FreeTable::default()
     };
-    assert_eq!(scenario.motion(), &Motion::FreeHinges(table));
+    assert_eq!(&scenario.motion, &Motion::FreeHinges(table));
     let column = Column::new(2.0, 0.8)
         .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
         .and_then(|column| column.with_top_width_m(0.6))
         .and_then(|column| column.with_depth_m(0.5))
         .and_then(|column| column.with_density_kg_m3(2400.0))
         .unwrap();
-    assert_eq!(*scenario.structure(), Structure::Column(column));
+    assert_eq!(scenario.structure, Structure::Column(column));
     let text = scenario.to_toml();
     for lines in [
         "[free_hinges]\nlongest_step_s = 0.0003\nshortest_step_s = 1e-5\n",
@@ -282,13 +277,13 @@ amplitude_g = [1.0, 2.0]
 "#
     );
     // The resolved scenario is written, not only the given keys.
-    assert_eq!(scenario.title(), Some("all of it"));
+    assert_eq!(scenario.title.as_deref(), Some("all of it"));
     let arch = Arch::new(10.0, 0.15, 157.5)
         .and_then(|arch| arch.with_depth_m(2.0))
         .and_then(|arch| arch.with_density_kg_m3(2000.0))
         .and_then(|arch| arch.with_voussoirs(7))
         .unwrap();
-    assert_eq!(*scenario.structure(), Structure::Arch(arch));
+    assert_eq!(scenario.structure, Structure::Arch(arch));
     let pulse = json!({
         "amplitude_g": -1000.0,
         "vertical_amplitude_g": 0.0,
@@ -297,7 +292,7 @@ amplitude_g = [1.0, 2.0]
         "gamma": 3.0,
         "phase_deg": 90.0,
     });
-    let ground = scenario.ground().unwrap();
+    let ground = scenario.ground.as_ref().unwrap();
     let kind = Pulse::MavroeidisPapageorgiou.name();
     assert_eq!(scenario.to_json()["ground"], json!({ kind: pulse }));
     for gravity_m_s2 in [f64::NAN, 0.0, 1e300] {
@@ -318,7 +313,7 @@ amplitude_g = [1.0, 2.0]
     assert_eq!(axes[1], (Quantity::Amplitude, vec![1.0, 2.0]));
     assert!(!map.repeat);
     assert_eq!(
-        scenario.motion().impact(),
+        scenario.motion.impact(),
         ImpactModel::Prescribed { restitution: 1.0 }.into()
     );
     let initial = scenario.initial.unwrap();
@@ -458,7 +453,7 @@ fn structures() {
 fn columns() {
     let scenario = parse(COLUMN).unwrap();
     let expected = Column::new(4.0, 0.8).unwrap();
-    assert_eq!(*scenario.structure(), Structure::Column(expected));
+    assert_eq!(scenario.structure, Structure::Column(expected));
     assert_errors(
         "[column]\nheight = 4\nwidth_m = -0.8\nmean_radius_m = 5\n",
         &[
@@ -541,7 +536,7 @@ fn grounds() {
     for kind in Pulse::ALL {
         let name = kind.name();
         let text = format!("{ARCH}[ground.{name}]\namplitude_g = 1\nduration_s = 1");
-        let ground = parse(&text).unwrap().ground().cloned().unwrap();
+        let ground = parse(&text).unwrap().ground.clone().unwrap();
         let Ground::Pulse(ground) = ground else {
             panic!("{name} is a pulse")
         };
@@ -909,7 +904,7 @@ fn pedestals() {
         let scenario = parse(text).unwrap();
         assert_eq!(parse(&scenario.to_toml()).unwrap(), scenario);
         let model = scenario
-            .structure()
+            .structure
             .free_hinges(RowOptions::default())
             .unwrap();
         model.row().supports_extend

@@ -104,7 +104,7 @@ fn a_record_in_two_files_is_the_same_motion() {
             }
             let keys = "file = 'a.csv'\nunit = \"m/s2\"";
             let scenario = scenario(folder.path(), &[("a.csv", &text)], keys).unwrap();
-            let Some(Ground::Record(read)) = scenario.ground() else {
+            let Some(Ground::Record(read)) = scenario.ground.as_ref() else {
                 panic!("a record")
             };
             read.main.samples.to_vec()
@@ -132,7 +132,7 @@ fn the_way_a_record_is_written_changes_no_bit() {
     let reference = scenario(folder.path(), &[("a.at2", &text)], "file = 'a.at2'").unwrap();
     let motion = reference.ground_motion();
     assert_eq!(motion.pieces.len(), record.len());
-    let Some(Ground::Record(read)) = reference.ground() else {
+    let Some(Ground::Record(read)) = reference.ground.as_ref() else {
         panic!("a record")
     };
     // Seven digits were written.
@@ -250,7 +250,7 @@ fn a_record_of_velocities_is_the_pulse_that_has_them() {
         }
     }
     // The steepest line is the peak acceleration, and the resolved scenario reads back.
-    let Some(Ground::Record(record)) = read.ground() else {
+    let Some(Ground::Record(record)) = read.ground.as_ref() else {
         panic!("a record")
     };
     assert!((record.main.peak_g(G) - 0.35).abs() < 1e-12);
@@ -318,7 +318,7 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
         if count == 401 || header_counts {
             let found = read(keys).unwrap();
             assert_eq!(found.ground_motion(), reference.ground_motion());
-            let Some(Ground::Record(record)) = found.ground() else {
+            let Some(Ground::Record(record)) = found.ground.as_ref() else {
                 panic!("a record")
             };
             assert!(record.main.wrapped);
@@ -335,7 +335,7 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
         assert_eq!(Scenario::parse(&found.to_toml(), &name), Ok(found));
         // A single column is read if it is chosen.
         let first = read(&format!("{keys}\nacceleration_column = 1")).unwrap();
-        let Some(Ground::Record(first)) = first.ground() else {
+        let Some(Ground::Record(first)) = first.ground.as_ref() else {
             panic!("a record")
         };
         assert_eq!(first.main.samples.len(), count.div_ceil(5));
@@ -601,7 +601,7 @@ fn the_record_among_the_scenarios_is_the_generated_one() {
     }
     assert!(fs::read_to_string(&file).unwrap().contains(title));
     let scenario = Scenario::read(&scenarios.join("semicircle-record.toml")).unwrap();
-    let Some(Ground::Record(record)) = scenario.ground() else {
+    let Some(Ground::Record(record)) = scenario.ground.as_ref() else {
         panic!("a record")
     };
     for (sample, original) in pairs(record.main.samples.iter(), &generated) {

@@ -8,7 +8,7 @@ use archrock::scenario::Structure;
 fn arch(keys: &str) -> Result<archrock::Arch, String> {
     let text = format!("[arch]\n{keys}\n");
     match Scenario::parse(&text, "s.toml") {
-        Ok(scenario) => match scenario.structure() {
+        Ok(scenario) => match &scenario.structure {
             Structure::Arch(arch) => Ok(arch.clone()),
             other => panic!("{other:?}"),
         },
@@ -107,12 +107,12 @@ fn dimensions_stay_as_they_were_given() {
         assert!(scenario.to_toml().contains(keys), "{}", scenario.to_toml());
         assert!(!scenario.to_toml().contains("mean_radius_m"));
         assert_eq!(parsed(&scenario.to_toml()), scenario);
-        let dimensions = scenario.structure().dimensions();
+        let dimensions = scenario.structure.dimensions();
         assert_eq!(dimensions[0].words, "span 4.2 m at the intrados");
         assert_eq!(dimensions[1].words, "rise 1.4 m at the intrados");
         let [left, right] = dimensions[0].ends_m;
         assert!((right.x - left.x - 4.2).abs() < 1e-12);
-        let words = scenario.structure().described();
+        let words = scenario.structure.described();
         assert!(words.contains("span and rise at the intrados"), "{words}");
     }
     let text =
@@ -124,7 +124,7 @@ fn dimensions_stay_as_they_were_given() {
     let varied = scenario
         .with_values(&[("arch.mean_radius_m", 6.0)])
         .unwrap();
-    let arch = varied.structure().circular().unwrap();
+    let arch = varied.structure.circular().unwrap();
     assert_eq!((arch.mean_radius_m, arch.thickness_ratio), (6.0, 0.15));
 }
 
@@ -152,7 +152,7 @@ fn the_frame_of_reference_is_said() {
     ] {
         let text = format!("[free_hinges]\n{structure}{tie}{height_m}\n");
         let scenario = parsed(&text);
-        let structure = scenario.structure();
+        let structure = &scenario.structure;
         assert_eq!(structure.origin(), origin);
         let ties = structure.ties_in_words();
         assert!(ties.len() == 1 && ties[0].ends_with(place), "{ties:?}");
@@ -169,18 +169,18 @@ fn the_frame_of_reference_is_said() {
             "{said}"
         );
         // The notes are comments: the text is a scenario.
-        assert_eq!(parsed(&said).structure(), scenario.structure());
+        assert_eq!(parsed(&said).structure, scenario.structure);
     }
     let semicircle =
         parsed("[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n");
-    let words = semicircle.structure().origin();
+    let words = semicircle.structure.origin();
     assert!(
         words.contains("centre of the circle, level with the springings"),
         "{words}"
     );
     let column = parsed("[column]\nheight_m = 4\nwidth_m = 1\n");
     assert_eq!(
-        column.structure().origin(),
+        column.structure.origin(),
         "y = 0 at the base, x = 0 in its middle"
     );
 }

@@ -92,8 +92,8 @@ fn curves_begin_at_the_onset_and_end_at_the_unstable_equilibrium() {
 #[test]
 fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
     let scenario = parsed(POINTED);
-    let Structure::Masonry(masonry) = scenario.structure() else {
-        panic!("{:?}", scenario.structure());
+    let Structure::Masonry(masonry) = &scenario.structure else {
+        panic!("{:?}", &scenario.structure);
     };
     let model = FourLinks::of_row(&masonry.row, ImpactModel::MaxRestitution).unwrap();
     let unit_j = 9.81 * model.mass_unit_kg() * model.length_m();
@@ -324,7 +324,7 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
         }
     }
     let scenario = tie(1e5, 1e4);
-    let row = scenario.structure().row().unwrap();
+    let row = scenario.structure.row().unwrap();
     for side in SIDES {
         let held = Held::new(&row, side).unwrap();
         let start_g = onset(&row, side).unwrap().unwrap().acceleration_g;

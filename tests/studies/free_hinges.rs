@@ -147,8 +147,8 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     let map = OverturningMap::of(&scenario).unwrap();
     let request = scenario.request_from_rest();
     let row = scenario
-        .motion()
-        .model_for_many_cases(scenario.structure())
+        .motion
+        .model_for_many_cases(&scenario.structure)
         .unwrap();
     let (mut rows, mut differ_early) = (Vec::new(), 0);
     for index in 0..map.count() {
@@ -443,6 +443,7 @@ fn what_is_of_four_links_is_refused() {
         Scenario::parse(&repeat, "s.toml")
             .unwrap()
             .map
+            .clone()
             .unwrap()
             .repeat
     );
@@ -469,7 +470,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
     let free = read_with(&file, Hinges::Free).unwrap();
     assert_eq!(free, chosen);
     let four = read_with(&file, Hinges::Four).unwrap();
-    assert_eq!(four.motion().hinges(), Hinges::Four);
+    assert_eq!(four.motion.hinges(), Hinges::Four);
     for scenario in [free, four] {
         assert_eq!(parsed(&scenario.to_toml()), scenario);
     }

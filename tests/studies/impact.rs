@@ -230,8 +230,8 @@ fn on_a_pier(folder: &Path) -> (Row, f64) {
     let text = format!("{UNEVEN_ARCH}depth_m = 2.5\n{ON_A_PIER}");
     fs::write(folder.join("s.toml"), text).unwrap();
     let scenario = Scenario::read(&folder.join("s.toml")).unwrap();
-    let Structure::Masonry(masonry) = scenario.structure() else {
-        panic!("{:?}", scenario.structure());
+    let Structure::Masonry(masonry) = &scenario.structure else {
+        panic!("{:?}", &scenario.structure);
     };
     (masonry.row.clone(), 2.5)
 }

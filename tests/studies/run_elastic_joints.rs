@@ -27,13 +27,13 @@ fn scenarios_are_written_as_they_are_read() {
         "stone_modulus_gpa = 20.0\nmortar_modulus_gpa = 1.0\nmortar_thickness_m = 0.01\ndamping_time_s = 0.0",
     ] {
         let scenario = parsed(&block(keys));
-        assert_eq!(scenario.motion().hinges(), Hinges::Elastic);
+        assert_eq!(scenario.motion.hinges(), Hinges::Elastic);
         assert_eq!(parsed(&scenario.to_toml()), scenario, "{keys}");
     }
     // A fraction of critical damping gives a time.
     let keys = "normal_stiffness_gpa_m = 10.0\ndamping_ratio = 0.05\ndamping_frequency_hz = 1.7";
     let scenario = parsed(&block(keys));
-    let Motion::ElasticJoints(joints) = scenario.motion() else {
+    let Motion::ElasticJoints(joints) = &scenario.motion else {
         panic!("elastic joints")
     };
     let due_s = 0.05 / (PI * 1.7);

@@ -136,7 +136,7 @@ fn first_order_indices_are_those_of_ishigami() {
              'arch.thickness_ratio' = {{ from = 0.12, to = 0.2 }}\n\
              'ground.rectangular.amplitude_g' = {{ from = 0.1, to = 1.0, spacing = 'logarithmic' }}\n"
         ));
-        let uncertain = scenario.uncertain().unwrap();
+        let uncertain = scenario.uncertain.as_ref().unwrap();
         let points: Vec<Vec<f64>> = (0..1024).map(|sample| uncertain.point(sample)).collect();
         let ishigami = |point: &Vec<f64>| {
             let x: Vec<f64> = point.iter().map(|part| PI * (2.0 * part - 1.0)).collect();
@@ -182,15 +182,18 @@ fn total_indices_are_those_of_ishigami() {
         let plain = parsed(&text);
         let scenario = parsed(&text.replace("[uncertain]", "[uncertain]\ntotal_indices = true"));
         assert_eq!(parsed(&scenario.to_toml()), scenario);
-        let uncertain = scenario.uncertain().unwrap();
+        let uncertain = scenario.uncertain.as_ref().unwrap();
         assert_eq!(uncertain.cases(), 4 * 1024);
-        assert_eq!(plain.uncertain().unwrap().cases(), 1024);
+        assert_eq!(plain.uncertain.as_ref().unwrap().cases(), 1024);
         let ishigami = |sample: usize| {
             let point = uncertain.point(sample);
             let x: Vec<f64> = point.iter().map(|part| PI * (2.0 * part - 1.0)).collect();
             Some(x[0].sin() + 7.0 * x[1].sin().powi(2) + 0.1 * x[2].powi(4) * x[0].sin())
         };
-        assert_eq!(uncertain.point(17), plain.uncertain().unwrap().point(17));
+        assert_eq!(
+            uncertain.point(17),
+            plain.uncertain.as_ref().unwrap().point(17)
+        );
         let answers: Vec<Option<f64>> = (0..1024).map(ishigami).collect();
         let moved: Vec<Option<f64>> = (1024..4096).map(ishigami).collect();
         let totals = total_indices(&answers, &moved).unwrap();
@@ -223,7 +226,7 @@ fn shares_of_a_sum_are_those_of_its_squares() {
         "{ARCH}{PULSE}[uncertain]\nsamples = 512\n'arch.depth_m' = {{ from = 1.0, to = 2.0 }}\n\
          'arch.mean_radius_m' = {{ from = 4.0, to = 5.0 }}\n"
     ));
-    let uncertain = scenario.uncertain().unwrap();
+    let uncertain = scenario.uncertain.as_ref().unwrap();
     let values: Vec<Vec<f64>> = (0..512).map(|sample| uncertain.values(sample)).collect();
     let answers: Vec<f64> = values
         .iter()
@@ -256,7 +259,7 @@ fn samples_are_the_same_on_any_threads_and_continue() {
     assert_eq!(rows.len(), 8);
     assert_eq!(histories(&many, 2)[..8], rows);
     let other = parsed(&uncertain_arch(7, 4));
-    let values = |scenario: &Scenario| scenario.uncertain().unwrap().values(0);
+    let values = |scenario: &Scenario| scenario.uncertain.as_ref().unwrap().values(0);
     assert_ne!(values(&few), values(&other));
     // The same on every machine; these values were computed once.
     let first = values(&few);
@@ -266,7 +269,7 @@ fn samples_are_the_same_on_any_threads_and_continue() {
     }
     // Samples are distributed around the scenario's values as required.
     let all: Vec<Vec<f64>> = (0..1024)
-        .map(|sample| few.uncertain().unwrap().values(sample))
+        .map(|sample| few.uncertain.as_ref().unwrap().values(sample))
         .collect();
     let mean = |of: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(of).sum::<f64>() / 1024.0;
     assert!((mean(&|values| values[0]) - 0.15).abs() < 2e-5);
@@ -720,7 +723,7 @@ fn numbers_that_go_with_others_take_these_along() {
     let scenario = parsed(&format!(
         "{ARCH}{PULSE}[uncertain]\n'arch.mean_radius_m' = {{ from = 4.0, to = 6.0 }}\n'arch.thickness_m' = {{ deviation = 0.02 }}\n"
     ));
-    let uncertain = scenario.uncertain().unwrap();
+    let uncertain = scenario.uncertain.as_ref().unwrap();
     assert_eq!(uncertain.keys[1].own, Some(0.75));
     let values = uncertain.values(3);
     let sample = uncertain.scenario(&scenario, &values).unwrap().to_json();
@@ -770,11 +773,11 @@ fn measured_arches_vary_as_they_are_measured() {
                      'arch.thickness_m' = { from = 0.6, to = 0.8 }\n";
     let scenario = parsed(&format!("{text}{PULSE}{uncertain}"));
     assert_eq!(parsed(&scenario.to_toml()), scenario);
-    let known = scenario.uncertain().unwrap();
+    let known = scenario.uncertain.as_ref().unwrap();
     assert_eq!(known.keys[0].own, Some(6.0));
     let values = known.values(5);
     let sample = known.scenario(&scenario, &values).unwrap();
-    let arch = sample.structure().circular().unwrap();
+    let arch = sample.structure.circular().unwrap();
     let [span_m, rise_m, thickness_m] = values[..] else {
         panic!("{values:?}");
     };
@@ -1083,7 +1086,7 @@ fn all_numbers_may_be_uncertain() {
                     );
                     let scenario = Scenario::parse(&text, "s.toml")
                         .unwrap_or_else(|errors| panic!("{key}: {errors}"));
-                    let uncertain = scenario.uncertain().unwrap();
+                    let uncertain = scenario.uncertain.as_ref().unwrap();
                     let changed = uncertain.scenario(&scenario, &uncertain.values(0)).unwrap();
                     assert_ne!(
                         changed.to_json(),
@@ -1272,7 +1275,7 @@ fn many_uncertain_numbers_are_read_quickly() {
         let once = |_| {
             let begun = std::time::Instant::now();
             let read = parsed(&text);
-            assert_eq!(read.uncertain().unwrap().keys.len(), count);
+            assert_eq!(read.uncertain.as_ref().unwrap().keys.len(), count);
             begun.elapsed().as_secs_f64()
         };
         (0..9).map(once).fold(f64::INFINITY, f64::min)

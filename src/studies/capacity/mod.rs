@@ -47,11 +47,11 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<Sides<Capacity>, NoCapacity> {
-    if let Some(row) = held_row(scenario.structure())? {
+    if let Some(row) = held_row(&scenario.structure)? {
         return of_row(&row, point_m, scenario.gravity_m_s2());
     }
     let model = scenario.mechanisms()?;
-    let structure = scenario.structure().as_parts();
+    let structure = scenario.structure.as_parts();
     let control = control(structure, point_m)?;
     let side = |sway| {
         let bodies = Bodies::of_model(&*model, sway);

@@ -114,16 +114,16 @@ pub fn report(
     sides: &Sides<Capacity>,
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let masses = match held_row(scenario.structure()) {
+    let masses = match held_row(&scenario.structure) {
         Ok(Some(row)) => row.parts_in_words(),
-        _ => scenario.structure().as_parts().parts_in_words(),
+        _ => scenario.structure.as_parts().parts_in_words(),
     };
     let summary = Summary {
         capacity: sides.map(|side| CapacitySide::of(side, scenario.gravity_m_s2())),
         masses,
         scenario: scenario.to_json(),
     };
-    let title = scenario.title().unwrap_or("Capacity");
+    let title = scenario.title.as_deref().unwrap_or("Capacity");
     let picture = draw(figure, title, sides);
     let others = [picture.into_bytes(), table(sides)?];
     Results::new(&FILES, &summary, render(&summary), others)

@@ -54,7 +54,7 @@ pub struct HistoryAnswer {
 
 /// The model of a scenario for a study of many cases.
 fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
-    let model = scenario.motion().model_for_many_cases(scenario.structure());
+    let model = scenario.motion.model_for_many_cases(&scenario.structure);
     model.map_err(|error| error.to_string())
 }
 
@@ -76,12 +76,12 @@ impl Histories {
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
-        let structure = scenario.structure().clone();
+        let structure = scenario.structure.clone();
         Ok(Self {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
-            own: (structure, *scenario.motion(), many_cases(scenario)?),
+            own: (structure, scenario.motion, many_cases(scenario)?),
         })
     }
 }
@@ -127,7 +127,7 @@ impl Question for Histories {
             }
         }
         lines.push(peak_band.map_or("largest rotation: not known".to_owned(), peaks_in_words));
-        let has_joints = samples.scenario.motion().hinges().has_joints();
+        let has_joints = samples.scenario.motion.hinges().has_joints();
         let mut all = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
             let answer = line.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
@@ -158,7 +158,7 @@ impl Question for Histories {
 
     fn answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
         let (structure, motion, model) = &self.own;
-        if scenario.structure() == structure && scenario.motion() == motion {
+        if scenario.structure == *structure && scenario.motion == *motion {
             return self.history(scenario, &**model);
         }
         let model = many_cases(scenario).map_err(NoAnswer::Invalid)?;

@@ -91,7 +91,7 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
 
 /// The uncertain numbers of a scenario, or an explanation that it has none.
 fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
-    Ok(scenario.uncertain().ok_or(
+    Ok(scenario.uncertain.as_ref().ok_or(
         "the scenario has no [uncertain]: give it a table such as\n\n\
          [uncertain]\n\
          samples = 100\n\

@@ -50,7 +50,7 @@ impl<'a, A> Samples<'a, A> {
 
     /// The title of the scenario, or `otherwise` without one.
     pub(crate) fn title(&self, otherwise: &'a str) -> &'a str {
-        self.scenario.title().unwrap_or(otherwise)
+        self.scenario.title.as_deref().unwrap_or(otherwise)
     }
 
     /// The answers, without the samples that have none.

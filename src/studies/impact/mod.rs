@@ -152,7 +152,7 @@ pub fn four_links_answer(
 ) -> Result<Answer, StudyError> {
     let (model, count) = (impact.model, question.count);
     // An arch of equal voussoirs, or of none, is symmetric, so both chains are mirror images.
-    let sides = match scenario.structure().is_symmetric() {
+    let sides = match scenario.structure.is_symmetric() {
         true => &[impact.first][..],
         false => Sway::ALL,
     };

@@ -416,7 +416,7 @@ impl Summary {
         (sides, count): (&[Sway], usize),
         chain: impl Fn(Sway) -> Vec<ChainImpact>,
     ) -> Self {
-        let impact = scenario.motion().impact();
+        let impact = scenario.motion.impact();
         let starts = sides.iter().map(|side| Stance::of(model, *side, 0));
         Self {
             impacts: chain(sides[0]),

@@ -54,9 +54,9 @@ pub enum NoLimit {
 /// # Errors
 /// When the structure does not stand, or the analysis does not apply to it.
 pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
-    let row = || scenario.structure().row().map_err(RowModelError::from);
-    let coefficient = scenario.motion().friction_coefficient();
-    if let Some(movements) = scenario.motion().supports() {
+    let row = || scenario.structure.row().map_err(RowModelError::from);
+    let coefficient = scenario.motion.friction_coefficient();
+    if let Some(movements) = scenario.motion.supports() {
         let summary = of_moved_row(scenario, &row()?, &movements, coefficient)?;
         return Ok(Answer::of(&summary)?);
     }
@@ -81,9 +81,9 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
     );
     if !row.ties.is_empty() {
         summary.ties = Some(ties(row)?);
-        summary.tie_places = scenario.structure().tie_places();
+        summary.tie_places = scenario.structure.tie_places();
     }
-    summary.is_stack = !scenario.structure().thrusts();
+    summary.is_stack = !scenario.structure.thrusts();
     if summary.is_stack {
         return Ok(summary);
     }
@@ -187,7 +187,7 @@ fn of_moved_row(
     let hinges = follower.hinges.as_ref().map(|pins| pins.hinges.clone());
     summary.hinges = Some(hinges.unwrap_or_default());
     if !row.ties.is_empty() {
-        summary.tie_places = scenario.structure().tie_places();
+        summary.tie_places = scenario.structure.tie_places();
         summary.ties = Some(Ties {
             forces_at_rest_n: stance.forces_n().collect(),
             limits: None,

@@ -201,7 +201,7 @@ impl<'a> OverturningMap<'a> {
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
         if let Some(map) = &scenario.map {
-            map.check(scenario.ground(), &scenario.simulation)?;
+            map.check(scenario.ground.as_ref(), &scenario.simulation)?;
         }
         let map = Self::of_sample(scenario, scenario.clone()).ok_or(
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
@@ -219,7 +219,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The cells of the map of a scenario. All values that its axes do not vary are those of `sample`.
     pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
-        let (Some(map), Some(_)) = (&scenario.map, scenario.ground()) else {
+        let (Some(map), Some(_)) = (&scenario.map, scenario.ground.as_ref()) else {
             return None;
         };
         let axes = [&map.x, &map.y];
@@ -232,7 +232,7 @@ impl<'a> OverturningMap<'a> {
             Quantity::Restitution,
             Quantity::Other,
         ];
-        if scenario.motion().hinges().has_joints() {
+        if scenario.motion.hinges().has_joints() {
             shapes.push(Quantity::MeanRadius);
         }
         let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
@@ -315,8 +315,8 @@ impl<'a> OverturningMap<'a> {
 
     /// The structure of a cell.
     fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
-        let Some(mut arch) = scenario.structure().circular().cloned() else {
-            return Ok(scenario.structure().clone());
+        let Some(mut arch) = scenario.structure.circular().cloned() else {
+            return Ok(scenario.structure.clone());
         };
         if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
             arch = arch.with_thickness_ratio(thickness_ratio)?;
@@ -333,7 +333,7 @@ impl<'a> OverturningMap<'a> {
 
     /// The model of motion of a cell.
     fn moves(&self, index: usize, scenario: &Scenario) -> Motion {
-        let mut motion = *scenario.motion();
+        let mut motion = scenario.motion;
         if let (Motion::FourLinks(law), Some(varied)) =
             (&mut motion, self.value(index, Quantity::Restitution))
             && let ImpactModel::Prescribed { restitution } = &mut law.model
@@ -347,7 +347,7 @@ impl<'a> OverturningMap<'a> {
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
         let gravity_m_s2 = scenario.gravity_m_s2();
         let value = |quantity| self.value(index, quantity);
-        let motion = match scenario.ground() {
+        let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
                 let shape = self.pulses.get(self.place(index), || {
                     let of_frequency = value(Quantity::Frequency).map(f64::recip);
@@ -443,7 +443,7 @@ impl Study for OverturningMap<'_> {
 
     /// Cells with the same structure, if its model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
-        let together = self.scenario.motion().is_faster_together();
+        let together = self.scenario.motion.is_faster_together();
         together.then(|| self.structures.place(self.place(index)))?
     }
 

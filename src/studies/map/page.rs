@@ -143,7 +143,7 @@ fn command(map: &OverturningMap<'_>) -> String {
     for study in ["map", "suite", "demand", "verify"] {
         remove("", study);
     }
-    let ground = match scenario.ground() {
+    let ground = match scenario.ground.as_ref() {
         Some(Ground::Pulse(pulse)) => pulse.kind.name(),
         _ => "record",
     };

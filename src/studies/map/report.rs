@@ -18,7 +18,7 @@ impl Reported for OverturningMap<'_> {
 
     fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let scenario = self.scenario;
-        let title = scenario.title().unwrap_or("Overturning map");
+        let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells);
         let incomplete = remarks.incomplete_in_words();
         let summary = CaseSummary::new(scenario, cells.len(), &remarks, incomplete, ());
@@ -39,7 +39,7 @@ impl OverturningMap<'_> {
             column(x, |row: &CellRow| number(row.x)),
             column(y, |row: &CellRow| number(row.y)),
         ];
-        let has_joints = self.scenario.motion().hinges().has_joints();
+        let has_joints = self.scenario.motion.hinges().has_joints();
         all.extend(columns::columns(has_joints, |row: &CellRow| {
             match &row.result {
                 CellResult::Ended(ending) => Ok(ending),
@@ -115,7 +115,7 @@ impl Style {
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
-        if scenario.motion().hinges().has_joints() {
+        if scenario.motion.hinges().has_joints() {
             return Err("is for four links and columns: free hinges have no p");
         }
         let (model, gravity_m_s2) = (scenario.mechanisms().ok(), scenario.gravity_m_s2());

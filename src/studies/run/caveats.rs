@@ -24,7 +24,7 @@ pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
-    let structure = scenario.structure();
+    let structure = &scenario.structure;
     // The ground cannot hold a column down; an arch is four links as long as its line of thrust stays almost inside.
     let thrusts = structure.thrusts();
     let most = if thrusts { EXCESS_LEVELS[1] } else { 0.0 };
@@ -65,7 +65,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
 pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<String> {
     let needed = history.thrust.as_ref()?.largest_friction.value;
     let [low, high] = STONE_FRICTION;
-    if scenario.motion().friction_coefficient().is_some() || needed <= low {
+    if scenario.motion.friction_coefficient().is_some() || needed <= low {
         return None;
     }
     Some(if needed > high {
@@ -89,8 +89,8 @@ const fn grade(excess_ratio: f64) -> [&'static str; 2] {
 
 /// The grade of four links of an arch that rocked.
 pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<String> {
-    let is_arch = scenario.structure().thrusts();
-    let four = scenario.motion().hinges() == Hinges::Four && is_arch;
+    let is_arch = scenario.structure.thrusts();
+    let four = scenario.motion.hinges() == Hinges::Four && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
     Some(grade(thrust.largest_excess.value).join(" "))

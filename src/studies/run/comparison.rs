@@ -43,12 +43,12 @@ fn ends(history: &Summary) -> String {
 
 /// The model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other models.
 fn believed(runs: &[RunResults<'_>]) -> String {
-    let trust = |run: &Run<'_>| run.scenario.motion().hinges() as usize;
+    let trust = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
         return String::new();
     };
     let (best, own, varied) = (best.run, &best.history, &best.varied);
-    let is_elastic = best.scenario.motion().hinges() == Hinges::Elastic;
+    let is_elastic = best.scenario.motion.hinges() == Hinges::Elastic;
     let name = best.name();
     let happens = match own.outcome {
         Outcome::Incomplete => {
@@ -67,7 +67,7 @@ fn believed(runs: &[RunResults<'_>]) -> String {
             )
         }
         None => {
-            let why = best.scenario.motion().hinges().model().trusted_because;
+            let why = best.scenario.motion.hinges().model().trusted_because;
             format!("  believe {name}: {why}\n")
         }
     };

@@ -170,7 +170,7 @@ impl<'a> Run<'a> {
     /// # Errors
     /// Explains that the structure has no such model of motion, or that an option does not fit it.
     pub fn new(scenario: &'a Scenario, options: RunOptions) -> Result<Self, String> {
-        if options.dimensionless && scenario.motion().hinges().has_joints() {
+        if options.dimensionless && scenario.motion.hinges().has_joints() {
             return Err(
                 "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
                  measure by"
@@ -198,8 +198,8 @@ impl<'a> Run<'a> {
 
     /// The name of its model in words.
     #[must_use]
-    pub const fn name(&self) -> &'static str {
-        self.scenario.motion().words()
+    pub fn name(&self) -> &'static str {
+        self.scenario.motion.words()
     }
 
     /// The files that it writes, the seal last.
@@ -330,7 +330,7 @@ pub fn overlay(runs: &[RunResults<'_>]) -> String {
     if let Some(initial) = all.get_mut(..1) {
         initial.make_ascii_uppercase();
     }
-    let subject = first.subject(first.scenario.title().unwrap_or(&all));
+    let subject = first.subject(first.scenario.title.as_deref().unwrap_or(&all));
     let curves = runs.iter().map(|results| &results.collected.curves);
     let named: Vec<_> = names.into_iter().zip(curves).collect();
     overlay::draw(first.options.figure, &subject, &named)
@@ -341,13 +341,13 @@ pub fn overlay(runs: &[RunResults<'_>]) -> String {
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     match model.row() {
         Some(row) => {
-            let scene = Scene::of_row(row).of_structure(scenario.structure());
-            match scenario.motion().supports() {
+            let scene = Scene::of_row(row).of_structure(&scenario.structure);
+            match scenario.motion.supports() {
                 Some(movements) => scene.on_supports(movements.poses(row)),
                 None => scene,
             }
         }
-        None => Scene::new(scenario.structure()),
+        None => Scene::new(&scenario.structure),
     }
 }
 
@@ -439,7 +439,7 @@ impl Collected {
         words: &mut String,
     ) -> Result<(), OutputError> {
         let (scenario, figure) = (run.scenario, run.options.figure);
-        let title = scenario.title().unwrap_or("Rocking history");
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
         let subject = run.subject(title);
         let picture = self.picture.draw(figure, &subject, history, &self.points);
         folder.write(PICTURE, picture)?;

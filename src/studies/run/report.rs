@@ -109,11 +109,11 @@ impl Report {
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
-        let title = scenario.title().unwrap_or("Rocking history");
+        let title = scenario.title.as_deref().unwrap_or("Rocking history");
         let mut frames = self.film.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
-        let (structure, shaken) = (scenario.structure().described(), ground_in_words(scenario));
+        let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
         let what = format!("{structure}; {shaken}");
         let data = self.data(ground, &frames, ends_at, (history, points));
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));

@@ -300,7 +300,7 @@ impl<'a> Summary<'a> {
                 elastic: history.elastic(),
                 row,
                 feet: FeetApart::of(scenario, history),
-                friction_coefficient: scenario.motion().friction_coefficient(),
+                friction_coefficient: scenario.motion.friction_coefficient(),
                 iterations: history.cost.evaluations,
             }),
             repeatability: evidence.repeated.map(|repeated| match repeated {
@@ -321,7 +321,7 @@ impl OfMechanisms {
         let pushes_m_s2 = scenario.ground_motion().pushes_m_s2(history.end_s);
         let dimensionless = |scales: Scales| Dimensionless {
             p_rad_s: scales.frequency_rad_s,
-            p_t_p: match scenario.ground() {
+            p_t_p: match scenario.ground.as_ref() {
                 Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * scales.frequency_rad_s),
                 Some(Ground::Record(_)) | None => None,
             },

@@ -24,7 +24,7 @@ use crate::scenario::{Hinges, Scenario, Series};
 /// The heading of the words for the runs of a scenario: its title, and the records that shake it, one line each.
 #[must_use]
 pub fn heading(scenario: &Scenario) -> String {
-    let title = scenario.title();
+    let title = scenario.title.as_deref();
     let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
     text.extend(scenario.series().map(|series: &Series| {
         let (file, sampling) = (series.name(), series.sampling());
@@ -279,7 +279,7 @@ impl<'a> Words<'a> {
         // No advice to compare with free hinges if they are compared already.
         let compared = self.beside.contains(&Hinges::Free);
         let advice = (!compared).then_some("compare with --hinges both");
-        caveats::trust(history, scenario.structure(), advice)
+        caveats::trust(history, &scenario.structure, advice)
     }
 
     fn coefficient(&self, friction: &f64) -> String {

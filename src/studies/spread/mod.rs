@@ -211,12 +211,12 @@ pub enum NoSpread {
 /// # Errors
 /// When it is no row of blocks between two supports, or does not stand. A path ends where the arch cannot be followed.
 pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
-    let row = scenario.structure().row()?;
+    let row = scenario.structure.row()?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
     let joints = &row.joints;
     let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
     let clear_span_m = across.norm();
-    let settled = scenario.motion().supports().unwrap_or_default();
+    let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
     let paths = ways.par_iter().with_max_len(1);
     let paths = paths.map(|way| path(&row, settled, *way, sizes));
@@ -225,7 +225,7 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
         clear_span_m,
         weight_n,
         scenario: scenario.to_json(),
-        friction_coefficient: scenario.motion().friction_coefficient(),
+        friction_coefficient: scenario.motion.friction_coefficient(),
         row: row.clone(),
     })
 }

@@ -22,8 +22,8 @@ pub fn report(
     spread: &Summary,
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let scene = Scene::of_row(&spread.row).of_structure(scenario.structure());
-    let title = scenario.title().unwrap_or("Springings that move");
+    let scene = Scene::of_row(&spread.row).of_structure(&scenario.structure);
+    let title = scenario.title.as_deref().unwrap_or("Springings that move");
     let picture = draw(figure, title, spread, &scene);
     let others = [picture.into_bytes(), table(spread)?];
     Results::new(&FILES, spread, render(spread), others)

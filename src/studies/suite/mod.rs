@@ -234,7 +234,7 @@ pub(super) fn case(
 ) -> Case {
     let shake = suite.shake(record, level, mirrored);
     let ground = scenario.under_both_feet(shake.motion(scenario.gravity_m_s2()));
-    let request = scenario.request_on(&ground, scenario.structure());
+    let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
 }
 

@@ -272,7 +272,7 @@ pub fn thresholds(
 /// Explains what to change.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
-    scenario.ground().ok_or(
+    scenario.ground.as_ref().ok_or(
         "a threshold needs a ground motion: give a table such as\n\n\
          [ground.one_cosine]\n\
          amplitude_g = 0.3\n\

@@ -139,7 +139,7 @@ pub fn report(
     figure: Figure,
 ) -> Result<Results, OutputError> {
     let scenario = &scenarios[0];
-    let title = scenario.title();
+    let title = scenario.title.as_deref();
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
     let models = thresholds.iter().zip(scenarios);
@@ -291,7 +291,7 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
             [_] => String::new(),
             _ => threshold.model.replace('_', " "),
         };
-        if let Some(Ground::Record(record)) = scenarios[0].ground() {
+        if let Some(Ground::Record(record)) = scenarios[0].ground.as_ref() {
             let comma = if model.is_empty() { "" } else { ", " };
             let strengths = survival::in_words(&Survival::of_threshold(threshold), "");
             let (file, peak) = (record.main.name(), rounded(peak_g));

@@ -244,7 +244,7 @@ fn record_peaks(
     let scenario = basis.scenario;
     let both = [1.0, -1.0].into_par_iter().map(|sign| {
         let ground = scenario.shaken_by(series, sign);
-        let request = scenario.request_on(&ground, scenario.structure());
+        let request = scenario.request_on(&ground, &scenario.structure);
         let request = Request {
             end_s: request.end_s.max(ground.end_s() + AFTER_S),
             output_step_s: STEP_S,

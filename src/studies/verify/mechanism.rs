@@ -372,9 +372,9 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
 /// has a friction coefficient, or if there is no curve along which the required friction is known; a linkage that locks is then not
 /// refused, but has [`Mechanism::slides_at_g`].
 pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>, NoCheck> {
-    let (structure, gravity_m_s2) = (basis.scenario.structure(), basis.gravity_m_s2);
+    let (structure, gravity_m_s2) = (&basis.scenario.structure, basis.gravity_m_s2);
     let coefficient = basis.allowed_friction;
-    let slips = basis.scenario.motion().friction_coefficient().is_some();
+    let slips = basis.scenario.motion.friction_coefficient().is_some();
     let none =
         |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
     let model = structure.model(ImpactModel::MaxRestitution);

@@ -378,8 +378,8 @@ struct Basis<'a> {
 pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
     let settings = scenario.verify.clone().unwrap_or_default();
-    let structure = scenario.structure();
-    let own_friction = scenario.motion().friction_coefficient();
+    let structure = &scenario.structure;
+    let own_friction = scenario.motion.friction_coefficient();
     let (_, density_kg_m3) = structure.depth_and_density();
     let free = settings.free_standing.as_ref();
     let basis = Basis {
@@ -410,7 +410,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     let mut summary = Summary {
         program: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
-        title: scenario.title().map(str::to_owned),
+        title: scenario.title.as_deref().map(str::to_owned),
         formulas: by_the_code.then_some(formulas),
         scenario_sha256: sha256(scenario.to_resolved_toml().as_bytes()),
         files: scenario.files().to_vec(),

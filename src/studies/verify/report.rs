@@ -58,7 +58,7 @@ pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
     let figure = if is_one { "78mm" } else { "90mm" };
     let figure: Figure = figure.parse().expect("a width of a figure");
     let drawn = |(sway, mechanism): (&Sway, _)| {
-        let structure = scenario.structure();
+        let structure = &scenario.structure;
         Drawn {
             sway: *sway,
             mechanism,
@@ -69,7 +69,7 @@ pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
     let shown = check.mechanisms.iter().take(check.shown());
     render(&Page {
         drawn: shown.map(drawn).collect(),
-        described: scenario.structure().described(),
+        described: scenario.structure.described(),
         resolved: scenario.to_resolved_toml(),
         check,
         date,

@@ -107,7 +107,7 @@ impl<'a> Along<'a> {
     /// Explains what to change.
     pub fn of(scenario: &'a Scenario, options: AlongOptions) -> Result<Self, String> {
         check(scenario)?;
-        if options.no_impact && scenario.motion().hinges().has_joints() {
+        if options.no_impact && scenario.motion.hinges().has_joints() {
             return Err("--no-impact is for four links and columns, whose hinges close all at once: leave it out, or give --hinges four".into());
         }
         let study = Self {

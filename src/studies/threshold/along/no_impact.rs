@@ -34,7 +34,7 @@ pub(super) fn least_without_impact(
             .map_err(|error| error.to_string())
     };
     let one_sided =
-        matches!(scenario.ground(), Some(Ground::Pulse(pulse)) if pulse.kind.is_one_sided());
+        matches!(scenario.ground.as_ref(), Some(Ground::Pulse(pulse)) if pulse.kind.is_one_sided());
     let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
     let last = factors.last();
     let ascending = std::iter::successors(Some(factors.first()), |factor| {

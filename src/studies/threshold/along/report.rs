@@ -52,7 +52,8 @@ impl Reported for Along<'_> {
             |point: &Point| point => overturns_from_factor, overturns_from_g, at_most,
             uncertain_from_factor, no_impact_factor, no_impact_g, why_not
         ));
-        let title = self.scenario.title().unwrap_or("Threshold of overturning");
+        let title = self.scenario.title.as_deref();
+        let title = title.unwrap_or("Threshold of overturning");
         let picture = picture::draw(figure, title, key, &points);
         let mut words = vec![self.first_words(&points)];
         words.extend(remarks::rough_guide(self.scenario).map(str::to_owned));
