@@ -584,11 +584,8 @@ impl Scenario {
         let structure = json!(self.structure);
         let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
         all.extend(structure.as_object().cloned().unwrap_or_default());
-        all.extend(
-            tables
-                .into_iter()
-                .map(|(key, table)| (key.to_owned(), table)),
-        );
+        let tables = tables.into_iter();
+        all.extend(tables.map(|(key, table)| (key.to_owned(), table)));
         for (key, table) in all.iter_mut().filter(|(_, table)| !table.is_null()) {
             if let Some(given) = self.as_given.get(key) {
                 table.clone_from(given);

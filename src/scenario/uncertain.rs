@@ -337,10 +337,8 @@ impl UncertainKey {
     ) -> Result<(), String> {
         let mut before = before.iter();
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
-        ensure(
-            !is_known,
-            || "is the same as a key before it; leave one out",
-        )?;
+        let wrong = "is the same as a key before it; leave one out";
+        ensure(!is_known, || wrong)?;
         // Where the file gives another number, a length may be written without a point.
         let resolved = number(resolved, &self.key);
         let is_given = resolved.is_none();

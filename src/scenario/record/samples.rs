@@ -122,12 +122,8 @@ impl Values {
     /// Refuses fewer samples than make a record.
     pub(super) fn check_enough(&self) -> Parsed<()> {
         let found = self.values.len();
-        let wrong = || {
-            self.fault(format!(
-                "the number of samples is {found}; must be at least 2"
-            ))
-        };
-        ensure(found >= 2, wrong)
+        let wrong = format!("the number of samples is {found}; must be at least 2");
+        ensure(found >= 2, || self.fault(wrong))
     }
 
     /// The samples at even steps, the first at time zero, if they make a record; the key on this line sets the step.
