@@ -75,7 +75,7 @@ pub struct Arguments {
     /// given up to three times.
     #[arg(long = "point", value_name = "X,Y", value_parser = point_m, allow_hyphen_values = true)]
     points_m: Vec<Vector2<f64>>,
-    /// How the samples of [uncertain] are computed.
+    /// The driver of the samples of [uncertain].
     #[command(flatten)]
     work: Work,
     #[command(flatten)]

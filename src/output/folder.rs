@@ -53,7 +53,7 @@ pub struct Folder {
     batch: Batch,
 }
 
-/// How the hidden names begin.
+/// Beginning of the hidden names.
 const PREFIX: &str = ".archrock-";
 
 impl Batch {

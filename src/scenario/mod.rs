@@ -143,7 +143,7 @@ pub struct Scenario {
     pub right_foot: Option<RightFoot>,
     /// The initial state of the motion; `None`: rest.
     pub initial: Option<Initial>,
-    /// How the motion is computed.
+    /// Settings of the computation.
     pub simulation: Simulation,
     /// The quantities that vary over an overturning map.
     pub map: Option<Map>,

@@ -3,7 +3,7 @@
 use super::prelude::*;
 
 named! {
-    /// How the numbers of a range are spaced.
+    /// Spacing of the numbers of a range.
     pub enum Spacing {
         /// Equal differences.
         Linear = "linear",
@@ -22,9 +22,9 @@ pub enum Sequence {
         from: f64,
         /// The last, above the first.
         to: f64,
-        /// How many, at least 2.
+        /// Their number, at least 2.
         count: usize,
-        /// How the numbers between the ends are spaced.
+        /// Spacing of the numbers between the ends.
         spacing: Spacing,
     },
     /// `[0.1, 0.5, 2.0]`: at least one.
@@ -52,7 +52,7 @@ fn ascend(values: &[f64]) -> bool {
     values.is_sorted_by(|earlier, later| earlier < later)
 }
 
-/// How many numbers a range may have.
+/// Largest number of values in a range.
 const COUNT: Count = Count(2..=10_000, "the ends");
 
 impl Sequence {

@@ -18,7 +18,7 @@ use super::variant::{number, parts, value};
 use crate::bisection::{Width, bisect, middle};
 
 named! {
-    /// How a number deviates from the scenario's value.
+    /// Deviation of a number from the scenario's value.
     pub enum Distribution {
         /// Normal, with that value as its mean.
         Normal = "normal",

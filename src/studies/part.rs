@@ -242,7 +242,7 @@ pub enum PartError {
     Interrupted {
         /// The file.
         path: PathBuf,
-        /// How many cases it has.
+        /// Its number of cases.
         done: usize,
     },
     /// A shard to be merged lacks cases.
@@ -252,9 +252,9 @@ pub enum PartError {
         path: PathBuf,
         /// Its shard.
         shard: Shard,
-        /// How many cases it has.
+        /// Its number of cases.
         done: usize,
-        /// How many cases it should have.
+        /// The expected number of cases.
         all: usize,
     },
 }

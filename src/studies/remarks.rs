@@ -203,7 +203,7 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
 /// Words for an outcome, and their position in the list of counts.
 pub(crate) type Words = (u8, &'static str);
 
-/// How a case ended, in words.
+/// Outcome of a case, in words.
 pub(crate) const fn in_words(ending: &Ending) -> Words {
     match (&ending.uncertain, ending.outcome) {
         (Some(_), _) => (5, "uncertain"),

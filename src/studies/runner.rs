@@ -176,7 +176,7 @@ pub struct Runner {
     pub threads: Option<NonZeroUsize>,
 }
 
-/// How many cases of a family are computed together: at least as many as fit side by side, but not so many that threads
+/// Number of cases of a family that are computed together: at least as many as fit side by side, but not so many that threads
 /// wait for one another.
 const TOGETHER: RangeInclusive<usize> = 8..=64;
 

@@ -27,7 +27,7 @@ pub enum FallEnd {
 }
 
 impl fmt::Display for FallEnd {
-    /// How far the fall is followed, in words.
+    /// The end of the computed fall, in words.
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Turned => write!(to, "until a block has turned by 45 degrees"),

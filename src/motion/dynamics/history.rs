@@ -13,7 +13,7 @@ use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Tie, TieMemory};
 
-/// How a history ended.
+/// Outcome of a history.
 ///
 /// A history is complete if the structure overturned, or if the ground is quiet for good and at most a quarter of the energy barrier is
 /// left as energy above rest. The energy is the kinetic and potential energy beside the barrier of the first mechanism. Where that barrier
@@ -129,7 +129,7 @@ pub struct Sample {
     pub ground_acceleration_m_s2: f64,
     /// Vertical ground acceleration, positive upwards.
     pub vertical_acceleration_m_s2: f64,
-    /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m; only where the feet move
+    /// Displacement of the right foot relative to the left one, to the right and upwards in m; only if the feet move
     /// differently.
     pub feet_apart_m: Vector2<f64>,
     /// Events so far.
@@ -176,14 +176,14 @@ pub struct Sample {
 pub struct TieSample {
     /// Tension, in N.
     pub force_n: f64,
-    /// By how much it is longer than in the undeformed structure, in m.
+    /// Lengthening from the undeformed structure, in m.
     pub elongation_m: f64,
     /// Whether it has broken.
     pub is_broken: bool,
 }
 
 impl TieSample {
-    /// The state of a tie, from what it remembers of its way.
+    /// The state of a tie, from its memory.
     pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
         Self {
             force_n: memory.force_n.0[0],
@@ -204,7 +204,7 @@ pub struct TieSummary {
     pub yielded_s: Option<f64>,
     /// When it broke, in s, if it did.
     pub broken_s: Option<f64>,
-    /// By how much it has yielded, in m.
+    /// Plastic lengthening, in m.
     pub yielded_m: f64,
     /// Tension at the end, in N.
     pub force_n: f64,
@@ -268,7 +268,7 @@ pub struct JointPressure {
     pub normal_n: f64,
     /// Shear force, in N, positive where it keeps the right face from slipping towards the extrados.
     pub shear_n: f64,
-    /// How far the normal force lies towards the extrados from the middle of the joint, over its length; `None` without contact.
+    /// Distance of the normal force from the middle of the joint towards the extrados, over the length of the joint; `None` without contact.
     pub eccentricity_ratio: Option<f64>,
     /// Fraction of the joint in contact.
     pub contact_ratio: f64,
@@ -418,7 +418,7 @@ const LEAST_PEAK_RATIO: f64 = 1e-3;
 /// Summary of a history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
     /// When: the last outward passage of the unstable equilibrium, the last time it came to rest, or else the end of
     /// the history.
@@ -583,11 +583,11 @@ pub struct RowSummary {
     pub programs: u64,
     /// Most systems of equations in one step.
     pub most_iterations: u64,
-    /// How often the tolerance of a program had to be relaxed.
+    /// Number of times that the tolerance of a program was relaxed.
     pub relaxed: u64,
     /// Steps with more than one landing, or with landings too close to end at.
     pub merged: u64,
-    /// How often the longest step was halved on the way, where the energy balance needed it.
+    /// Number of times that the longest step was halved to balance the energy.
     #[serde(rename = "step_halvings")]
     pub halvings: u32,
     /// Time that the longest step took to compute, where samples are made.
@@ -606,7 +606,7 @@ pub struct HalfCycle {
     pub sway: Sway,
     /// When it began, in seconds.
     pub start_s: f64,
-    /// How long it took, in seconds; for the last one, until the motion ended.
+    /// Duration in seconds; of the last one, until the motion ended.
     pub duration_s: f64,
     /// Largest rotation of a block, in radians.
     pub peak_rad: f64,
@@ -685,9 +685,9 @@ pub struct ElasticSummary {
     pub crushed_j: f64,
     /// Energy that ties took as they yielded and broke, in J.
     pub ties_j: f64,
-    /// How far the thrust lies from the middle of the worst joint at rest, over its length, before the motion.
+    /// Distance of the thrust from the middle of the worst joint at rest before the motion, over the length of the joint.
     pub rest_eccentricity_ratio: f64,
-    /// Which joint that is.
+    /// Index of that joint.
     pub rest_eccentricity_joint: usize,
 }
 

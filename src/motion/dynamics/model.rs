@@ -75,7 +75,7 @@ pub trait Model: Debug + Send + Sync {
     /// Its motion, as [`Model::simulate`] gives it without a recorder, followed as far as `until` says.
     ///
     /// # Errors
-    /// As [`Model::simulate`].
+    /// Those of [`Model::simulate`].
     fn simulate_until(&self, until: Until, case: &Case) -> Result<Summary, SimulationError> {
         let (ground, request) = case;
         let mut until_safe = UntilSafe::new(until, ground, request);
@@ -155,9 +155,9 @@ pub type Case = (GroundMotion, Request);
 pub struct Job {
     /// The index of its case.
     pub case: usize,
-    /// Which of the [repetitions](Model::repetitions) of the model computes it; `None` for the model itself.
+    /// Index of the [repetition](Model::repetitions) of the model that computes it; `None` for the model itself.
     pub repetition: Option<usize>,
-    /// How far it is followed.
+    /// The end of its computation.
     pub until: Until,
 }
 
@@ -254,7 +254,7 @@ pub trait MechanismModel: Model {
     /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
     ///
     /// # Errors
-    /// As [`Model::simulate`].
+    /// Those of [`Model::simulate`].
     fn overturns_without_impact(
         &self,
         ground: &GroundMotion,

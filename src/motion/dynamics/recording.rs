@@ -41,7 +41,7 @@ pub struct Samples {
     pub ground_acceleration_m_s2: Vec<f64>,
     /// Vertical ground accelerations, positive upwards.
     pub vertical_acceleration_m_s2: Vec<f64>,
-    /// How far the right foot has gone from the left one, to the right and upwards, in m.
+    /// Displacement of the right foot relative to the left one, to the right and upwards, in m.
     pub feet_apart_m: Vec<[f64; 2]>,
     /// Events so far.
     pub phase: Vec<usize>,

@@ -33,7 +33,7 @@ const LEAST_SLIP_M: f64 = 1e-6;
 /// After the first change of side, the order of impacts that almost coincide decides the rest of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Repeatability {
-    /// How the repetitions were computed.
+    /// The settings of the repetitions.
     #[serde(skip)]
     pub repeated: Vec<&'static str>,
     /// Outcomes of the motion itself, then of the repetitions.

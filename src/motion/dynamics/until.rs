@@ -8,7 +8,7 @@ use super::recorder::Recorder;
 use super::request::Request;
 use crate::mechanics::sway::Sway;
 
-/// How far a motion is followed. One that is followed no further is [`StillRocking`](super::history::Outcome::StillRocking) before its
+/// The end of the computation of a motion. One that is not followed further is [`StillRocking`](super::history::Outcome::StillRocking) before its
 /// end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
@@ -41,7 +41,7 @@ pub(super) struct UntilSafe {
     rest_by_s: f64,
     /// The side to which it sways, and since when, in seconds.
     sways: Option<(Sway, f64)>,
-    /// How long the half cycle before took, in seconds.
+    /// Duration of the previous half cycle, in seconds.
     half_cycle_s: f64,
     /// The largest energy so far, over the barrier.
     largest_ratio: f64,
@@ -64,7 +64,7 @@ impl UntilSafe {
         })
     }
 
-    /// How long a half cycle takes at most, from now on.
+    /// Longest duration of a half cycle from now on.
     fn longest_half_cycle_s(&mut self, sample: &Sample) -> f64 {
         let State::Rocking(sway) = sample.state else {
             return f64::INFINITY;

@@ -35,7 +35,7 @@ pub enum RowError {
         name: &'static str,
         /// Block or joint.
         part: &'static str,
-        /// Which one, from 0 on.
+        /// Its index, from 0.
         index: usize,
         /// The number.
         value: f64,
@@ -45,7 +45,7 @@ pub enum RowError {
     /// A dimension of the whole row is out of range.
     #[error("{name} is {value}: it must be positive and finite")]
     Dimension {
-        /// Which dimension, with its unit.
+        /// The dimension, with its unit.
         name: &'static str,
         /// Its value.
         value: f64,
@@ -86,9 +86,9 @@ pub enum RowError {
         "block {block} is not on its side of joint {joint}: corners must be in the same order at every joint"
     )]
     Order {
-        /// Which block.
+        /// Index of the block.
         block: usize,
-        /// Which joint.
+        /// Index of the joint.
         joint: usize,
     },
 }

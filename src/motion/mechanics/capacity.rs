@@ -188,7 +188,7 @@ pub struct Capacity {
     pub ties: Vec<TieOnTheWay>,
 }
 
-/// At which parts of the way to the unstable equilibrium a tie gives way.
+/// Parts of the way to the unstable equilibrium at which a tie yields or breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivesWay {
     /// The part of the way at which it first yields, if it does.
@@ -197,7 +197,7 @@ pub struct GivesWay {
     pub breaks: Option<[f64; 2]>,
 }
 
-/// At which displacements of the control point a tie gives way, in metres.
+/// Displacements of the control point at which a tie yields or breaks, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TieOnTheWay {
     /// Displacement at which it yields, if it does.

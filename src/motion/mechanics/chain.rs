@@ -44,7 +44,7 @@ pub struct Motion {
 /// Thrust excess and friction demand of a structure: see [`crate::mechanics::four_link::thrust`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// How far the line of thrust leaves the structure, over the thickness: the largest value of
+    /// Excess of the line of thrust beyond the structure, over the thickness: the largest value of
     /// its sections, zero if it stays inside.
     pub excess_ratio: f64,
     /// Friction coefficient needed to prevent sliding, the largest over the sections that bear at least [`LEAST_LOAD`].

@@ -79,7 +79,7 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     None
 }
 
-/// How much of the artificial variable a row takes: no two rows take the same, so that ties are rare.
+/// Coefficient of the artificial variable in a row: it differs from row to row, so that ties are rare.
 fn cover(row: usize) -> f64 {
     let golden = row as f64 * 0.618_033_988_749_894_9;
     1.0 + 0.5 * golden.fract()

@@ -63,7 +63,7 @@ pub enum ContactError {
          would overlap"
     )]
     Jammed {
-        /// Which joint, from 0 on the left support.
+        /// Index of the joint, from 0 on the left support.
         joint: usize,
     },
 }
@@ -73,11 +73,11 @@ pub enum ContactError {
 pub struct Effort {
     /// Systems of pin forces solved.
     pub iterations: usize,
-    /// How often the tolerance had to be relaxed tenfold.
+    /// Number of times that the tolerance was relaxed tenfold.
     pub relaxed: usize,
 }
 
-/// Which corners of a joint, intrados and extrados, are concerned.
+/// Corners of a joint, intrados and extrados: true for those concerned.
 pub type Corners = [bool; 2];
 
 /// The data of a program, besides the positions.
@@ -264,7 +264,7 @@ impl Program {
         self.set_velocities();
     }
 
-    /// How many motions the pressed corners leave to the row.
+    /// Number of independent motions that the pressed corners allow.
     pub(crate) fn freedom(&self) -> usize {
         let moving = self.factor.bodies.iter().filter(|body| !body.is_held());
         let pressed = self.factor.pins.iter().filter(|pin| !pin.parted);

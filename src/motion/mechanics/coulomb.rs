@@ -31,7 +31,7 @@ const PASSES: usize = 8;
 const SINGLE_PASSES: usize = 12;
 /// Steps of projected Newton on a program with given bounds.
 const BOUNDED_STEPS: usize = 60;
-/// How many times the bounds follow the impulses: bounds that do not settle soon oscillate.
+/// Number of times that the bounds follow the impulses: bounds that do not settle soon oscillate.
 const BOUND_PASSES: usize = 5;
 /// Bounds that change by less than this fraction of the largest one have settled.
 const SAME_BOUND: f64 = 1e-10;
@@ -78,7 +78,7 @@ impl Mode {
     }
 }
 
-/// How a solution was found.
+/// Method by which a solution was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
     /// Systems solved.

@@ -28,7 +28,7 @@ const LEAST_SHORTAGE: f64 = 1e-8;
 /// A joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yield {
-    /// Which joint.
+    /// Index of the joint.
     pub joint: usize,
     /// Whether it opens at the intrados and at the extrados, beyond what slipping needs.
     pub opens: [bool; 2],
@@ -157,7 +157,7 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
 enum Goal {
     /// The largest push, in units of gravity.
     Push,
-    /// By how much friction has to exceed its bound at every joint, in units of the weight, for the row to stand.
+    /// Excess of friction over its bound at every joint that the row needs to stand, in units of the weight.
     Shortage,
 }
 
@@ -166,7 +166,7 @@ enum Goal {
 struct Program {
     matrix: CscMatrix,
     right: Vec<f64>,
-    /// How many rows are equations.
+    /// Number of rows that are equations.
     equations: usize,
     joints: usize,
 }

@@ -23,7 +23,7 @@ pub struct Part {
     pub centre_m: Vector2<f64>,
 }
 
-/// The bodies of a structure as they are drawn, in metres.
+/// Bodies of a drawing of a structure, in metres.
 #[derive(Clone, Debug)]
 pub enum Outline {
     /// A ring that is cut at its hinges, drawn with these joints.
@@ -63,7 +63,7 @@ pub trait Parts {
     /// Its parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
 
-    /// Its bodies as they are drawn.
+    /// The bodies of its drawing.
     fn outline(&self) -> Outline;
 
     /// The sections at which the position of the line of thrust is known, from left to right, or upwards.
@@ -270,7 +270,7 @@ impl Row {
             .collect()
     }
 
-    /// How far a point is from a block, in metres; 0 in it.
+    /// Distance of a point from a block, in metres; 0 inside it.
     #[must_use]
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
         let outline = &self.outlines_m[block];

@@ -51,7 +51,7 @@ const MOST_EXCHANGES: usize = 20;
 /// No row bears a push of so many times gravity that is found by following it.
 const LARGEST_PUSH_G: f64 = 100.0;
 
-/// How a support has moved from where it was built.
+/// Movement of a support from its original position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Movement {
     /// Outwards, away from the other support, in metres.
@@ -75,7 +75,7 @@ impl Movement {
     }
 }
 
-/// How the supports of a row have moved.
+/// Movements of the supports of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Movements {
     /// The left one.
@@ -153,7 +153,7 @@ pub struct Snap {
     pub causes: Vec<Pin>,
 }
 
-/// How far a row followed.
+/// The end of a followed path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
     /// To the end of the way.
@@ -192,7 +192,7 @@ pub enum SettlingError {
     Parted {
         /// Place along the way.
         at: f64,
-        /// Which joint, from 0 on the left support.
+        /// Index of the joint, from 0 on the left support.
         joint: usize,
     },
 }
@@ -222,7 +222,7 @@ pub struct Follower<'a> {
     pub stance: Stance,
     /// Hinges that gave way so far.
     pub snaps: Vec<Snap>,
-    /// By how much its hinges may fail to hold it: forces over the weight and openings in radians below this are rounding.
+    /// Tolerance of its hinges: forces over the weight and openings in radians below this are rounding.
     slack: f64,
 }
 
@@ -425,7 +425,7 @@ impl<'a> Follower<'a> {
         Ok(Reached::End)
     }
 
-    /// How fast blocks turn on the way to a state so far on.
+    /// Rates at which blocks turn on the way to another state.
     fn rates(&self, there: &State, way: f64) -> impl Iterator<Item = f64> {
         let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);

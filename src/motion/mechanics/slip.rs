@@ -206,7 +206,7 @@ impl Contact {
         }
     }
 
-    /// By how much the forces at the ends of the overlap lean along the joint: they are normal to the face that they press.
+    /// Inclination of the forces at the ends of the overlap along the joint: they are normal to the face that they press.
     fn lean(&self, faces: &Faces) -> f64 {
         let offset_m = self.coordinates_m.z;
         if offset_m == 0.0 {

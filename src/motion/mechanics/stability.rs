@@ -25,7 +25,7 @@ const STANDSTILL: f64 = 1e-9;
 /// A joint that opens in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
-    /// Which joint.
+    /// Index of the joint.
     pub joint: usize,
     /// The corner about which it opens; `None` where both edges open.
     pub hinge: Option<Edge>,

@@ -25,7 +25,7 @@ impl Stance {
         }
     }
 
-    /// How the ties of the row lie there.
+    /// Lines of the ties of the row.
     pub fn lines(&self, row: &Row) -> impl Iterator<Item = TieLine> {
         let poses = &self.placement.poses;
         lines(row, &self.placement.support_poses, |block| poses[block])
@@ -52,7 +52,7 @@ impl Stance {
     }
 }
 
-/// How the ties of a row lie between supports and blocks at these poses.
+/// Lines of the ties of a row between supports and blocks at these poses.
 pub fn lines(
     row: &Row,
     supports: &[Pose; 2],

@@ -20,7 +20,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// On which of two supports it is where it is on no block, 0 or 1: the nearer one across.
+    /// Support of an end that is on no block, 0 or 1: the horizontally nearer one.
     #[must_use]
     pub fn support(&self, feet_m: [Vector2<f64>; 2]) -> usize {
         let [left, right] = feet_m.map(|foot_m| (self.at_m.x - foot_m.x).abs());
@@ -143,7 +143,7 @@ impl Tie {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
-    /// How it lies with its ends there.
+    /// Its line with its ends there.
     #[must_use]
     pub fn line(&self, ends_m: [Vector2<f64>; 2]) -> TieLine {
         let moved = [0, 1].map(|end| ends_m[end] - self.ends[end].at_m);
@@ -193,14 +193,14 @@ const LEAST_LENGTH_RATIO: f64 = 1e-9;
 /// The stretch and the direction of a tie.
 #[derive(Clone, Copy, Debug)]
 pub struct TieSpan<R> {
-    /// By how much it is longer than without stress, in m.
+    /// Stretch beyond its unstressed length, in m.
     pub stretch_m: R,
     /// Unit vector from its first end to its second one.
     pub along: [R; 2],
 }
 
 impl Tie {
-    /// How it lies when its ends have moved by this much, in m.
+    /// Its stretch and direction after these displacements of its ends, in m.
     ///
     /// The square of the length is taken less that at rest, so that small changes keep their digits.
     #[inline(always)]
@@ -221,7 +221,7 @@ impl Tie {
     }
 }
 
-/// How a tie lies between blocks that stand anywhere.
+/// The line of a tie between blocks in any position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieLine {
     /// Indices of the blocks at its ends; `None`: a support, or the ground.
@@ -230,7 +230,7 @@ pub struct TieLine {
     pub ends_m: [Vector2<f64>; 2],
     /// Unit vector from its first end to its second one.
     pub along: Vector2<f64>,
-    /// By how much it is longer than without stress, in m.
+    /// Stretch beyond its unstressed length, in m.
     pub stretch_m: f64,
 }
 
@@ -325,13 +325,13 @@ impl Tie {
 /// Memory of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieMemory<R> {
-    /// By how much it is longer than without stress, in m.
+    /// Stretch beyond its unstressed length, in m.
     pub stretch_m: R,
     /// Its force, in N.
     pub force_n: R,
     /// The most that it has pulled with, in N.
     pub peak_n: R,
-    /// By how much it has yielded, in m.
+    /// Plastic lengthening, in m.
     pub yielded_m: R,
     /// 1 until it breaks, then 0.
     pub intact: R,

@@ -23,7 +23,7 @@ pub struct MovingBody {
 pub struct MovingTie {
     /// The force it pulls with over gravity, in kg.
     pub force_kg: f64,
-    /// By how much it lengthens in the virtual displacement of the bodies.
+    /// Lengthening by the virtual displacement of the bodies.
     pub lengthening: f64,
 }
 

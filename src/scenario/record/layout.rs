@@ -54,7 +54,7 @@ pub enum Times {
     Step(f64),
 }
 
-/// How a file is read. Semicolons, tabs, commas or blanks separate the columns of tables.
+/// Layout of a file. Semicolons, tabs, commas or blanks separate the columns of tables.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Layout {
     /// The format of the file.
@@ -74,7 +74,7 @@ pub struct Layout {
     /// Lines before a table.
     #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
-    /// How the numbers of a table are written.
+    /// Notation of the numbers of a table.
     #[serde(skip_serializing_if = "is_default")]
     pub decimal: Decimal,
     /// The quantity that the samples measure.

@@ -80,10 +80,10 @@ pub enum Scaling {
 pub struct Series {
     /// The file, relative to that of the scenario.
     pub file: String,
-    /// How it is read.
+    /// Its layout.
     #[serde(flatten)]
     pub layout: Layout,
-    /// How it is scaled.
+    /// Its scaling.
     #[serde(flatten)]
     pub scaling: Scaling,
     /// Unit of the samples in the file.

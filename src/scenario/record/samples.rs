@@ -5,7 +5,7 @@ use thiserror::Error;
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
-/// What a reader of a file returns.
+/// Result of a reader of a file.
 pub(super) type Parsed<T> = Result<T, LineFault>;
 
 /// Times in s, and accelerations or velocities.

@@ -22,7 +22,7 @@ pub struct Steps {
     pub shortest_s: f64,
 }
 
-/// How a history ended, in the numbers that studies compare. All of them are finite.
+/// Outcome of a history, in the numbers that studies compare. All of them are finite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
     /// The outcome.

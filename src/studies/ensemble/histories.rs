@@ -42,7 +42,7 @@ pub struct Histories {
 /// Course and ending of the history of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryAnswer {
-    /// How the history ended.
+    /// Outcome of the history.
     pub ending: Ending,
     /// Largest rotation of any body, in radians; if it overturned, the largest until overturning was certain.
     pub peak_rotation_rad: f64,

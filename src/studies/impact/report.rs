@@ -458,7 +458,7 @@ impl Summary {
         }
     }
 
-    /// How far a line leaves the structure, in per cent of the thickness.
+    /// Distance of a line beyond the structure, in per cent of the thickness.
     fn beyond_percent(&self, eccentricity_ratio: &f64) -> f64 {
         100.0 * (eccentricity_ratio - 0.5)
     }

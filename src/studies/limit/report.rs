@@ -149,12 +149,12 @@ pub struct FourLinkSide {
 pub struct Friction {
     /// The coefficient of friction of the scenario.
     pub coefficient: f64,
-    /// How the row starts.
+    /// The onset of motion of the row.
     #[serde(flatten)]
     pub onset: FrictionLimit,
 }
 
-/// How a row starts whose joints slip.
+/// The onset of motion of a row with slipping joints.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FrictionLimit {

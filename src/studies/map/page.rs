@@ -102,7 +102,7 @@ impl Cells<'_> {
     }
 }
 
-/// How the history of a cell ended, if it has one.
+/// Outcome of the history of a cell, if it has one.
 const fn ended(row: &CellRow) -> Option<&Ending> {
     match &row.result {
         CellResult::Ended(ending) => Some(ending),

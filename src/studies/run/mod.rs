@@ -354,7 +354,7 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
 /// The folder of a film, in that of the results.
 pub const FILM: &str = "film";
 
-/// How the names of its pictures begin.
+/// Beginning of the names of its pictures.
 const FRAME: &str = "frame-";
 
 /// The pictures of a film that are in its folder.

@@ -66,7 +66,7 @@ pub struct Summary<'a> {
     pub verdict: Verdict,
     /// Sentences about unlikely numbers of the scenario, and about limits of its history.
     pub warnings: Vec<String>,
-    /// How the motion ended.
+    /// Outcome of the motion.
     #[serde(flatten)]
     pub ended: Ended,
     /// Number of impacts; null with elastic joints, because their contact lasts.
@@ -104,7 +104,7 @@ pub struct Summary<'a> {
     pub longest_step_us: Option<f64>,
 }
 
-/// How a motion ended.
+/// Outcome of a motion.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Ended {
     /// `never_moved`, `vibrates`, `rest`, `overturned`, `still_rocking` or `incomplete`.

@@ -36,7 +36,7 @@ pub struct CaseRow {
     pub scale: f64,
     /// Its peak after scaling, in units of gravity.
     pub peak_g: f64,
-    /// How its history ended, or why it could not be computed.
+    /// Outcome of its history, or the reason for which it could not be computed.
     pub result: Result<Ending, String>,
     /// The lowest level that overturns between this level and the one below, by bisection; `None` unless this level overturns and the
     /// one below does not.

@@ -46,7 +46,7 @@ const STEPS_AHEAD: usize = 3;
 pub struct FactorSample {
     /// The factor.
     pub factor: f64,
-    /// How it ended, or why there is no history.
+    /// Its outcome, or the reason for which there is no history.
     pub result: Result<Ending, NoHistory>,
 }
 

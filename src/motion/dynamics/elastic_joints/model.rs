@@ -49,7 +49,7 @@ pub struct ElasticJoints {
     steps_times: f64,
 }
 
-/// How the motion is computed.
+/// Settings of the computation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticOptions {
     /// The longest step, in seconds (1e-9 to 1); if `None`, a quarter (undamped) to a half of what is proved to be stable.
@@ -68,7 +68,7 @@ impl ElasticOptions {
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 /// Damping of the fastest vibration, as a fraction of the critical one, with which the longer steps are enough.
 const DAMPED: f64 = 0.3;
-/// How much longer the steps of studies of many cases are than those of a run.
+/// Steps of studies of many cases over those of a run.
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
 /// Number of histories side by side: eight are slower, since they do not fit into the cache next to the processor.
 const SIDE_BY_SIDE: usize = 4;

@@ -133,7 +133,7 @@ pub struct Slide {
     pub sense: f64,
     /// Whether the support extends beyond the joint.
     pub goes_on: bool,
-    /// How far the centre of gravity moves to the right as the joint slips.
+    /// Displacement of the centre of gravity to the right for a unit slip of the joint.
     pub along_x: f64,
 }
 

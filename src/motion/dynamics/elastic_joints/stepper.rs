@@ -87,7 +87,7 @@ struct Lane<'a> {
 pub struct Group<'a, const L: usize> {
     row: &'a Row,
     structure: &'a ElasticStructure,
-    /// Where all motions start.
+    /// The start of all motions.
     rest: &'a Rest,
     /// Finds the least energy above that at rest with which it overturns without slip, if known; it takes time.
     find_barrier_j: &'a dyn Fn() -> Option<f64>,

@@ -69,7 +69,7 @@ impl Piece {
         }
     }
 
-    /// By how much per time the arc of a point differs from its tangent over a step.
+    /// Deviation of the arc of a point from its tangent over a step, per time.
     fn bend(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
         let (arm, turn) = (point - self.centre, step_s * self.rate);
         arm * (-0.5 * turn * self.rate) - turned(arm) * (turn * turn * self.rate / 6.0)

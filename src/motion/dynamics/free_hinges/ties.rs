@@ -13,7 +13,7 @@ use crate::mechanics::tie::{Tie, TieLine, TieMemory};
 pub(super) struct Ties<'a> {
     row: &'a Row,
     memories: Vec<TieMemory<Lanes<1>>>,
-    /// How they lie.
+    /// Their present lines.
     lines: Vec<TieLine>,
     /// Positions of the left and the right support: with each the ends of ties on the ground nearer to it move.
     pub supports: [Pose; 2],

@@ -52,7 +52,7 @@ impl<'a> GroundVelocity<'a> {
 }
 
 impl GroundMotion {
-    /// How far the right foot has gone away from where it was beside the left one, to the right and upwards in m, at these times, which
+    /// Displacement of the right foot relative to the left one, to the right and upwards in m, at these times, which
     /// ascend from the start on; zero where both move alike.
     #[must_use]
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
@@ -111,7 +111,7 @@ impl<'a> Way<'a> {
     }
 }
 
-/// How far the right foot of a structure goes away from its left one.
+/// Displacement of the right foot of a structure relative to its left one.
 #[derive(Clone, Debug)]
 pub(in crate::dynamics) struct FeetApart<'a> {
     ways: [Way<'a>; 2],
@@ -142,7 +142,7 @@ impl<'a> FeetApart<'a> {
         right.to(time_s) - left.to(time_s)
     }
 
-    /// How far apart the feet will be at a time, in m.
+    /// Displacement of the right foot relative to the left one at a time, in m.
     pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
         let [left_m, right_m] = self.ways.each_ref().map(|way| way.ahead(time_s).1);

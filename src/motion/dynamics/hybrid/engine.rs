@@ -371,7 +371,7 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
     first
 }
 
-/// How often a step is halved in search of an event: shorter excursions of a guard, a millionth of a step,
+/// Number of halvings of a step in search of an event: shorter excursions of a guard, a millionth of a step,
 /// are missed.
 const HALVINGS: u32 = 20;
 

@@ -18,7 +18,7 @@ use crate::mechanics::tie::{Tie, TieMemory};
 
 /// Sways below this fraction of the size do not count as a change of side.
 pub const SWAY_RATIO: f64 = 1e-9;
-/// Where no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
+/// If no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
 /// from one turning point to the next.
 const RECENT_RATIO: f64 = 2.0;
 /// At rest, the kinetic energy is below this fraction of weight times size ...
@@ -204,7 +204,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// How and when the motion ended, if it has. The arguments are when it overturned, if it did, and since when it stands still
+    /// The outcome of the motion and its time, if it has ended. The arguments are the time of overturning, if any, and the time since which it stands still
     /// for good, if it does.
     pub fn ending(
         &self,
@@ -260,7 +260,7 @@ impl<'a> Course<'a> {
         self.task.barrier_j.filter(known)
     }
 
-    /// How long it must be quiet to rest, in seconds.
+    /// Time for which it must be quiet to count as at rest, in seconds.
     pub fn rest_time_s(&self) -> f64 {
         REST_TIME_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt()
     }

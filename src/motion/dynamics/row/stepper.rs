@@ -276,7 +276,7 @@ pub fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
     (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
 }
 
-/// How far the thrust lies towards the extrados from the middle of a joint, by the impulses at its corners, over the thickness; `None`
+/// Distance of the thrust from the middle of a joint towards the extrados, by the impulses at its corners, over the thickness; `None`
 /// if neither presses. A pull below the tolerance of the solver counts as zero.
 pub fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));

@@ -62,7 +62,7 @@ fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     joints.map(above).fold(f64::INFINITY, f64::min)
 }
 
-/// How far a centre of gravity rises, in m, until it is above the nearer edge of the joint about which its block turns.
+/// Rise of a centre of gravity, in m, until it is above the nearer edge of the joint about which its block turns.
 pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
     let rise = |edge: Edge| {
         let arm_m = centre_m - joint.corner_m(edge);

@@ -59,7 +59,7 @@ impl Closer {
 pub(in crate::mechanics) type FirstShut = (f64, Option<(usize, usize)>);
 
 impl Program {
-    /// How long the last velocities may go on, at most for so long, and the corner that shuts then.
+    /// Time until a corner shuts with the last velocities, at most `longest`, and that corner.
     pub(in crate::mechanics) fn first_shut(
         &self,
         placement: &Placement,

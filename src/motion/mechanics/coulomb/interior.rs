@@ -41,9 +41,9 @@ struct Pairs {
 struct Eliminated {
     /// Changes of the friction to either side, and of the speed, without a change of the rate and the pressure.
     constant: [f64; 3],
-    /// How friction to either side gives way to the slip.
+    /// Derivative of friction to either side by the slip.
     yielding: [f64; 2],
-    /// How the speed follows the bound.
+    /// Derivative of the speed by the bound.
     following: f64,
 }
 
@@ -129,7 +129,7 @@ impl Pairs {
         }
     }
 
-    /// How far the numbers may go along a change before one vanishes.
+    /// Largest part of a change before one of the numbers vanishes.
     fn room(&self, change: &Self) -> f64 {
         let own = self.own.iter().zip(&change.own);
         let pairs = own.chain(self.other.iter().zip(&change.other));

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use super::kinematics::{Gap, Link};
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
-/// How the stress is summed over a joint.
+/// Integration of the stress over a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Contact {
     /// Exactly, over the part that presses.
@@ -125,7 +125,7 @@ pub struct Memory<R> {
 /// Memory of a place along a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Fibre<R> {
-    /// By how much it is crushed, in m.
+    /// Depth of crushing, in m.
     pub crushed_m: R,
     /// Six times its elastic force, per stiffness.
     force_m: R,
@@ -134,7 +134,7 @@ pub struct Fibre<R> {
 remembered!(Memory { slip_m, shear_n, slipped_m, viscous_shear_n; penetrations_m, viscous_n });
 remembered!(Fibre { crushed_m, force_m });
 
-/// How a joint presses.
+/// Normal stress and energy of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressing<R> {
     /// Forces at the edges that are equivalent to the stress, in N.
@@ -145,7 +145,7 @@ pub struct Pressing<R> {
     pub crushed_j: R,
 }
 
-/// How the faces of a joint rub.
+/// Friction between the faces of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Rubbing<R> {
     /// Shear force, in N.
@@ -185,7 +185,7 @@ pub(crate) struct Law {
 }
 
 impl Law {
-    /// How a joint presses with such a gap; its memory is updated. `damping` is the damping time over the length of the step.
+    /// Normal forces of a joint with this gap; updates its memory. `damping` is the damping time over the length of the step.
     #[inline(always)]
     pub fn press<R: Real>(
         &self,
@@ -236,7 +236,7 @@ impl Law {
         }
     }
 
-    /// How its faces rub with such a gap as these forces press at its edges; its memory is updated.
+    /// Friction of a joint with this gap and these normal forces at its edges; updates its memory.
     #[inline(always)]
     pub(crate) fn rub<R: Real>(
         &self,

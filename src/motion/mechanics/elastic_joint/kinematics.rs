@@ -25,7 +25,7 @@ impl<R: Real> Place<R> {
         }
     }
 
-    /// How far rotation moves the end of an arm that starts at the centre.
+    /// Displacement of the end of an arm from the centre by a rotation.
     #[inline(always)]
     pub(super) fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
         let [half_cos, half_sin] = self.half_turn;
@@ -59,13 +59,13 @@ pub struct Link {
 /// The relative position of the faces of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap<R> {
-    /// By how much they penetrate each other at edge 0 and edge 1, in m; in between it changes linearly.
+    /// Penetration at edge 0 and edge 1, in m; it changes linearly between them.
     pub penetrations_m: [R; 2],
-    /// By how much the second face has slipped towards edge 1, in m.
+    /// Slip of the second face towards edge 1, in m.
     pub slip_m: R,
-    /// By how much it has moved a quarter turn anticlockwise from there, in m.
+    /// Displacement in the direction a quarter turn anticlockwise from there, in m.
     rise_m: R,
-    /// How much farther the second body has moved than the first one, in m.
+    /// Displacement of the second body relative to the first one, in m.
     apart_m: [R; 2],
     /// Mean direction of the faces.
     along: [R; 2],

@@ -72,7 +72,7 @@ pub enum RestError {
         part = 1e2 * part
     )]
     TieOnTheWay {
-        /// Which one.
+        /// Its index.
         tie: usize,
         /// At this part of the movement.
         part: f64,
@@ -261,7 +261,7 @@ const SHORTEST_STRIDE: f64 = 1e-6;
 const SAME_ENERGY: f64 = 0.03;
 /// Steps of such a path, at most.
 const MOST_STRIDES: usize = 1000;
-/// How often joints are made softer to find a path.
+/// Number of times that joints are made softer to find a path.
 const SOFTER: usize = 6;
 /// Largest unbalanced force along the path, over the weight.
 const BALANCED_ON_WAY: f64 = 1e-7;
@@ -369,7 +369,7 @@ struct Pushed {
 struct Search<'a> {
     structure: &'a ElasticStructure,
     load_m_s2: [f64; 2],
-    /// By how much its ties have yielded before, in m.
+    /// Earlier plastic lengthening of its ties, in m.
     yielded_m: Vec<f64>,
     weight_n: f64,
     /// Rotations and moments are scaled with this length.
@@ -566,7 +566,7 @@ impl<'a> Search<'a> {
         (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
     }
 
-    /// How far the centre of gravity has moved to the right.
+    /// Displacement of the centre of gravity to the right.
     fn sway_m(&self, moved: &[[f64; 3]]) -> f64 {
         let bodies = self.structure.bodies.iter().zip(moved);
         let moments: f64 = bodies.map(|(body, moved)| body.mass_kg * moved[0]).sum();

@@ -55,7 +55,7 @@ pub struct ElasticProperties {
     pub damping_time_s: f64,
     /// Stress at which joints crush, in Pa; if `None`, they do not.
     pub compressive_strength_pa: Option<f64>,
-    /// How the stress is summed.
+    /// Integration of the stress.
     pub contact: Contact,
 }
 

@@ -43,7 +43,7 @@ impl BoundTie {
         }
     }
 
-    /// How it lies with its bodies at these places.
+    /// Its line with its bodies at these places.
     #[inline(always)]
     #[must_use]
     pub fn span<R: Real>(&self, places: [&Place<R>; 2]) -> TieSpan<R> {

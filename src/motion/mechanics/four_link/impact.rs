@@ -10,9 +10,9 @@ use crate::argument::{ArgumentError, within};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
 use crate::mechanics::geometry::profile::Profile;
 
-/// How the mechanism after an impact is found.
+/// Rule for the mechanism after an impact.
 ///
-/// All assume that the four hinges close at the same instant, that the arch goes on with four hinges, and
+/// All assume that the four hinges close at the same instant, that the arch moves on with four hinges, and
 /// that nothing slides or bounces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImpactModel {

@@ -1,4 +1,4 @@
-//! The arch as a four-link mechanism: how it starts, moves, closes, and goes on.
+//! The arch as a four-link mechanism: its start, its motion, and its impacts.
 pub mod certificate;
 pub mod chain;
 pub mod impact;

@@ -35,7 +35,7 @@ pub struct SectionResultant {
     pub tangential: f64,
     /// Moment of the normal component about the axis, positive when it lies outwards.
     pub moment: f64,
-    /// Where the line of action crosses the section, outwards from the axis, over the thickness:
+    /// Crossing of the line of action with the section, outwards from the axis, over the thickness:
     /// within -0.5 (intrados) to 0.5 (extrados) inside the ring.
     pub eccentricity_ratio: f64,
     /// Thickness of the section.

@@ -210,7 +210,7 @@ impl ThrustLine {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
-    /// Where the line crosses these sections, outwards from the axis over the thickness: within -0.5 to 0.5 inside the
+    /// Crossings of the line with these sections, outwards from the axis over the thickness: within -0.5 to 0.5 inside the
     /// ring; `None` where a section is not pressed.
     #[must_use]
     pub fn eccentricity_ratios(&self, sections_rad: &[f64]) -> Vec<Option<f64>> {

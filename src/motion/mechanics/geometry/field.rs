@@ -11,7 +11,7 @@ use std::ops::Add;
 use super::profile::Profile;
 pub use super::rigid::{Momentum, Twist, turned};
 
-/// Which of the two values of a field is meant at a section where it jumps.
+/// The side of a section from which a field is taken, if it jumps there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The value just before the section (towards the left springing).

@@ -17,7 +17,7 @@ use crate::mechanics::geometry::curve::Curve;
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fill {
-    /// How high its top is.
+    /// Height of its top.
     #[serde(flatten)]
     pub level: FillLevel,
     /// Its density in kg/m3.
@@ -64,7 +64,7 @@ impl Fill {
         Ok(())
     }
 
-    /// How high its top is, in metres.
+    /// Height of its top, in metres.
     fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
             FillLevel::AboveSpringing(height_m) => {

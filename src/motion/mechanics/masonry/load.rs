@@ -14,7 +14,7 @@ use crate::mechanics::geometry::ring::MassMoments;
 pub struct PlacedLoad {
     /// The mass in kg.
     pub mass_kg: f64,
-    /// How far to the right of the middle of the span it is, in metres; for a patch, its middle.
+    /// Distance to the right of the middle of the span, in metres; for a patch, of its middle.
     pub x_m: f64,
     /// Width over which it is spread, in metres; zero for a point.
     #[serde(skip_serializing_if = "is_zero")]

@@ -211,7 +211,7 @@ pub enum MasonryError {
     /// A number of a pier is out of range.
     #[error("{side} pier: {error}", side = .side.name())]
     Pier {
-        /// On which side.
+        /// The side.
         side: Sway,
         /// The number that is out of range.
         error: ArgumentError,
@@ -222,7 +222,7 @@ pub enum MasonryError {
     /// A number of a load is out of range.
     #[error("load {number}: {error}", number = .index + 1)]
     Load {
-        /// Which load, from 0 on.
+        /// Index of the load, from 0.
         index: usize,
         /// The number that is out of range.
         error: ArgumentError,

@@ -45,7 +45,7 @@ const LEVEL: f64 = 1e-14;
 const MOST_ROUNDS: usize = 100;
 /// Trials of how far a round goes, at most.
 const MOST_TRIALS: usize = 20;
-/// A round goes on until the energy falls by less than this part of how it falls at the beginning.
+/// A round ends when the slope of the energy is below this part of its initial slope.
 const FLAT: f64 = 0.1;
 /// A response to ties is rounding below this part of what they would do to free blocks.
 const NO_MOTION: f64 = 1e-9;
@@ -57,7 +57,7 @@ const LONGEST: f64 = 1e3;
 /// A step of a descent, whose forces of ties are sought.
 struct Step<'a> {
     stance: &'a Stance,
-    /// How the ties lie when it begins.
+    /// Lines of the ties at its beginning.
     lines: &'a [TieLine],
     /// The forces between which each pulls, over gravity.
     bounds_kg: Vec<[f64; 2]>,
@@ -302,7 +302,7 @@ impl<'a> Descent<'a> {
         Err(SettlingError::Ties)
     }
 
-    /// By how much longer each tie is at the end of a step than its force makes it, with the last velocities.
+    /// Length of each tie at the end of a step beyond the length that its force gives it, with the last velocities, in m.
     fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
         let velocities = &self.program.velocities;
         let lacks_m = step.lines.iter().enumerate().map(|(tie, line)| {
@@ -313,7 +313,7 @@ impl<'a> Descent<'a> {
         DVector::from_iterator(self.ties_kg.len(), lacks_m)
     }
 
-    /// By how much the forces of ties have to change, over gravity, to lack nothing if the same corners went on pressing. Ties that pull with
+    /// Changes of the forces of ties, over gravity, that balance all ties while the same corners press. Ties that pull with
     /// all or nothing, and would go beyond, stay. `None` where that is not determined.
     ///
     /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
@@ -364,7 +364,7 @@ impl<'a> Descent<'a> {
         unknown
     }
 
-    /// At which rates the ties (rows) lengthen in the motions (columns) that ties can give the row while the same corners press. The
+    /// Rates at which the ties (rows) lengthen in the motions (columns) that ties can give the row while the same corners press. The
     /// motions have no kinetic energy in common, and each has that of a unit mass at unit speed.
     ///
     /// The response to any pulls is the part of the free motion that the joints allow. So the responses to arbitrary pulls at once span all
@@ -478,7 +478,7 @@ impl<'a> Descent<'a> {
         self.solve(step.stance, step.lines, step.force_g, 1.0)
     }
 
-    /// Goes on with the last velocities for so long, until this corner shuts. Returns how the ties lie then.
+    /// Moves the blocks with the last velocities for this time, and shuts this corner. Returns the lines of the ties.
     fn go_on(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
         let placement = &mut stance.placement;
         let mut change = vec![[0.0; 2]; placement.gaps_m.len()];

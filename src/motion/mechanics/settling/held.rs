@@ -85,7 +85,7 @@ impl<'a> Held<'a> {
         }))
     }
 
-    /// How many bodies move.
+    /// Number of moving bodies.
     #[must_use]
     pub fn bodies(&self) -> usize {
         match self.row.supports {

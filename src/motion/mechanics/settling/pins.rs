@@ -26,7 +26,7 @@ const BALANCED: f64 = 1e-12;
 const SMALL_STEP: f64 = 1e-8;
 /// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
 const FAR_RAD: f64 = 1.0;
-/// How much stiffer than bodies are pins that must not part, where it is seen whether an equilibrium is stable.
+/// Stiffness of pins over that of bodies, in the test of the stability of an equilibrium.
 const STIFFER: f64 = 1e6;
 
 /// A tie lengthens as its first end goes back, and as its second one goes on.
@@ -60,7 +60,7 @@ pub struct State {
     pub hinges: Vec<Pin>,
     /// Of the part right of each hinge against the part left of it, anticlockwise.
     pub turns_rad: Vec<f64>,
-    /// By how much each hinge is open, in radians; below zero it would have to penetrate.
+    /// Opening of each hinge, in radians; a negative one would penetrate.
     pub openings_rad: Vec<f64>,
     /// Rotations of the blocks.
     pub rotations_rad: Vec<f64>,
@@ -75,7 +75,7 @@ pub struct State {
 }
 
 impl State {
-    /// How far it is from giving way: the least of all openings in radians and of all forces that could pull, over the weight.
+    /// Margin before the hinges give way: the least of all openings in radians and of all normal forces over the weight.
     #[must_use]
     pub fn margin(&self) -> f64 {
         let forces = self.pressing().map(|(_, force)| force);
@@ -192,12 +192,12 @@ impl Pins {
         pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
     }
 
-    /// How many hinges are before each block.
+    /// Number of hinges before each block.
     fn parts(&self, row: &Row) -> impl Iterator<Item = usize> {
         (0..row.blocks.len()).map(|block| self.part_of(block))
     }
 
-    /// How many hinges are before a block.
+    /// Number of hinges before a block.
     pub(super) fn part_of(&self, block: usize) -> usize {
         let before = self.hinges.iter().filter(|hinge| hinge.joint <= block);
         before.count()
@@ -322,7 +322,7 @@ impl Pins {
     }
 }
 
-/// On which side of the line from the first of three pins to the last the middle one is: 1 to the left, or -1.
+/// Side of the middle one of three pins, seen from the first to the last: 1 to the left, or -1.
 pub(super) fn side(pins_m: &[Vector2<f64>]) -> f64 {
     let [left, middle, right] = [0, 1, 2].map(|pin| pins_m[pin]);
     (right - left).perp(&(middle - left)).signum()
@@ -372,7 +372,7 @@ struct Chain<'a> {
 
 /// A tie of a chain that has not broken. Its forces are parts of the weight.
 struct Bar {
-    /// How many hinges are before each of its ends.
+    /// Number of hinges before each of its ends.
     parts: [usize; 2],
     /// Its ends in the undeformed row, the vector between them, and their distance.
     ends_m: [Vector2<f64>; 2],
@@ -465,7 +465,7 @@ struct Unbalanced {
     /// Slopes of the energy by the rotations.
     slopes: DVector<f64>,
     curvature: DMatrix<f64>,
-    /// By how much the last pin misses the support, and its slopes.
+    /// Distance of the last pin from its place on the support, and its slopes.
     parted: Vector2<f64>,
     reach: DMatrix<f64>,
 }

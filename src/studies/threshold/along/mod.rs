@@ -25,7 +25,7 @@ pub struct KeyRange {
     pub from: f64,
     /// The last value, above the first.
     pub to: f64,
-    /// How many values, 2 to 10000.
+    /// Number of values, 2 to 10000.
     pub count: usize,
 }
 
