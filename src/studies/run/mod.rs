@@ -572,7 +572,7 @@ impl Recorder for Recording<'_, '_> {
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
         if let Some(report) = &mut self.collected.report {
-            report.fall.push(sample);
+            report.push_fall(sample);
         }
         let snapshots = self.collected.snapshots.iter_mut();
         for film in snapshots.filter(|snapshots| snapshots.is_film()) {
@@ -583,7 +583,7 @@ impl Recorder for Recording<'_, '_> {
 
     fn fell(&mut self, end: FallEnd) {
         if let Some(report) = &mut self.collected.report {
-            report.fall_end = Some(end);
+            report.end_fall(end);
         }
     }
 }

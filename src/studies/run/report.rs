@@ -58,8 +58,8 @@ pub struct Report {
     gravity_m_s2: f64,
     film: Film,
     /// The fall after a structure has overturned, and its end.
-    pub(super) fall: Film,
-    pub(super) fall_end: Option<FallEnd>,
+    fall: Film,
+    fall_end: Option<FallEnd>,
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
@@ -96,6 +96,16 @@ impl Report {
         self.energy.push(time_s, energy);
         let excess_ratio = sample.demand.excess_ratio.min(LARGEST_EXCESS);
         self.excess_ratio.push(time_s, excess_ratio);
+    }
+
+    /// Takes a sample of the fall after the structure has overturned.
+    pub fn push_fall(&mut self, sample: &Sample) {
+        self.fall.push(sample);
+    }
+
+    /// Takes the end of that fall.
+    pub fn end_fall(&mut self, end: FallEnd) {
+        self.fall_end = Some(end);
     }
 
     /// The page for a scenario, with its observed points: the report on its samples, if there are any, the verdict, and the other words of `run`.
