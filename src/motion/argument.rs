@@ -28,7 +28,7 @@ impl ArgumentError {
     }
 }
 
-/// The value, if this holds; else an error that names what is allowed.
+/// Returns the value if the condition holds, else an error that names the allowed values.
 pub fn allow(
     holds: bool,
     argument: &'static str,

@@ -130,7 +130,7 @@ impl Fault {
     }
 }
 
-/// Succeeds if a condition holds; otherwise explains what is wrong.
+/// Succeeds if a condition holds, else returns the message.
 pub(super) fn ensure<E>(holds: bool, wrong: impl FnOnce() -> E) -> Result<(), E> {
     holds.then_some(()).ok_or_else(wrong)
 }

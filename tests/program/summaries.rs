@@ -15,7 +15,7 @@ struct Written {
     doc: String,
     /// Doc comment and fields: of the one variant of a struct, or of all of an enum.
     variants: Vec<(String, Fields)>,
-    /// Whether it is written as the value inside it.
+    /// True if its JSON is the JSON of its only field.
     is_transparent: bool,
 }
 

@@ -206,7 +206,7 @@ impl Record {
     }
 }
 
-/// What is known when records are read: those that need not be read from their files again, and gravity if `[simulation]` gives a right one.
+/// Input of the reading of records: records already in memory, and gravity if `[simulation]` gives a valid value.
 pub(super) type Known<'a> = (&'a [Series], Option<f64>);
 
 impl Series {

@@ -79,7 +79,7 @@ impl CaseRow {
             .filter(|verdict| *verdict != Verdict::Incomplete)
     }
 
-    /// Whether it has the record of another case, with the same sign.
+    /// True if both cases apply one record with one sign.
     fn has_shake_of(&self, other: &Self) -> bool {
         (&self.record, self.mirrored) == (&other.record, other.mirrored)
     }

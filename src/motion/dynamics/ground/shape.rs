@@ -81,9 +81,9 @@ pub enum Shape {
     Sine(Sine),
     /// A sum of sines: an oscillation under a cosine-shaped envelope.
     Beat([Sine; 3]),
-    /// Of this period, in seconds.
+    /// A Ricker wavelet of this period, in seconds.
     Ricker(f64),
-    /// Of this period, in seconds.
+    /// An antisymmetric Ricker wavelet of this period, in seconds.
     AntisymmetricRicker(f64),
     Gabor(Gabor),
 }

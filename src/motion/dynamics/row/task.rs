@@ -23,7 +23,7 @@ pub struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    /// A motion whose energies are known as far as the blocks alone tell.
+    /// A task whose energies follow from the blocks alone.
     pub fn new(
         row: &'a Row,
         ground: &'a GroundMotion,
