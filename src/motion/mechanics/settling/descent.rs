@@ -139,14 +139,15 @@ impl<'a> Descent<'a> {
         let start_rad = turns(stance);
         let (mut farthest_m, mut longest) = (STEP * size_m, STEP * size_m);
         let (mut hinges, mut stayed) = (Vec::new(), 0_u32);
-        let mut before = f64::INFINITY;
+        let (mut before, mut accelerates) = (f64::INFINITY, false);
         for step in 0..MOST_STEPS {
             // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
             let pins = (!self.ties_kg.is_empty()).then(|| Pins::of(self.row, &stance.placement));
             if let Some(pins) = pins.flatten() {
                 stayed = if pins.hinges == hinges { stayed + 1 } else { 0 };
                 hinges = pins.hinges.to_vec();
-                if (step == 0 || stayed.is_power_of_two()) && self.rests_near(&pins, stance, to) {
+                let due = step == 0 || stayed.is_power_of_two() && !accelerates;
+                if due && self.rests_near(&pins, stance, to) {
                     return Ok(true);
                 }
             }
@@ -173,7 +174,8 @@ impl<'a> Descent<'a> {
                 return Ok(false);
             }
             if !self.ties_kg.is_empty() {
-                let times = if fastest > before { ACCELERATING } else { 1.0 };
+                accelerates = fastest > before;
+                let times = if accelerates { ACCELERATING } else { 1.0 };
                 farthest_m = size_m * STEP.max(times * STRIDE * gone);
             }
             before = fastest;
