@@ -100,7 +100,7 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let Some(row) = scenario.structure.row().ok().filter(|_| joints) else {
         return Ok(Scene::new(&scenario.structure));
     };
-    let scene = Scene::of_row(&row).of_structure(&scenario.structure);
+    let mut scene = Scene::of_row(&row, &scenario.structure);
     let Some(movements) = scenario.motion.supports() else {
         return Ok(scene);
     };
@@ -114,12 +114,11 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     };
     let history = model.history(&GroundMotion::still(), &at_once)?;
     let first = history.samples.iter().next();
-    let (poses, hinges) = first.map_or_else(Default::default, |first| {
+    scene.stands = first.map_or_else(Default::default, |first| {
         (first.poses.to_vec(), first.hinges.to_vec())
     });
-    Ok(scene
-        .on_supports(movements.poses(&row))
-        .standing(poses, hinges))
+    scene.supports = movements.poses(&row);
+    Ok(scene)
 }
 
 /// True if `--set` gives the key `format`, so the file is a record.

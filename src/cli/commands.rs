@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use archrock::FourLinkError;
 use archrock::FourLinks;
 use archrock::dynamics::model::MechanismModel;
-use archrock::mechanics::friction::FrictionError;
 use archrock::output::pretty;
 use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
 use archrock::scenario::Scenario;
-use archrock::studies::limit::{self, NoLimit};
+use archrock::studies::limit;
 use archrock::studies::pictures;
 use archrock::studies::results::Answer;
 
@@ -65,15 +64,6 @@ pub fn answer(answer: &Answer, format: Format) -> Result<(), Failure> {
     match format {
         Format::Json => print(&pretty(&answer.json)),
         Format::Text => print(&answer.text),
-    }
-}
-
-impl From<NoLimit> for Failure {
-    fn from(error: NoLimit) -> Self {
-        match error {
-            NoLimit::Friction(FrictionError::NotSolved(_)) => Self::Work(error.to_string()),
-            _ => Self::Input(error.to_string()),
-        }
     }
 }
 

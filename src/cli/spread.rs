@@ -1,7 +1,8 @@
 //! The command `spread`.
 
+use archrock::mechanics::sway::Sway;
 use archrock::studies::catalogue::{Options, SPREAD};
-use archrock::studies::spread::{Springing, Way};
+use archrock::studies::spread::Way;
 use clap::ValueEnum;
 
 use super::Failure;
@@ -37,8 +38,8 @@ fn angle(text: &str) -> Result<f64, String> {
 
 pub fn spread(arguments: &Arguments) -> Result<(), Failure> {
     let springing = match arguments.springing {
-        Side::Left => Springing::Left,
-        Side::Right => Springing::Right,
+        Side::Left => Sway::Left,
+        Side::Right => Sway::Right,
     };
     let angles_deg = match &arguments.angles_deg[..] {
         [] => &Way::USUAL_DEG[..],

@@ -20,13 +20,13 @@ pub struct Arguments {
     #[command(flatten)]
     suite: SuiteOption,
     /// Smallest factor on the ground motion.
-    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().first())]
+    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().from)]
     from: f64,
     /// Largest factor.
-    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().last())]
+    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().to)]
     to: f64,
     /// Relative step from one factor to the next; narrower bands and gaps may be missed.
-    #[arg(long, value_name = "PART", default_value_t = Factors::default().stride())]
+    #[arg(long, value_name = "PART", default_value_t = Factors::default().stride)]
     stride: f64,
     /// Find the least factor that overturns for each value of a key, such as --along arch.mean_radius_m=4..6:5.
     #[arg(

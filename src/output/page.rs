@@ -7,26 +7,17 @@ use crate::scenario::shown_lines;
 
 /// Fills a template: each name between `%` signs is replaced by its text. The inserted texts are not scanned again.
 pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
-    let mut page = String::new();
-    let mut rest = template;
-    while let Some((before, after)) = rest.split_once('%') {
-        page += before;
-        let place = after.split_once('%').and_then(|(name, after)| {
-            let (_, text) = texts.iter().find(|(known, _)| *known == name)?;
-            Some((text, after))
-        });
-        rest = match place {
-            Some((text, after)) => {
-                page += text;
-                after
-            }
-            None => {
-                page.push('%');
-                after
-            }
-        };
+    let (mut page, mut is_name) = (String::new(), true);
+    for part in template.split('%') {
+        let named = texts.iter().find(|(name, _)| *name == part);
+        // A sign between two parts of the page belongs to the page.
+        if !is_name && named.is_none() {
+            page.push('%');
+        }
+        page += named.map_or(part, |(_, text)| text);
+        is_name = named.is_some();
     }
-    page + rest
+    page
 }
 
 /// JSON that is safe inside a script of a page: nothing in it ends the script.

@@ -23,7 +23,7 @@ pub struct Scene {
     /// The sections at which the position of the line of thrust is known.
     pub sections: Vec<Section>,
     /// Poses of the left and the right support of an arch.
-    supports: [Pose; 2],
+    pub supports: [Pose; 2],
     /// Poses and hinges of a picture at rest; empty if the structure is undeformed.
     pub stands: (Vec<Pose>, Vec<OpenHinge>),
     ties: Vec<Tie>,
@@ -79,10 +79,12 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// The current position of the point, with its displacement multiplied by `exaggeration`.
+    /// The current position of the point, with its displacement multiplied by `exaggeration`. Points that coincide still coincide, and
+    /// shut joints stay shut, at any exaggeration. The price is that bodies grow with the square of their rotation.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
-        moved(self.body, self.at_m, poses, exaggeration)
+        let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
+        pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
     }
 }
 
@@ -90,85 +92,43 @@ impl Piece {
     /// The current positions of its corners, with their displacements multiplied by `exaggeration`.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
-        let corners = self.outline_m.iter();
-        corners
-            .map(|corner| moved(self.body, *corner, poses, exaggeration))
-            .collect()
+        let (body, corners) = (self.body, self.outline_m.iter());
+        let corners = corners.map(|at_m| Mark { body, at_m: *at_m }.moved(poses, exaggeration));
+        corners.collect()
     }
-}
-
-/// Points that coincide still coincide, and shut joints stay shut, at any exaggeration. The price is that bodies
-/// grow with the square of their rotation.
-fn moved(
-    body: Option<usize>,
-    at_m: Vector2<f64>,
-    poses: &[Pose],
-    exaggeration: f64,
-) -> Vector2<f64> {
-    let pose = body.and_then(|body| poses.get(body));
-    pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
 }
 
 impl Scene {
     /// A structure that rocks as mechanisms; the blocks of an arch are linked.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
-        let scene = Self {
-            linked: structure.thrusts(),
-            ties: structure.ties().to_vec(),
-            ..Self::bare(structure.as_parts())
-        };
-        scene.of_structure(structure)
+        let (parts, ties) = (structure.as_parts(), structure.ties());
+        Self::of(structure, parts, structure.thrusts(), ties)
     }
 
-    /// This scene with fill, loads and dimensions of the structure.
+    /// A structure that moves as the blocks of this row.
     #[must_use]
-    pub fn of_structure(mut self, structure: &Structure) -> Self {
-        self.dimensions = structure.dimensions();
-        if let Some((carried, loads)) = structure.carries() {
-            self.fill_m.clone_from(&carried.fill_m);
-            let places_m = carried.loads_m.iter().copied();
-            self.loads = places_m.zip(loads.iter().copied()).collect();
-        }
-        self
+    pub fn of_row(row: &Row, structure: &Structure) -> Self {
+        Self::of(structure, row, false, &row.ties)
     }
 
-    /// These parts, with nothing on them.
-    fn bare(parts: &dyn Parts) -> Self {
+    fn of(structure: &Structure, parts: &dyn Parts, linked: bool, ties: &[Tie]) -> Self {
+        let carries = structure.carries();
+        let loads = carries.into_iter().flat_map(|(carried, loads)| {
+            let places_m = carried.loads_m.iter().copied();
+            places_m.zip(loads.iter().copied())
+        });
         Self {
             outline: parts.outline(),
-            linked: false,
+            linked,
             sections: parts.sections(),
             supports: [Pose::UNDEFORMED; 2],
             stands: (Vec::new(), Vec::new()),
-            ties: Vec::new(),
-            fill_m: Vec::new(),
-            loads: Vec::new(),
-            dimensions: Vec::new(),
+            ties: ties.to_vec(),
+            fill_m: carries.map_or_else(Vec::new, |(carried, _)| carried.fill_m.clone()),
+            loads: loads.collect(),
+            dimensions: structure.dimensions(),
         }
-    }
-
-    /// A row of blocks.
-    #[must_use]
-    pub fn of_row(row: &Row) -> Self {
-        Self {
-            ties: row.ties.to_vec(),
-            ..Self::bare(row)
-        }
-    }
-
-    /// This scene with its left and right support moved.
-    #[must_use]
-    pub const fn on_supports(mut self, poses: [Pose; 2]) -> Self {
-        self.supports = poses;
-        self
-    }
-
-    /// This scene with poses and open hinges for a picture at rest, on supports that have moved.
-    #[must_use]
-    pub fn standing(mut self, poses: Vec<Pose>, hinges: Vec<OpenHinge>) -> Self {
-        self.stands = (poses, hinges);
-        self
     }
 
     /// Whether a support has moved.
@@ -397,14 +357,12 @@ impl Scene {
         let Outline::Row { outlines_m } = &self.outline else {
             return None;
         };
-        let Section {
-            middle_m, across_m, ..
-        } = self.sections.get(joint)?;
+        let section = self.sections.get(joint)?;
         // The support follows the last block of an arch. If it has moved, the block on it gives its pose.
         let last = self.has_settled().then(|| outlines_m.len() - 1);
         Some([-0.5, 0.5].map(|part| Mark {
             body: (joint < outlines_m.len()).then_some(joint).or(last),
-            at_m: middle_m + across_m * part,
+            at_m: section.middle_m + section.across_m * part,
         }))
     }
 
@@ -443,17 +401,16 @@ impl Scene {
         let Outline::Row { outlines_m } = &self.outline else {
             return None;
         };
-        let Section {
-            middle_m, across_m, ..
-        } = self.sections.get(joint)?;
-        let across = Vector2::new(across_m.y, -across_m.x).normalize();
+        let section = self.sections.get(joint)?;
+        let across = Vector2::new(section.across_m.y, -section.across_m.x).normalize();
         // The vector must point away from the block before the joint, or into the block after it.
         let (block, into) = match joint.checked_sub(1) {
             Some(before) => (before, -1.0),
             None => (joint, 1.0),
         };
-        let corners = outlines_m.get(block)?.iter();
-        let towards: f64 = corners.map(|corner| across.dot(&(corner - middle_m))).sum();
+        let from_joint_m = outlines_m.get(block)?.iter();
+        let from_joint_m = from_joint_m.map(|corner| corner - section.middle_m);
+        let towards: f64 = from_joint_m.map(|away_m| across.dot(&away_m)).sum();
         Some(across * (into * towards.signum()))
     }
 

@@ -154,15 +154,14 @@ impl Suite {
 impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let records = written(&[(RECORDS, &self.records)]);
-        let Spectral {
-            period_s,
-            damping_percent,
-        } = self.spectral;
         let own = [
             (self.measure.name(), json!(self.levels)),
             ("both_signs", json!(self.both_signs)),
-            (SPECTRAL_PERIOD_S, json!(period_s)),
-            (SPECTRAL_DAMPING_PERCENT, json!(damping_percent)),
+            (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
+            (
+                SPECTRAL_DAMPING_PERCENT,
+                json!(self.spectral.damping_percent),
+            ),
         ];
         let own = own.map(|(key, value)| (key.to_owned(), value));
         serializer.collect_map(records.into_iter().chain(own))

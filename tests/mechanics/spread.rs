@@ -11,7 +11,7 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::settling::{Follower, Movement, Movements, Reached, SettlingError};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie};
-use archrock::studies::spread::{Springing, Way, spread};
+use archrock::studies::spread::{Way, spread};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
@@ -741,7 +741,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
 
     let angles_deg = [90.0, 0.0];
     let ways = angles_deg.map(|angle_deg| Way {
-        springing: Springing::Right,
+        springing: Sway::Right,
         angle_deg,
     });
     let found = spread(&scenario, &ways).unwrap();
@@ -1289,7 +1289,7 @@ fn pins_may_change_sides() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.18\nembrace_deg = 100.0\nvoussoirs = 20\n";
     let scenario = parsed(text);
     let down = Way {
-        springing: Springing::Right,
+        springing: Sway::Right,
         angle_deg: 90.0,
     };
     let found = spread(&scenario, &[down]).unwrap();

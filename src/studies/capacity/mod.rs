@@ -60,10 +60,8 @@ pub fn capacity(
             displaced.expect("a structure has its first mechanism")
         };
         let gravity_m_s2 = scenario.gravity_m_s2();
-        let (masses, control) = (
-            bodies.masses(structure),
-            Control::point(bodies.carry(control)),
-        );
+        let control = Control::point(bodies.carry(control));
+        let masses = bodies.masses(structure);
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2).map_err(NoCapacity::from)
     };
     Sides::try_of(side)
@@ -72,14 +70,10 @@ pub fn capacity(
 /// The blocks of a structure whose first mechanism is followed as a row: one with ties, or a stack on one support that is not
 /// Housner's block. `None` for structures that move as four links or as that block.
 fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
-    if !structure.ties().is_empty() {
-        return structure.row().map(Some);
-    }
     let is_one_prism = matches!(structure, Structure::Column(column) if column.is_one_prism());
-    if structure.stands_on_one_support() && !is_one_prism {
-        return structure.row().map(Some);
-    }
-    Ok(None)
+    let is_stack = structure.stands_on_one_support() && !is_one_prism;
+    let is_held = is_stack || !structure.ties().is_empty();
+    is_held.then(|| structure.row()).transpose()
 }
 
 /// Capacity of a row, whose ties change the push that its first mechanism resists along its way.

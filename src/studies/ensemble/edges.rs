@@ -128,7 +128,7 @@ impl Question for FirstEdges {
 
     fn settings(&self) -> Vec<String> {
         let factors = self.factors;
-        let (from, to, stride) = (factors.first(), factors.last(), factors.stride());
+        let (from, to, stride) = (factors.from, factors.to, factors.stride);
         vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
     }
 }

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::influence::{self, Influence, percent};
 use super::{NoAnswer, Samples};
-use crate::output::table::{Cell, Column, column, csv, list};
+use crate::output::table::{Cell, Column, column, csv, each, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Uncertain;
 use crate::studies::remarks::warnings;
@@ -126,11 +126,12 @@ pub(super) struct Band {
 
 impl From<Option<[f64; 3]>> for Band {
     fn from(band: Option<[f64; 3]>) -> Self {
-        let finite = |which: usize| Some(band?[which]).filter(|value| value.is_finite());
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        let [quantile_05, median, quantile_95] = each(band).map(finite);
         Self {
-            quantile_05: finite(0),
-            median: finite(1),
-            quantile_95: finite(2),
+            quantile_05,
+            median,
+            quantile_95,
         }
     }
 }

@@ -209,8 +209,6 @@ struct Zone {
     ends: [f64; 2],
     /// Sum of their rotation rates.
     rate: f64,
-    /// The last of these joints.
-    joint: usize,
 }
 
 impl Stance {
@@ -358,25 +356,16 @@ impl Certificate {
         if sway == Sway::Left {
             opened_joints.reverse();
         }
+        let is_ring = impact.chain().sites == HingeSites::Anywhere;
         let mut zones: Vec<Zone> = Vec::new();
-        for (joint, edge, rate) in projection.opened() {
-            let section = from_left(joint);
-            let is_ring = impact.chain().sites == HingeSites::Anywhere;
-            let continues =
-                |zone: &&mut Zone| is_ring && (zone.edge, zone.joint + 1) == (edge, joint);
-            match zones.iter_mut().find(continues) {
-                Some(zone) => {
-                    let [from, to] = zone.ends;
-                    zone.ends = [from.min(section), to.max(section)];
-                    zone.rate += rate;
-                    zone.joint = joint;
-                }
-                None => zones.push(Zone {
-                    edge,
-                    ends: [section; 2],
-                    rate,
-                    joint,
-                }),
+        for edge in [Edge::Intrados, Edge::Extrados] {
+            let opened = projection.opened().filter(|(_, own, _)| *own == edge);
+            let opened: Vec<_> = opened.collect();
+            for zone in opened.chunk_by(|a, b| is_ring && a.0 + 1 == b.0) {
+                let mut ends = [zone[0].0, zone[zone.len() - 1].0].map(from_left);
+                ends.sort_by(f64::total_cmp);
+                let rate = zone.iter().map(|(.., rate)| rate).sum();
+                zones.push(Zone { edge, ends, rate });
             }
         }
         zones.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));

@@ -2,14 +2,14 @@
 
 mod report;
 
-use thiserror::Error;
+use std::error::Error;
 
 use self::report::open_joints;
 pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, Summary, TieLimits,
     Ties, YieldingJoint, YieldingTies,
 };
-use super::results::Answer;
+use super::results::{Answer, StudyError};
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
@@ -20,45 +20,29 @@ use crate::mechanics::stability::{
     RowOnset, StabilityError, limit_with_yielding_ties, onset, onset_at,
 };
 use crate::mechanics::sway::Sway;
-use crate::scenario::{ModelError, Scenario};
-
-/// Why there is no limit analysis.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoLimit {
-    /// The structure is not a row of blocks.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The structure does not start as a mechanism of one degree of freedom.
-    #[error(transparent)]
-    FourLinks(#[from] FourLinkError),
-    /// The structure is not a row of blocks whose joints can slip.
-    #[error(transparent)]
-    FreeHinges(#[from] RowModelError),
-    /// The structure does not stand.
-    #[error(transparent)]
-    Stability(#[from] StabilityError),
-    /// The structure does not follow its supports.
-    #[error(transparent)]
-    Settling(#[from] SettlingError),
-    /// The structure slides apart, or the analysis failed.
-    #[error(transparent)]
-    Friction(#[from] FrictionError),
-    /// A result is not a number.
-    #[error("{0}")]
-    Output(String),
-}
+use crate::scenario::Scenario;
 
 /// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction. For
 /// moved springings: the hinges on which the structure stands, and also the push at which it falls.
 ///
 /// # Errors
-/// When the structure does not stand, or the analysis does not apply to it.
-pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
+/// When the structure does not stand, or the analysis does not apply to it or fails.
+pub fn limit(scenario: &Scenario) -> Result<Answer, StudyError> {
+    let summary = summary(scenario).map_err(|error| match error.downcast_ref() {
+        Some(FrictionError::NotSolved(_)) => StudyError::failed(error),
+        _ => StudyError::scenario(error),
+    });
+    Ok(Answer::of(&summary?)?)
+}
+
+/// Summaries for errors of any kind.
+type Found = Result<Summary, Box<dyn Error>>;
+
+fn summary(scenario: &Scenario) -> Found {
     let row = || scenario.structure.row().map_err(RowModelError::from);
     let coefficient = scenario.motion.friction_coefficient();
     if let Some(movements) = scenario.motion.supports() {
-        let summary = of_moved_row(scenario, &row()?, &movements, coefficient)?;
-        return Ok(Answer::of(&summary)?);
+        return of_moved_row(scenario, &row()?, &movements, coefficient);
     }
     let mut summary = match scenario.row()? {
         Some(row) => of_row(scenario, &row)?,
@@ -67,11 +51,11 @@ pub fn limit(scenario: &Scenario) -> Result<Answer, NoLimit> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient)?);
     }
-    Ok(Answer::of(&summary)?)
+    Ok(summary)
 }
 
 /// Limit analysis of an undeformed row by the static programme.
-fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, NoLimit> {
+fn of_row(scenario: &Scenario, row: &Row) -> Found {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = Sides::try_of(|sway| onset(row, sway))?;
     let mut summary = Summary::new(
@@ -168,7 +152,7 @@ fn of_moved_row(
     row: &Row,
     movements: &Movements,
     coefficient: Option<f64>,
-) -> Result<Summary, NoLimit> {
+) -> Found {
     let mut follower = Follower::new(row)?;
     // The reader of the scenario has checked that the row follows these movements.
     follower.move_supports(|part| *movements * part, 0.0, 1.0)?;

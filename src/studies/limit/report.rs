@@ -3,7 +3,6 @@
 use askama::Template;
 use serde::Serialize;
 
-use super::NoLimit;
 use crate::argument::fixed;
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
@@ -14,14 +13,13 @@ use crate::mechanics::settling::Pin;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::summary::Named;
 use crate::output::template::filters;
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]
-#[template(path = "studies/limit/words.txt")]
+#[template(path = "studies/limit/words/words.txt")]
 pub struct Summary {
     /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion if its springings have
     /// moved. Null if no push starts it.
@@ -313,11 +311,5 @@ impl YieldingJoint {
         let slips = slips.map(|edge| format!("slips, its right side towards the {}", edge.name()));
         let does: Vec<String> = opens.into_iter().chain(slips).collect();
         does.join(" and ")
-    }
-}
-
-impl From<OutputError> for NoLimit {
-    fn from(error: OutputError) -> Self {
-        Self::Output(error.to_string())
     }
 }

@@ -339,16 +339,14 @@ pub fn overlay(runs: &[RunResults<'_>]) -> String {
 /// The drawable parts of a structure, as a model moves them.
 #[must_use]
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
-    match model.row() {
-        Some(row) => {
-            let scene = Scene::of_row(row).of_structure(&scenario.structure);
-            match scenario.motion.supports() {
-                Some(movements) => scene.on_supports(movements.poses(row)),
-                None => scene,
-            }
-        }
-        None => Scene::new(&scenario.structure),
+    let Some(row) = model.row() else {
+        return Scene::new(&scenario.structure);
+    };
+    let mut scene = Scene::of_row(row, &scenario.structure);
+    if let Some(movements) = scenario.motion.supports() {
+        scene.supports = movements.poses(row);
     }
+    scene
 }
 
 /// The folder of a film, in that of the results.

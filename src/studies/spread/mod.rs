@@ -35,21 +35,11 @@ const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows be
 /// Length of the longest way, in clear spans.
 const LONGEST: f64 = 1.0;
 
-named! {
-    /// One of the two springings.
-    pub enum Springing {
-        /// The left one.
-        Left = "left",
-        /// The right one.
-        Right = "right",
-    }
-}
-
 /// Direction in which a springing moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Way {
     /// The springing that moves; the other stands still.
-    pub springing: Springing,
+    pub springing: Sway,
     /// From outwards (0) over down (90) to inwards (180); up is -90.
     pub angle_deg: f64,
 }
@@ -83,8 +73,8 @@ impl Way {
             rotation_rad: 0.0,
         };
         let (left, right) = match self.springing {
-            Springing::Left => (movement, Movement::default()),
-            Springing::Right => (Movement::default(), movement),
+            Sway::Left => (movement, Movement::default()),
+            Sway::Right => (Movement::default(), movement),
         };
         Movements { left, right }
     }

@@ -4,7 +4,7 @@ use super::picture::draw;
 use super::{Path, Stage, Summary};
 use crate::mechanics::sides::Sides;
 use crate::output::scene::Scene;
-use crate::output::table::{Cell, column, csv, several};
+use crate::output::table::{Cell, column, csv, list, several};
 use crate::output::template::render;
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
@@ -22,7 +22,7 @@ pub fn report(
     spread: &Summary,
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let scene = Scene::of_row(&spread.row).of_structure(&scenario.structure);
+    let scene = Scene::of_row(&spread.row, &scenario.structure);
     let title = scenario.title.as_deref().unwrap_or("Springings that move");
     let picture = draw(figure, title, spread, &scene);
     let others = [picture.into_bytes(), table(spread)?];
@@ -46,9 +46,7 @@ fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
     });
     let sides = |name: &str, pushes: fn(&Stage) -> &Sides<Option<f64>>| {
         let names = ["right", "left"].map(|side| format!("{name}_{side}_g"));
-        several(names, move |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
-            cells.extend(<[_; 2]>::from(*pushes(row.1)).map(Cell::from));
-        })
+        list(names, move |row: &Row<'_>| <[_; 2]>::from(*pushes(row.1)))
     };
     let columns = [
         column("springing", |row: &Row<'_>| row.0.way.springing.name()),

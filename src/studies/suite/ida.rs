@@ -8,7 +8,7 @@ use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
-use crate::studies::statistics::{self, ascending, shares_up_to};
+use crate::studies::statistics::{ascending, fractile, shares_up_to};
 
 /// Number of records whose curves have strokes and names of their own.
 const NAMED: usize = CURVES.len();
@@ -55,9 +55,10 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
         .keys
         .extend(results.has_uncertain().then_some(uncertain));
     let levels = fractiles(results);
-    let fractiles = FRACTILES.into_iter().map(|(name, stroke, fractile)| {
+    let fractiles = FRACTILES.into_iter().enumerate();
+    let fractiles = fractiles.map(|(which, (_, name, stroke))| {
         let known = levels.iter();
-        let points = known.filter_map(|level| Some((fractile(level)?, level.intensity)));
+        let points = known.filter_map(|level| Some((level.peaks[which]?, level.intensity)));
         Mark::curve(name, stroke, points)
     });
     let mut chart = chart.with_named(fractiles.collect());
@@ -105,20 +106,11 @@ fn of_record(
 }
 
 const MANY: Stroke = Stroke::new(color::GREY, 0.9, "");
-/// A fractile of the peaks at a level.
-type FractileOf = fn(&Fractiles) -> Option<f64>;
-
 /// Fractiles of the peaks at each level, over all records.
-const FRACTILES: [(&str, Stroke, FractileOf); 3] = [
-    ("16 %", Stroke::new(color::BLACK, 1.8, "2 3"), |at| {
-        at.peak_16
-    }),
-    ("median", Stroke::new(color::BLACK, 2.6, ""), |at| {
-        at.peak_50
-    }),
-    ("84 %", Stroke::new(color::BLACK, 1.8, "8 4"), |at| {
-        at.peak_84
-    }),
+const FRACTILES: [(f64, &str, Stroke); 3] = [
+    (0.16, "16 %", Stroke::new(color::BLACK, 1.8, "2 3")),
+    (0.5, "median", Stroke::new(color::BLACK, 2.6, "")),
+    (0.84, "84 %", Stroke::new(color::BLACK, 1.8, "8 4")),
 ];
 
 /// The peaks at a level, over all records that count.
@@ -130,12 +122,9 @@ pub struct Fractiles {
     pub cases: usize,
     /// Number of those that overturned.
     pub overturned: usize,
-    /// The 16 % fractile of the peaks, over critical if that is known, otherwise in rad; `None` if it is among overturned cases.
-    pub peak_16: Option<f64>,
-    /// The median.
-    pub peak_50: Option<f64>,
-    /// The 84 % fractile.
-    pub peak_84: Option<f64>,
+    /// The 16 % fractile, the median and the 84 % fractile of the peaks, over critical if that is known, otherwise in rad; `None` if it is
+    /// among overturned cases.
+    pub peaks: [Option<f64>; 3],
 }
 
 /// The peak of a case, if its history is complete.
@@ -152,15 +141,12 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
     levels
         .map(|(intensity, cases)| {
             let peaks = ascending(cases.into_iter().filter_map(beyond));
-            let fractile =
-                |part| statistics::fractile(&peaks, part).filter(|peak| peak.is_finite());
+            let finite = |peak: &f64| peak.is_finite();
             Fractiles {
                 intensity,
                 cases: peaks.len(),
                 overturned: peaks.iter().filter(|peak| peak.is_infinite()).count(),
-                peak_16: fractile(0.16),
-                peak_50: fractile(0.5),
-                peak_84: fractile(0.84),
+                peaks: FRACTILES.map(|(part, ..)| fractile(&peaks, part).filter(finite)),
             }
         })
         .collect()

@@ -141,8 +141,9 @@ impl Heading {
         });
         let caption = captions.collect::<Vec<_>>().join("; ");
         let mut fractiles = vec![column(self.measure.column(), |at: &Fractiles| at.intensity)];
-        fractiles
-            .extend(fields!(|at: &Fractiles| at => cases, overturned, peak_16, peak_50, peak_84));
+        fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
+        let names = ["peak_16", "peak_50", "peak_84"];
+        fractiles.push(list(names, |at: &Fractiles| at.peaks));
         let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
         let others = [
             picture::draw(figure, self, &results, &caption).into_bytes(),

@@ -10,14 +10,15 @@ pub const EDGE_WIDTH: f64 = 1e-4;
 
 /// The factors to sample, from the first to the last. Each is larger than the one before by a stride, or by
 /// less if that reaches the last.
+#[readonly::make]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factors {
     /// The first factor.
-    from: f64,
+    pub from: f64,
     /// The last factor.
-    to: f64,
+    pub to: f64,
     /// The relative step from one factor to the next.
-    stride: f64,
+    pub stride: f64,
 }
 
 impl Default for Factors {
@@ -43,24 +44,6 @@ impl Factors {
             to: above("to", to, from, 1e6)?,
             stride: within("stride", stride, 1e-4..=1.0)?,
         })
-    }
-
-    /// The first factor.
-    #[must_use]
-    pub const fn first(&self) -> f64 {
-        self.from
-    }
-
-    /// The last factor.
-    #[must_use]
-    pub const fn last(&self) -> f64 {
-        self.to
-    }
-
-    /// The relative step from one factor to the next.
-    #[must_use]
-    pub const fn stride(&self) -> f64 {
-        self.stride
     }
 
     /// All factors, ascending.

@@ -10,7 +10,7 @@ use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, Verdict};
 
 /// The least strength of a ground motion that overturns a structure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FirstEdge {
     /// The least factor that certainly overturns; `None` if none does.
     pub factor: Option<f64>,
@@ -47,12 +47,7 @@ impl FirstEdge {
         width: f64,
         verdict: impl Fn(f64) -> Result<Verdict, String>,
     ) -> Result<Self, NoAnswer> {
-        let mut edge = Self {
-            factor: None,
-            at_most: false,
-            tried_to: 0.0,
-            uncertain_from: None,
-        };
+        let mut edge = Self::default();
         for strength in strengths.iter().copied() {
             let found = match verdict(strength) {
                 Ok(Verdict::Incomplete) => return Err(NoAnswer::Incomplete),

@@ -152,7 +152,9 @@ pub struct Threshold {
 }
 
 impl Threshold {
-    fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
+    /// The ranges of a verdict, ascending.
+    #[must_use]
+    pub fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
         let ranges = self.ranges.iter();
         ranges
             .filter_map(|(verdict, range)| (*verdict == wanted).then_some(*range))
@@ -176,18 +178,6 @@ impl Threshold {
         let mut gaps = self.of(Verdict::Survives);
         gaps.retain(between);
         gaps
-    }
-
-    /// The ranges for which overturning is uncertain, ascending.
-    #[must_use]
-    pub fn uncertain(&self) -> Vec<FactorRange> {
-        self.of(Verdict::Uncertain)
-    }
-
-    /// The ranges whose histories end too early for a verdict, ascending.
-    #[must_use]
-    pub fn incomplete(&self) -> Vec<FactorRange> {
-        self.of(Verdict::Incomplete)
     }
 
     /// The least factor that certainly overturns; `None` if none does.

@@ -57,7 +57,7 @@ pub fn draw(
         let named = names.iter().zip(curves());
         keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
-    let (first, last) = (factors.first(), factors.last());
+    let (first, last) = (factors.from, factors.to);
     let x = match last < 2.0 * first {
         true => Scale::exactly(first, last, figure.ticks(8)),
         false => Scale::logarithmic(first, last),

@@ -232,8 +232,8 @@ impl Threshold {
             lowest_factor: self.lowest_factor(),
             bands: ranges(self.bands()),
             gaps: ranges(self.gaps()),
-            uncertain: ranges(self.uncertain()),
-            incomplete: ranges(self.incomplete()),
+            uncertain: ranges(self.of(Verdict::Uncertain)),
+            incomplete: ranges(self.of(Verdict::Incomplete)),
             remarks: self.remarks(),
             variations: varied.collect(),
             samples: self.samples.iter().map(SampleSummary::of).collect(),
@@ -316,9 +316,9 @@ impl Factors {
     pub fn in_words(&self) -> String {
         format!(
             "sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
-            self.first(),
-            self.last(),
-            (1e6 * self.stride()).round() / 1e4,
+            self.from,
+            self.to,
+            (1e6 * self.stride).round() / 1e4,
         )
     }
 }
@@ -347,7 +347,8 @@ impl Threshold {
     fn ranges_in_words(&self, peak_g: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         if self.bands().is_empty() {
-            let is_certain = self.uncertain().is_empty() && self.incomplete().is_empty();
+            let mut ranges = self.ranges.iter();
+            let is_certain = ranges.all(|(verdict, _)| *verdict == Verdict::Survives);
             let certainly = if is_certain { "" } else { "certainly " };
             let last = self.samples.iter().rfind(|sample| sample.result.is_ok());
             let last = at(last.map_or(0.0, |sample| sample.factor), peak_g);

@@ -29,9 +29,7 @@ pub(super) fn mechanism(
     mechanism: &Mechanism,
 ) -> String {
     let scene = match structure.row() {
-        Ok(row) if !mechanism.body_of_block.is_empty() => {
-            Scene::of_row(&row).of_structure(structure)
-        }
+        Ok(row) if !mechanism.body_of_block.is_empty() => Scene::of_row(&row, structure),
         _ => Scene::new(structure),
     };
     let [low, high] = scene.frame_m();

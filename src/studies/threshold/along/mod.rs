@@ -192,11 +192,7 @@ impl Study for Along<'_> {
         let value = self.values[index];
         let (scenario, factors) = (self.variant(value), &self.options.factors);
         let scenario = scenario.as_ref().map_err(String::clone);
-        let no_impact = || {
-            scenario
-                .clone()
-                .and_then(|one| least_without_impact(one, factors))
-        };
+        let no_impact = || least_without_impact(scenario.clone()?, factors);
         AlongRow {
             value,
             peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),

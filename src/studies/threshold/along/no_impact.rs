@@ -36,8 +36,8 @@ pub(super) fn least_without_impact(
     let one_sided =
         matches!(scenario.ground.as_ref(), Some(Ground::Pulse(pulse)) if pulse.kind.is_one_sided());
     let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
-    let last = factors.last();
-    let ascending = std::iter::successors(Some(factors.first()), |factor| {
+    let last = factors.to;
+    let ascending = std::iter::successors(Some(factors.from), |factor| {
         (*factor < last).then(|| (factor * stride).min(last))
     });
     let mut below = None;
