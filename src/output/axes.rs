@@ -166,10 +166,8 @@ impl Axes {
     #[must_use]
     pub fn place(&self, x: f64, y: f64) -> Vector2<f64> {
         let [left, top, width, height] = self.frame.parts();
-        Vector2::new(
-            left + width * self.x.part(x),
-            top + height * (1.0 - self.y.part(y)),
-        )
+        let x = left + width * self.x.part(x);
+        Vector2::new(x, top + height * (1.0 - self.y.part(y)))
     }
 
     /// Draws frame, ticks and the label of the y axis, above a panel or along the axis.

@@ -79,12 +79,10 @@ impl Envelope {
     /// The points to draw, in order of time.
     pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
-        let extremes = self.thinned.columns.iter().flat_map(|[low, high]| {
-            if low.0 <= high.0 {
-                [*low, *high]
-            } else {
-                [*high, *low]
-            }
+        let extremes = self.thinned.columns.iter().flat_map(|extremes| {
+            let mut in_order = *extremes;
+            in_order.sort_by(|a, b| a.0.total_cmp(&b.0));
+            in_order
         });
         for point in extremes.chain(self.last) {
             if points.last().is_none_or(|last| last.0 < point.0) {

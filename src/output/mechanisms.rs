@@ -24,9 +24,6 @@ pub fn by_body(bodies: &[String], values: &[f64]) -> String {
 
 /// Degrees, with rounding errors at the left springing removed.
 pub(crate) fn degrees(angle_rad: f64) -> f64 {
-    if angle_rad < 1e-12 {
-        0.0
-    } else {
-        angle_rad.to_degrees()
-    }
+    let angle_rad = if angle_rad < 1e-12 { 0.0 } else { angle_rad };
+    angle_rad.to_degrees()
 }

@@ -46,11 +46,8 @@ impl FromStr for PictureFormat {
         let mut all = Self::ALL.iter().copied();
         let found = all.find(|format| text.eq_ignore_ascii_case(format.name()));
         let format = found.ok_or_else(|| PrintError::Unknown(text.to_owned()))?;
-        if cfg!(feature = "print") || format == Self::Svg {
-            Ok(format)
-        } else {
-            Err(PrintError::NotBuilt)
-        }
+        let is_built = cfg!(feature = "print") || format == Self::Svg;
+        is_built.then_some(format).ok_or(PrintError::NotBuilt)
     }
 }
 

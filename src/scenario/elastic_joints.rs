@@ -177,10 +177,8 @@ impl ElasticTable {
         joints: &ElasticStructure,
         end_s: f64,
     ) -> Reading<()> {
-        let (stable_s, step_s) = (
-            joints.stable_step_s(),
-            ElasticJoints::default_step_s(joints),
-        );
+        let step_s = ElasticJoints::default_step_s(joints);
+        let stable_s = joints.stable_step_s();
         match self.longest_step_s {
             Some(step_s) if step_s > stable_s => {
                 let most = short(0.5 * stable_s);
@@ -194,12 +192,8 @@ impl ElasticTable {
                 let wrong = format!(
                     "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
                 );
-                let ratio = table.gives_in(TABLE[0], "damping_ratio");
-                let key = if ratio {
-                    "damping_ratio"
-                } else {
-                    "damping_time_s"
-                };
+                let by_ratio = table.gives_in(TABLE[0], "damping_ratio");
+                let key = ["damping_time_s", "damping_ratio"][usize::from(by_ratio)];
                 Err(table.wrong_in(TABLE, key, wrong))
             }
             _ => Ok(()),

@@ -176,10 +176,8 @@ fn any<T: 'static>(allowed: &str, kind: &str, read: fn(&Value) -> Option<T>) -> 
 pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<'_, T> {
     let names: Vec<_> = all.iter().map(|one| name(*one)).collect();
     let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
-    let (allowed, schema) = (
-        format!("one of {}", quoted.join(", ")),
-        json!({ "enum": names }),
-    );
+    let allowed = format!("one of {}", quoted.join(", "));
+    let schema = json!({ "enum": names });
     let read = move |value: &Value| {
         let text = value.as_str().ok_or_else(|| is(value))?;
         let index = names.iter().position(|name| *name == text);

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 
 use super::assignment::Assignment;
 use super::document::{Document, Entries, Span, kind};
-use super::error::{Fault, excerpt};
+use super::error::{Fault, ensure, excerpt};
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
 
@@ -359,18 +359,12 @@ impl<'a> Table<'a> {
 
     /// Records that the given value of `key` is wrong, if it is.
     pub(super) fn refuse<M: Display>(&mut self, when: bool, key: &str, message: M) -> Reading<()> {
-        if when {
-            return Err(self.wrong(key, message));
-        }
-        Ok(())
+        ensure(!when, || self.wrong(key, message))
     }
 
     /// Records that the whole table is wrong, if it is.
     pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> Reading<()> {
-        if when {
-            return Err(self.wrong_itself(message));
-        }
-        Ok(())
+        ensure(!when, || self.wrong_itself(message))
     }
 
     /// The result of work with the given value of `key`; an error continues the key and its value.

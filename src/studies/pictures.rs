@@ -164,10 +164,8 @@ impl Spot<'_> {
             let e = line.section(section).eccentricity_ratio;
             let e = if e.is_finite() { e } else { 0.0 };
             let out = profile.thickness(section) * e.clamp(-FARTHEST, FARTHEST);
-            self.px(
-                profile.middle(section) + profile.outward(section) * out,
-                sway,
-            )
+            let at = profile.middle(section) + profile.outward(section) * out;
+            self.px(at, sway)
         });
         drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
     }

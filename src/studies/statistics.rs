@@ -33,21 +33,14 @@ impl Share {
         let middle = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
         let half = TWO_SIDED_95 / (1.0 + z2 / n)
             * (share * (1.0 - share) / n + 0.25 * z2 / (n * n)).sqrt();
+        let [low, high] = [middle - half, middle + half].map(|end| end.clamp(0.0, 1.0));
         Some(Self {
             count,
             of,
             share,
             // The ends are exact if all or none have it.
-            low: if count == 0 {
-                0.0
-            } else {
-                (middle - half).max(0.0)
-            },
-            high: if count == of {
-                1.0
-            } else {
-                (middle + half).min(1.0)
-            },
+            low: if count == 0 { 0.0 } else { low },
+            high: if count == of { 1.0 } else { high },
         })
     }
 

@@ -97,29 +97,21 @@ impl Ending {
 
     /// The time of the outcome, in seconds; `None` if it is unknown.
     #[must_use]
-    pub const fn known_time_s(&self) -> Option<f64> {
-        match self.safe_from_s {
-            None => Some(self.outcome_time_s),
-            Some(_) => None,
-        }
+    pub fn known_time_s(&self) -> Option<f64> {
+        self.safe_from_s.is_none().then_some(self.outcome_time_s)
     }
 
     /// Number of all its impacts; `None` if it is unknown.
     #[must_use]
-    pub const fn known_impacts(&self) -> Option<usize> {
-        match self.safe_from_s {
-            None => self.impacts,
-            Some(_) => None,
-        }
+    pub fn known_impacts(&self) -> Option<usize> {
+        self.impacts.filter(|_| self.safe_from_s.is_none())
     }
 
     /// Number of impacts at which all hinges close at once; `None` for free hinges, which close one by one.
     #[must_use]
-    pub const fn impacts_of_all_hinges(&self) -> Option<usize> {
-        match self.peak {
-            PeakRotation::OverCritical(_) => self.impacts,
-            PeakRotation::Rad(_) => None,
-        }
+    pub fn impacts_of_all_hinges(&self) -> Option<usize> {
+        let is_of_all = matches!(self.peak, PeakRotation::OverCritical(_));
+        self.impacts.filter(|_| is_of_all)
     }
 
     /// Whether the structure overturns, as far as this is known.
@@ -133,14 +125,11 @@ impl Ending {
 
     /// The ending of the mirror image.
     pub(super) fn mirrored(&self) -> Self {
-        let outcome = match self.outcome {
-            Outcome::Overturned(sway) => Outcome::Overturned(sway.opposite()),
-            other => other,
-        };
-        Self {
-            outcome,
-            ..self.clone()
+        let mut mirrored = self.clone();
+        if let Outcome::Overturned(sway) = &mut mirrored.outcome {
+            *sway = sway.opposite();
         }
+        mirrored
     }
 
     /// Simulates a structure, repeats the history in other ways if that may matter, and returns how it ended.
@@ -195,13 +184,9 @@ impl Ending {
             }),
             uncertain: uncertain.map(String::into_boxed_str),
         };
-        check_finite(&[
-            ending.outcome_time_s,
-            ending.energy_defect_ratio,
-            ending.peak_rotation_rad,
-        ])?;
-        check_finite(ending.peak.over_critical().as_slice())?;
-        check_finite(ending.peak.rad().as_slice())?;
+        let peak = ending.peak.over_critical().or(ending.peak.rad());
+        check_finite(&[ending.peak_rotation_rad, peak.unwrap_or(0.0)])?;
+        check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         Ok(ending)
     }
 }
@@ -223,11 +208,9 @@ pub(super) fn answered<C, A, E>(
 
 /// Refuses numbers that are not finite: they are a bug in the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
-    if values.iter().all(|value| value.is_finite()) {
-        Ok(())
-    } else {
-        Err("a result is not a finite number: please report the scenario".to_owned())
-    }
+    let wrong = "a result is not a finite number: please report the scenario";
+    let are_finite = values.iter().all(|value| value.is_finite());
+    are_finite.then_some(()).ok_or_else(|| wrong.to_owned())
 }
 
 /// Why a sample has no answer.

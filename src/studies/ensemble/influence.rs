@@ -107,11 +107,8 @@ fn spoken(key: &str, uncertain: &Uncertain) -> String {
     };
     let own = last(key);
     let keys = uncertain.keys.iter();
-    if keys.filter(|other| last(&other.key) == own).count() > 1 {
-        key.to_owned()
-    } else {
-        own
-    }
+    let is_shared = keys.filter(|other| last(&other.key) == own).count() > 1;
+    if is_shared { key.to_owned() } else { own }
 }
 
 /// A share in percent, with a decimal close to 0 and to 100 %.

@@ -58,11 +58,9 @@ fn summary(scenario: &Scenario) -> Found {
 fn of_row(scenario: &Scenario, row: &Row) -> Found {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = Sides::try_of(|sway| onset(row, sway))?;
-    let mut summary = Summary::new(
-        onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g)),
-        onsets.map(|onset| open_joints(row, onset.as_ref())),
-        gravity_m_s2,
-    );
+    let starts_g = onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
+    let mechanism = onsets.map(|onset| open_joints(row, onset.as_ref()));
+    let mut summary = Summary::new(starts_g, mechanism, gravity_m_s2);
     if !row.ties.is_empty() {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();

@@ -131,12 +131,8 @@ impl<'s> Sheet<'s> {
         // The stroke closes the seams between cells.
         let fills = palette.iter().map(|kind| {
             let cells = runs(edges, kinds).filter(|(own, _)| own == kind);
-            let boxes = cells.map(|(_, corners)| corners);
-            Mark::new(
-                kind.name,
-                Stroke::new(kind.fill, 0.4, ""),
-                Shape::Boxes(boxes.collect()),
-            )
+            let boxes = Shape::Boxes(cells.map(|(_, corners)| corners).collect());
+            Mark::new(kind.name, Stroke::new(kind.fill, 0.4, ""), boxes)
         });
         chart.below = fills.collect();
         chart.keys = keys;

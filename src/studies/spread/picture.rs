@@ -64,11 +64,8 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
         ] {
             let points = path.stages.iter();
             let points = points.filter_map(|stage| Some((stage.movement_m, stage.least(push)?)));
-            marks.push(Mark::curve(
-                format!("{}, {way}", push.name()),
-                stroke,
-                points,
-            ));
+            let name = format!("{}, {way}", push.name());
+            marks.push(Mark::curve(name, stroke, points));
         }
         keys.push(Key::line(way, solid));
     }

@@ -20,10 +20,6 @@ pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
 
 /// Decimals of four digits.
 fn decimals(value: f64) -> usize {
-    let before_point = if value > 0.0 {
-        value.log10().floor() + 1.0
-    } else {
-        1.0
-    };
-    (4.0 - before_point).max(0.0) as usize
+    let power = if value > 0.0 { value.log10() } else { 0.0 };
+    (4.0 - (power.floor() + 1.0)).max(0.0) as usize
 }

@@ -299,15 +299,10 @@ pub fn results(
     for (threshold, scenario) in found.iter_mut().zip(scenarios) {
         threshold.check_known()?;
         let variations = scenario.variations().map_err(StudyError::failed)?;
-        threshold.varied = vary(
-            threshold,
-            &variations,
-            factors,
-            ground,
-            &request,
-            runner,
-            &mut *watch,
-        )?;
+        if threshold.lowest_factor().is_some() {
+            let case = (ground, &request);
+            threshold.varied = vary(&variations, factors, case, runner, &mut *watch)?;
+        }
     }
     Ok(report::report(scenarios, factors, &found, figure)?)
 }

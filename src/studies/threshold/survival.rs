@@ -69,19 +69,23 @@ impl Survival {
     }
 }
 
+/// Begins the list of strengths without a verdict.
+const EARLY: &str = "no verdict, since the run ends too early,";
+
 /// The line, with strengths in this unit, which may be empty: `first overturns at 2.113; survives again at 2.401 to
 /// 2.604`.
 #[must_use]
 pub fn in_words(survival: &Survival, unit: &str) -> String {
     let at = |strength: f64| format!("{}{unit}", rounded(strength));
     let mut words = match survival.overturns_from {
-        None if survival.uncertain.is_empty() && survival.incomplete.is_empty() => {
-            format!("does not overturn up to {}", at(survival.tried_to))
+        None => {
+            let is_certain = survival.uncertain.is_empty() && survival.incomplete.is_empty();
+            let certainly = if is_certain { "" } else { "certainly " };
+            format!(
+                "does not {certainly}overturn up to {}",
+                at(survival.tried_to)
+            )
         }
-        None => format!(
-            "does not certainly overturn up to {}",
-            at(survival.tried_to)
-        ),
         Some(first) if survival.from_the_first => {
             format!("overturns at {} already, the smallest tried", at(first))
         }
@@ -91,10 +95,7 @@ pub fn in_words(survival: &Survival, unit: &str) -> String {
     for (what, ranges) in [
         ("survives again", &survival.again),
         ("uncertain", &survival.uncertain),
-        (
-            "no verdict, since the run ends too early,",
-            &survival.incomplete,
-        ),
+        (EARLY, &survival.incomplete),
     ] {
         let ranges: Vec<String> = ranges
             .iter()

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use super::{EDGE_WIDTH, Factors, Threshold};
+use super::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
@@ -41,30 +41,26 @@ impl VariedThreshold {
 /// Number of histories that are computed together: some models are faster that way.
 const TOGETHER: usize = 4;
 
-/// The thresholds of these variations; empty if the structure itself has none. No history is repeated, nor followed beyond the
+/// The thresholds of these variations on a ground motion. No history is repeated, nor followed beyond the
 /// time from which it cannot overturn.
 ///
 /// # Errors
 /// When `watch` breaks, or threads cannot be started.
 pub fn vary(
-    own: &Threshold,
     variations: &[Variation],
     factors: &Factors,
-    ground: &GroundMotion,
-    request: &Request,
+    case: (&GroundMotion, &Request),
     runner: &Runner,
     watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<VariedThreshold>, RunnerError> {
-    if own.lowest_factor().is_none() {
-        return Ok(Vec::new());
-    }
     let factors = factors.values();
     let search = |index: usize| {
         let Variation { name, model } = &variations[index];
         let incomplete = Cell::new(0);
         let factor = match model {
-            Ok(model) => lowest(&**model, ground, request, &factors, &incomplete)
-                .map_err(|error| error.to_string()),
+            Ok(model) => {
+                lowest(&**model, case, &factors, &incomplete).map_err(|error| error.to_string())
+            }
             Err(reason) => Err(reason.clone()),
         };
         VariedThreshold {
@@ -78,8 +74,7 @@ pub fn vary(
 
 fn lowest(
     model: &dyn Model,
-    ground: &GroundMotion,
-    request: &Request,
+    (ground, request): (&GroundMotion, &Request),
     factors: &[f64],
     incomplete: &Cell<usize>,
 ) -> Result<Option<f64>, SimulationError> {

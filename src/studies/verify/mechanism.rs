@@ -337,13 +337,8 @@ impl Found {
             }
             let held = Held::new(row, sway).map_err(|error| error.to_string())?;
             let crown = Bodies::of_row(&held).carry(row.crown());
-            Way::new(
-                sway,
-                |part| held.displaced(part),
-                &bodies,
-                crown,
-                gravity_m_s2,
-            )
+            let displaced = |part| held.displaced(part);
+            Way::new(sway, displaced, &bodies, crown, gravity_m_s2)
         };
         Self {
             hinges: hinges.collect(),

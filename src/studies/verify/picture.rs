@@ -164,10 +164,8 @@ pub(super) fn capacity(
     }
     below.push(Mark::curve("capacity", CURVES[0], curve));
     below.extend(above);
-    let (x, y) = (
-        ("spectral displacement (m)", x),
-        ("spectral acceleration (g)", y),
-    );
+    let x = ("spectral displacement (m)", x);
+    let y = ("spectral acceleration (g)", y);
     let chart = Chart {
         keys,
         marks: vec![Mark::clipped(below)],

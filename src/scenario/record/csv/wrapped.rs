@@ -38,10 +38,8 @@ fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)
     let mut rows = Rows::new(table, decimal).peekable();
     let names = rows.next_if(|row| row.has_no_number(decimal));
     let lengths = rows.map(|row| is_of_numbers(&row, decimal).then(|| row.count()));
-    Some((
-        names.map(|row| row.text.to_owned()),
-        lengths.collect::<Option<_>>()?,
-    ))
+    let names = names.map(|row| row.text.to_owned());
+    Some((names, lengths.collect::<Option<_>>()?))
 }
 
 /// Reads the samples of all rows. A first row without any number holds the names.

@@ -193,14 +193,12 @@ impl Study for Along<'_> {
         let (scenario, factors) = (self.variant(value), &self.options.factors);
         let scenario = scenario.as_ref().map_err(String::clone);
         let no_impact = || least_without_impact(scenario.clone()?, factors);
+        let edge = scenario.clone().map_err(NoAnswer::Invalid);
         AlongRow {
             value,
             peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
             no_impact: self.options.no_impact.then(no_impact),
-            edge: match scenario.clone() {
-                Ok(one) => FirstEdge::of(one, factors),
-                Err(reason) => Err(NoAnswer::Invalid(reason)),
-            },
+            edge: edge.and_then(|one| FirstEdge::of(one, factors)),
         }
     }
 }
