@@ -13,16 +13,14 @@ use archrock::dynamics::repeatability::Repetitions;
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::Point;
 use archrock::output::scene::Scene;
-use archrock::studies::run;
 use archrock::studies::run::report::Report;
-use archrock::{
-    Event, GroundMotion, Impact, Model, Outcome, Recorder, Sample, SimulationError, State,
-};
+use archrock::studies::run::{self, Ended};
+use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::error::{not_written, panicked, refused, too_large};
 use crate::scenario::{Ground, Scenario};
@@ -392,35 +390,14 @@ fn array<'py, T: Element>(
     Ok(array.into_any())
 }
 
-fn event(event: &Event) -> Value {
-    json!({
-        "time_s": event.time_s,
-        "kind": event.kind.name(),
-        "state": event.state.name(),
-        "mechanism": event.mechanism,
-        "rotations_rad": event.rotations_rad,
-        "rates_rad_s": event.rates_rad_s,
-        "energy_j": event.energy_j,
-        "hinges": event.hinges,
-        "impact": event.impact.as_ref().map(|impact| self::impact(event.time_s, impact)),
-    })
-}
-
-fn impact(time_s: f64, impact: &Impact) -> Value {
-    let impulses = impact.impulses_n_s.iter();
-    json!({
-        "time_s": time_s,
-        "sway_before": impact.sway_before.name(),
-        "sway_after": impact.sway_after().name(),
-        "restitution": impact.restitution,
-        "energy_before_j": impact.energy_before_j,
-        "energy_after_j": impact.energy_after_j,
-        "rates_before_rad_s": impact.rates_before_rad_s,
-        "rates_after_rad_s": impact.rates_after_rad_s,
-        "closed": impact.closed,
-        "opened": impact.opened,
-        "impulses_n_s": impulses.map(|one| [one.x, one.y]).collect::<Vec<_>>(),
-    })
+/// An event as JSON; its impact with its own time, and with the sway of the mechanism that opened.
+fn event(event: &Event) -> PyResult<Value> {
+    let mut json = serde_json::to_value(event).map_err(refused)?;
+    if let (Some(impact), Some(fields)) = (&event.impact, json["impact"].as_object_mut()) {
+        fields.insert("time_s".to_owned(), event.time_s.into());
+        fields.insert("sway_after".to_owned(), impact.sway_after().name().into());
+    }
+    Ok(json)
 }
 
 #[pymethods]
@@ -452,38 +429,20 @@ impl History {
         self.summary.largest_body()
     }
 
-    /// How it ended.
-    fn outcome(&self) -> &'static str {
-        self.summary.outcome.name()
-    }
-
-    /// The side to which it overturned.
-    fn overturning_sway(&self) -> Option<&'static str> {
-        match self.summary.outcome {
-            Outcome::Overturned(sway) => Some(sway.name()),
-            _ => None,
-        }
-    }
-
-    /// The time of the outcome.
-    fn outcome_time_s(&self) -> f64 {
-        self.summary.outcome_time_s
-    }
-
-    /// Number of impacts.
-    fn impact_count(&self) -> usize {
-        self.summary.impacts
-    }
-
     /// Number of samples.
     fn __len__(&self) -> usize {
         self.counts[0]
     }
 
+    /// The outcome, as in `summary.json`.
+    fn ended_json(&self) -> PyResult<String> {
+        serde_json::to_string(&Ended::of(&self.summary)).map_err(refused)
+    }
+
     /// The events as JSON.
-    fn events_json(&self) -> String {
-        let events: Vec<Value> = self.events.iter().map(event).collect();
-        json!(events).to_string()
+    fn events_json(&self) -> PyResult<String> {
+        let events = self.events.iter().map(event);
+        Ok(Value::Array(events.collect::<PyResult<_>>()?).to_string())
     }
 
     /// The scenario with the ground on which it was simulated.

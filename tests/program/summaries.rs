@@ -1,6 +1,6 @@
 //! The reference of summaries in docs/results.md follows from the types that are written as JSON, and from their doc comments.
 //!
-//! Every `Summary` of a study has a table there. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
+//! Every `Summary` of a study has a table there, and so have events, which Python gives. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -287,35 +287,35 @@ fn summaries_are_described_by_their_types() {
     written(&source(), &mut found);
     let mut text = String::new();
     let studies = source().join("studies");
-    for one in &found {
-        let Ok(place) = one.file.strip_prefix(&studies) else {
-            continue;
+    let studies_summary = |one: &&Written| one.name == "Summary" && one.file.starts_with(&studies);
+    let summaries = found.iter().filter(studies_summary);
+    // Python has the events of a history too.
+    let events = found.iter().filter(|one| one.name == "Event");
+    for one in summaries.chain(events) {
+        let study = one.file.strip_prefix(&studies).ok().and_then(Path::parent);
+        let title = study.map_or("event".to_owned(), |study| study.display().to_string());
+        let _ = write!(
+            text,
+            "\n### `{title}`\n\n{}\n\n| key | type | what it is |\n|---|---|---|\n",
+            one.doc
+        );
+        let mut reference = Reference {
+            written: &found,
+            rows: Vec::new(),
+            known: Vec::new(),
         };
-        if one.name == "Summary" {
-            let study = place.parent().unwrap().display();
-            let _ = write!(
+        reference.add(one, "");
+        for row in &reference.rows {
+            let meanings = row.meanings.iter().flatten();
+            let meanings: Vec<&str> = meanings.map(String::as_str).collect();
+            let meaning = meanings.join(" ");
+            let _ = writeln!(
                 text,
-                "\n### `{study}`\n\n{}\n\n| key | type | what it is |\n|---|---|---|\n",
-                one.doc
+                "| `{}` | {} | {} |",
+                row.key,
+                row.kind,
+                meaning.trim()
             );
-            let mut reference = Reference {
-                written: &found,
-                rows: Vec::new(),
-                known: Vec::new(),
-            };
-            reference.add(one, "");
-            for row in &reference.rows {
-                let meanings = row.meanings.iter().flatten();
-                let meanings: Vec<&str> = meanings.map(String::as_str).collect();
-                let meaning = meanings.join(" ");
-                let _ = writeln!(
-                    text,
-                    "| `{}` | {} | {} |",
-                    row.key,
-                    row.kind,
-                    meaning.trim()
-                );
-            }
         }
     }
     assert!(text.matches("###").count() >= 2, "{text}");

@@ -47,6 +47,7 @@ from ._studies import (
     threshold_along,
     verify,
 )
+from ._summary import Summary
 from ._warnings import ArchrockWarning
 
 __all__ = [
@@ -76,6 +77,7 @@ __all__ = [
     "Scenario",
     "Structure",
     "Suite",
+    "Summary",
     "Threshold",
     "ThresholdAlong",
     "capacity",

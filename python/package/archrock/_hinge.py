@@ -3,100 +3,86 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
+
+from ._summary import Part
 
 
-@dataclass(frozen=True)
-class Hinge:
+class Hinge(Part):
     """A place where one part of a structure turns relative to another, or to the ground.
 
-    Attributes:
-        angle_deg: section of an arch, in degrees from the left springing.
-        edge: ``"intrados"`` or ``"extrados"``; for a joint ``None`` if both edges open.
-        toe: for a column the side of the toe, ``"left"`` or ``"right"``.
-        joint: for a row of blocks the joint, from 0 at the left springing or the base.
+    It has those of these keys that apply to its structure; the others are ``None``:
+
+    - ``angle_deg``: section of an arch, in degrees from the left springing.
+    - ``edge``: ``"intrados"`` or ``"extrados"``; for a joint ``None`` if both edges open.
+    - ``toe``: for a column the side of the toe, ``"left"`` or ``"right"``.
+    - ``joint``: for a row of blocks the joint, from 0 at the left springing or the base.
     """
 
-    angle_deg: float | None = None
-    edge: str | None = None
-    toe: str | None = None
-    joint: int | None = None
+    __slots__ = ()
 
-    @classmethod
-    def _all(cls, hinges: list[dict[str, Any]]) -> tuple[Hinge, ...]:
-        known = cls.__dataclass_fields__
-        return tuple(
-            cls(**{key: value for key, value in hinge.items() if key in known}) for hinge in hinges
-        )
+    def __getattr__(self, name: str) -> Any:
+        if name in ("angle_deg", "edge", "toe", "joint"):
+            return self.get(name)
+        return super().__getattr__(name)
 
 
-@dataclass(frozen=True)
-class Mechanism:
-    """A mechanism of a structure.
+class Mechanism(Part):
+    """A mechanism of a structure: ``sway``, and ``hinges`` from left to right, as ``impacts.before`` of ``archrock impact``."""
 
-    Attributes:
-        sway: the side to which it sways, ``"right"`` or ``"left"``.
-        hinges: its hinges, from left to right.
-    """
-
-    sway: str
-    hinges: tuple[Hinge, ...]
-
-    @classmethod
-    def _of(cls, values: Mapping[str, Any]) -> Mechanism:
-        return cls(values["sway"], Hinge._all(values["hinges"]))
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge}
 
 
-@dataclass(frozen=True)
-class ChainLink:
+class ChainLink(Part):
     """An impact in the chain of mechanisms that follow each other from impact to impact.
 
-    Attributes:
-        index: number of the impact, from 1.
-        restitution: kinetic energy after the impact over that before.
-        before: the mechanism that closes.
-        after: the mechanism that opens.
+    Its keys are those of ``impacts`` of ``archrock impact``, such as ``index``, ``restitution``, ``before`` and ``after``.
     """
 
-    index: int
-    restitution: float
-    before: Mechanism
-    after: Mechanism
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"before": Mechanism, "after": Mechanism}
 
 
-@dataclass(frozen=True)
-class Onset:
+class Onset(Part):
     """The onset of motion of a structure to one side.
 
-    Attributes:
-        acceleration_g: horizontal ground acceleration at which motion starts, in units of gravity; ``None`` if no
-            acceleration starts it.
-        hinges: the hinges that open, from left to right.
+    - ``acceleration_g``: horizontal ground acceleration at which motion starts, in units of gravity; ``None`` if no acceleration starts
+      it.
+    - ``hinges``: the hinges that open, from left to right.
     """
 
-    acceleration_g: float | None
-    hinges: tuple[Hinge, ...]
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge}
 
 
-@dataclass(frozen=True)
-class Limit:
-    """Onset of rocking by limit analysis, as from ``archrock limit``.
+class _BySide(Part):
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"right": Hinge, "left": Hinge}
 
-    Attributes:
-        right: the onset to the right.
-        left: the onset to the left.
-        details: everything in the output of ``archrock limit --format json``.
-    """
 
-    right: Onset
-    left: Onset
-    details: dict[str, Any] = field(repr=False, compare=False)
+class Limit(Part):
+    """Onset of rocking by limit analysis: its keys are those of ``archrock limit --format json``."""
 
-    @classmethod
-    def _of(cls, values: dict[str, Any]) -> Limit:
-        def onset(side: str) -> Onset:
-            hinges = values["mechanism"][side] or []
-            return Onset(values["incipient_acceleration_g"][side], Hinge._all(hinges))
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"mechanism": _BySide}
 
-        return cls(onset("right"), onset("left"), values)
+    def _onset(self, side: str) -> Onset:
+        return Onset(
+            acceleration_g=self.incipient_acceleration_g[side], hinges=self.mechanism[side] or ()
+        )
+
+    @property
+    def right(self) -> Onset:
+        """The onset to the right."""
+        return self._onset("right")
+
+    @property
+    def left(self) -> Onset:
+        """The onset to the left."""
+        return self._onset("left")
+
+    @property
+    def details(self) -> dict[str, Any]:
+        """Everything in the output of ``archrock limit --format json``."""
+        return self.to_dict()

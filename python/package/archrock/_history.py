@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import html
 import json
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
 import numpy as np
 
 from . import _native
 from ._hinge import Hinge
+from ._summary import Part, Summarised, Summary
 from ._warnings import warn
 
 if TYPE_CHECKING:
@@ -26,89 +27,22 @@ if TYPE_CHECKING:
     Whole = npt.NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Impact:
-    """An impact.
+class Impact(Part):
+    """An impact. Its keys are those of ``impact`` in the table of events of ``docs/results.md``, ``time_s`` and ``sway_after``.
 
-    Attributes:
-        time_s: its time, in s.
-        sway_before: sway of the mechanism that closed, ``"right"`` or ``"left"``.
-        sway_after: sway of the mechanism that opened.
-        restitution: kinetic energy after the impact over that before.
-        energy_before_j: kinetic energy before, in J.
-        energy_after_j: kinetic energy after, in J.
-        rates_before_rad_s: rotation rates of the bodies just before, in rad/s, anticlockwise.
-        rates_after_rad_s: rotation rates of the bodies just after, in rad/s.
-        closed: the hinges that closed, from left to right.
-        opened: the hinges that opened, from left to right.
-        impulses_n_s: impulses ``(x, y)`` at the hinges that opened, in N s, if they are known.
+    Rates are those of the bodies in rad/s, anticlockwise, just before and just after; hinges that ``closed`` and ``opened`` are in order from
+    left to right.
     """
 
-    time_s: float
-    sway_before: str
-    sway_after: str
-    restitution: float
-    energy_before_j: float
-    energy_after_j: float
-    rates_before_rad_s: tuple[float, ...]
-    rates_after_rad_s: tuple[float, ...]
-    closed: tuple[Hinge, ...]
-    opened: tuple[Hinge, ...]
-    impulses_n_s: tuple[tuple[float, float], ...]
-
-    @classmethod
-    def _of(cls, values: dict[str, Any]) -> Impact:
-        return cls(
-            **{
-                **values,
-                "rates_before_rad_s": tuple(values["rates_before_rad_s"]),
-                "rates_after_rad_s": tuple(values["rates_after_rad_s"]),
-                "closed": Hinge._all(values["closed"]),
-                "opened": Hinge._all(values["opened"]),
-                "impulses_n_s": tuple((x, y) for x, y in values["impulses_n_s"]),
-            }
-        )
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"closed": Hinge, "opened": Hinge}
 
 
-@dataclass(frozen=True)
-class Event:
-    """An event of a history, and the state just after it.
+class Event(Part):
+    """An event of a history, and the state just after it. Its keys are in the table of events of ``docs/results.md``."""
 
-    Attributes:
-        time_s: its time, in s.
-        kind: ``"uplift"``, ``"impact"``, ``"rest"`` or ``"overturned"``.
-        state: the state of the structure from here on: ``"rest"``, ``"right"``, ``"left"`` or ``"overturned"``.
-        mechanism: number of impacts since uplift, which is the index of the mechanism; ``None`` at rest.
-        rotations_rad: rotations of the bodies, in rad, anticlockwise.
-        rates_rad_s: rotation rates of the bodies just after, in rad/s.
-        energy_j: kinetic and potential energy just after, in J.
-        hinges: hinges of the mechanism from left to right, none at rest; for a row of blocks the joints that are open
-            from then on.
-        impact: the impact, if the event is one.
-    """
-
-    time_s: float
-    kind: str
-    state: str
-    mechanism: int | None
-    rotations_rad: tuple[float, ...]
-    rates_rad_s: tuple[float, ...]
-    energy_j: float
-    hinges: tuple[Hinge, ...]
-    impact: Impact | None
-
-    @classmethod
-    def _of(cls, values: dict[str, Any]) -> Event:
-        impact = values["impact"]
-        return cls(
-            **{
-                **values,
-                "rotations_rad": tuple(values["rotations_rad"]),
-                "rates_rad_s": tuple(values["rates_rad_s"]),
-                "hinges": Hinge._all(values["hinges"]),
-                "impact": None if impact is None else Impact._of(impact),
-            }
-        )
+    __slots__ = ()
+    _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge, "impact": Impact}
 
 
 def _figure_of(ax: Axes) -> Figure:
@@ -133,8 +67,11 @@ def _axes(ax: Axes | None) -> Axes:
     return axes
 
 
-class History:
+class History(Summarised):
     """The motion of a structure: samples as arrays, events, and a summary.
+
+    The keys of :attr:`summary` are attributes too, such as ``outcome``, ``outcome_time_s``, ``overturning_sway`` and
+    ``largest_friction_demand``. Those of the same name come first: :attr:`impacts` are the impacts, and ``summary.impacts`` is their number.
 
     Arrays use the memory of the history itself, without copies, and cannot be written to: copy an array to change it. In
     shapes, ``samples`` is the number of samples and ``bodies`` that of :attr:`bodies`. Rotations are positive anticlockwise,
@@ -328,33 +265,11 @@ class History:
         return index
 
     @property
-    def outcome(self) -> str:
-        """How it ended.
-
-        ``"never_moved"``, ``"vibrates"``, ``"rest"``, ``"overturned"``, ``"still_rocking"`` or ``"incomplete"``. An incomplete
-        history ended too early for a verdict: it counts neither as survived nor as overturned.
-        """
-        outcome: str = self._once("outcome", lambda native: native.outcome())
-        return outcome
-
-    @property
-    def overturning_sway(self) -> str | None:
-        """The side to which it overturned, ``"right"`` or ``"left"``; ``None`` if it did not."""
-        sway: str | None = self._once("overturning_sway", lambda native: native.overturning_sway())
-        return sway
-
-    @property
-    def outcome_time_s(self) -> float:
-        """Time of the outcome in s: the last outward passage of the unstable equilibrium, the last time it came to rest, or the end."""
-        time_s: float = self._once("outcome_time_s", lambda native: native.outcome_time_s())
-        return time_s
-
-    @property
     def events(self) -> tuple[Event, ...]:
         """All events: phase ``i + 1`` follows event ``i``."""
 
         def make(native: _native.History) -> tuple[Event, ...]:
-            return tuple(map(Event._of, json.loads(native.events_json())))
+            return tuple(map(Event, json.loads(native.events_json())))
 
         events: tuple[Event, ...] = self._once("events", make)
         return events
@@ -365,20 +280,27 @@ class History:
         return tuple(event.impact for event in self.events if event.impact is not None)
 
     @property
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> Summary:
         """The contents of the program's ``summary.json`` (a copy); see :meth:`repeatability`."""
+        return Summary._parse(self._once("summary", lambda native: native.summary_json(False)))
 
-        def make(native: _native.History) -> str:
-            return native.summary_json(False)
+    def _numbers(self) -> Summary:
+        numbers: Summary = self._once("numbers", lambda _: self.summary)
+        return numbers
 
-        summary: dict[str, Any] = json.loads(self._once("summary", make))
-        return summary
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_"):
+            # These are computed in no time.
+            ended = self._once("ended", lambda native: json.loads(native.ended_json()))
+            if name in ended:
+                return ended[name]
+        return super().__getattr__(name)
 
     def spread(self) -> NoReturn:
         """Replaced by :meth:`repeatability`."""
         raise AttributeError("`History.spread()` is now called `History.repeatability()`")
 
-    def repeatability(self) -> dict[str, Any] | None:
+    def repeatability(self) -> Summary | None:
         """How a history with free hinges depends on its steps, as ``repeatability`` of ``summary.json``; ``None`` for other histories.
 
         Simulates the history again in other, equally good ways, such as with double steps.
@@ -388,7 +310,7 @@ class History:
         """
         native = self._native or self.scenario.run()._native
         assert native is not None, "a history that was run is there"
-        repeatability: dict[str, Any] | None = json.loads(native.summary_json(True)).get("repeatability")
+        repeatability: Summary | None = Summary._parse(native.summary_json(True)).get("repeatability")
         return repeatability
 
     @property
@@ -543,9 +465,7 @@ class History:
             "columns": {name: self._column(name) for name in _native.History.COLUMNS},
             "bodies": self.bodies,
             "largest_body": self.largest_body,
-            "outcome": self.outcome,
-            "overturning_sway": self.overturning_sway,
-            "outcome_time_s": self.outcome_time_s,
+            "ended": {key: getattr(self, key) for key in ("outcome", "outcome_time_s", "overturning_sway")},
             "events": self.events,
             "summary": json.dumps(self.summary),
             "scenario": self.scenario,

@@ -202,7 +202,7 @@ class Scenario(Described):
             ValueError: when the library cannot find such an onset.
         """
         warn(self._native.unlikely())
-        return Limit._of(json.loads(self._native.limit_json()))
+        return Limit(json.loads(self._native.limit_json()))
 
     def to_toml(self) -> str:
         """The scenario as the text of a file of the program.

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ._described import Described, read_file
-from ._hinge import ChainLink, Limit, Mechanism
+from ._hinge import ChainLink, Limit
 from ._native import Scenario as NativeScenario
 from ._settings import Settings
 from ._tables import Tables, arguments, plain_table, to_toml
@@ -83,7 +83,7 @@ class Structure(Described):
             ValueError: when the library cannot find such an onset.
         """
         warn(self._native.unlikely())
-        return Limit._of(json.loads(self._native.limit_json()))
+        return Limit(json.loads(self._native.limit_json()))
 
     def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:
         """The mechanisms of the first ``count`` impacts, after a first sway to this side.
@@ -96,15 +96,7 @@ class Structure(Described):
         """
         if not 0 <= count <= 65535:
             raise ValueError(f"`count = {count}` is not allowed: it must be from 0 to 65535")
-        return [
-            ChainLink(
-                link["index"],
-                link["restitution"],
-                Mechanism._of(link["before"]),
-                Mechanism._of(link["after"]),
-            )
-            for link in json.loads(self._native.chain_json(sway, count))
-        ]
+        return [ChainLink(link) for link in json.loads(self._native.chain_json(sway, count))]
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({arguments(self._tables)})"

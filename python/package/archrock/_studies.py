@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import html
 import io
-import json
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -19,6 +18,7 @@ from ._ground import Ground, Pulse, Record, _csv
 from ._history import _axes, _figure_of
 from ._scenario import Scenario
 from ._structure import Structure
+from ._summary import Summarised, Summary
 from ._warnings import warn
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ def span(
     return {"from": start, "to": end, "count": count, "spacing": spacing}
 
 
-class Files:
-    """Files as the program writes them, held in memory."""
+class Files(Summarised):
+    """Files as the program writes them, held in memory. The keys of :attr:`summary` are attributes too."""
 
     __slots__ = ("_files",)
 
@@ -75,10 +75,12 @@ class Files:
         warn(_native.save(folder, self._files))
 
     @property
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> Summary:
         """The JSON file: the scenario with all defaults, numbers, and failures."""
-        summary: dict[str, Any] = json.loads(self.files[self._json])
-        return summary
+        return Summary._parse(self.files[self._json])
+
+    def _numbers(self) -> Summary:
+        return self.summary
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Files):
@@ -259,7 +261,11 @@ class Suite(Results):
 
 
 class Threshold(Results):
-    """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges."""
+    """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges.
+
+    The keys of the first of ``models`` in ``threshold.json`` are attributes: ``lowest_factor``, ``None`` if no factor overturns, and the lists
+    ``bands``, ``gaps``, ``uncertain`` and ``incomplete``, whose ranges have ``from`` and ``to``.
+    """
 
     __slots__ = ()
 
@@ -267,27 +273,9 @@ class Threshold(Results):
     _table = "threshold.csv"
     _json = "threshold.json"
 
-    def _model(self) -> dict[str, Any]:
-        model: dict[str, Any] = self.summary["models"][0]
-        return model
-
-    @property
-    def lowest_factor(self) -> float | None:
-        """The least factor that overturns it; ``None`` if none does."""
-        factor: float | None = self._model()["lowest_factor"]
-        return factor
-
-    @property
-    def bands(self) -> list[dict[str, Any]]:
-        """The ranges of factors that overturn, ascending, as in ``threshold.json``."""
-        bands: list[dict[str, Any]] = self._model()["bands"]
-        return bands
-
-    @property
-    def gaps(self) -> list[dict[str, Any]]:
-        """The safe ranges between bands, ascending, as in ``threshold.json``."""
-        gaps: list[dict[str, Any]] = self._model()["gaps"]
-        return gaps
+    def _numbers(self) -> Summary:
+        summary = self.summary
+        return Summary({**summary, **summary.models[0]})
 
     def plot(self, ax: Axes | None = None) -> Figure:
         """The largest rotation over the factor on the ground motion, with the factors that overturn. Needs matplotlib.
@@ -319,18 +307,6 @@ class Threshold(Results):
         ax.set_ylabel("largest / critical rotation" if known else "largest rotation (rad)")
         ax.legend()
         return _figure_of(ax)
-
-    @property
-    def uncertain(self) -> list[dict[str, Any]]:
-        """The ranges in which overturning is uncertain, ascending, as in ``threshold.json``."""
-        ranges: list[dict[str, Any]] = self._model()["uncertain"]
-        return ranges
-
-    @property
-    def incomplete(self) -> list[dict[str, Any]]:
-        """The ranges without a verdict, because the histories end too early, ascending, as in ``threshold.json``."""
-        ranges: list[dict[str, Any]] = self._model()["incomplete"]
-        return ranges
 
 
 class Capacity(Results):
@@ -371,7 +347,10 @@ class Capacity(Results):
 
 
 class Ensemble(Results):
-    """The consequences of the uncertain numbers of a scenario: the history of every sample and its end."""
+    """The consequences of the uncertain numbers of a scenario: the history of every sample and its end.
+
+    ``what_matters`` has for each answer the part of the variance and the rank correlation of each uncertain number, with intervals.
+    """
 
     __slots__ = ()
 
@@ -394,12 +373,6 @@ class Ensemble(Results):
     def values(self) -> npt.NDArray[np.float64]:
         """Their values, shape ``(samples, keys)``."""
         return np.column_stack([self._samples(key) for key in self.keys])
-
-    @property
-    def what_matters(self) -> dict[str, Any]:
-        """For each answer, the part of the variance and the rank correlation of each uncertain number, with intervals."""
-        matters: dict[str, Any] = self.summary["what_matters"]
-        return matters
 
 
 class Histories(Ensemble):
@@ -448,17 +421,14 @@ class FirstFactors(Ensemble):
 
 
 class Fragilities(Ensemble):
-    """An ensemble of the intensities from which the records of a suite overturn."""
+    """An ensemble of the intensities from which the records of a suite overturn.
+
+    ``fragility`` has median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``.
+    """
 
     __slots__ = ()
 
     _picture = "fragility.svg"
-
-    @property
-    def fragility(self) -> dict[str, dict[str, Any]]:
-        """Median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``."""
-        fragility: dict[str, dict[str, Any]] = self.summary["fragility"]
-        return fragility
 
 
 class ProbabilityMap(_Plane):
@@ -487,7 +457,11 @@ class ProbabilityMap(_Plane):
 
 
 class Check(Files):
-    """A check by the Circolare 7/2019: its numbers, and the page to be filed."""
+    """A check by the Circolare 7/2019: its numbers, and the page to be filed.
+
+    ``zeta_e`` is the ratio of capacity to demand, the least of all limit states checked; ``verdict`` has ``passed``, ``not_passed`` or
+    ``not_checked`` for each limit state.
+    """
 
     __slots__ = ()
 
@@ -497,18 +471,6 @@ class Check(Files):
     def page(self) -> str:
         """The page, in HTML that prints on A4."""
         return self.files["verify.html"].decode()
-
-    @property
-    def zeta_e(self) -> float:
-        """The ratio of capacity to demand, the least of all limit states checked."""
-        zeta_e: float = self.summary["zeta_e"]
-        return zeta_e
-
-    @property
-    def verdict(self) -> dict[str, str]:
-        """For each limit state ``passed``, ``not_passed`` or ``not_checked``."""
-        verdict: dict[str, str] = self.summary["verdict"]
-        return verdict
 
     def _repr_html_(self) -> str:
         page = html.escape(self.page, quote=True)

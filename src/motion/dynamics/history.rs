@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::thrust::ThrustRecord;
 use crate::mechanics::chain::{Demand, Hinge};
@@ -108,6 +108,12 @@ impl State {
             Self::Rest => None,
             Self::Rocking(sway) | Self::Overturned(sway) => Some(sway),
         }
+    }
+}
+
+impl Serialize for State {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
     }
 }
 
@@ -318,7 +324,7 @@ named! {
 }
 
 /// An event of a history, and the state just after.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Event {
     /// Instant in seconds.
     pub time_s: f64,
@@ -380,7 +386,7 @@ impl Event {
 ///
 /// The mechanism after is the one that the impact leads to, with its rates just after, even where these are so
 /// small that the structure comes to rest.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Impact {
     /// Sway of the mechanism that closed.
     pub sway_before: Sway,

@@ -35,7 +35,7 @@ use self::points::Points;
 use self::report::Report;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
-pub use self::summary::summary;
+pub use self::summary::{Ended, summary};
 use self::summary::{Evidence, Summary};
 pub use self::words::heading;
 use self::words::{Notable, VerdictLine, Words};

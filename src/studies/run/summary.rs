@@ -257,7 +257,9 @@ pub struct PointPeaks {
 }
 
 impl Ended {
-    fn of(history: &History) -> Self {
+    /// The outcome of a motion.
+    #[must_use]
+    pub fn of(history: &History) -> Self {
         Self {
             outcome: history.outcome.name(),
             outcome_time_s: history.outcome_time_s,
