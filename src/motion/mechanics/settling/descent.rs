@@ -1,14 +1,14 @@
-//! The way of a row that gives way slowly: down the steepest descent of its potential energy.
+//! Slow collapse of a row: steepest descent of its potential energy.
 //!
-//! The blocks move as in a viscous fluid that resists as their masses do. Their velocities are then those nearest to the load,
-//! of all that the joints allow: the program of a step of a motion ([`crate::mechanics::contact`]). Descents that weighted
-//! rotations ten and a hundred times as much led to the same hinges.
+//! The blocks move as in a viscous fluid whose resistance is proportional to mass. The velocities are then the admissible ones nearest to
+//! the load: the contact program of a motion ([`crate::mechanics::contact`]). Descents in which rotations had ten and a hundred times the
+//! weight led to the same hinges.
 //!
-//! A tie may be stiffer than any step of a descent is short. So it pulls with the force that it has at the end of a step, which is found from
-//! velocities that depend on it. These are linear in the forces of the ties as long as the same corners press, and a step has an energy that is convex
-//! in them: Newton's method, which goes as far as that energy falls, finds the forces of all ties at once.
+//! Explicit forces of stiff ties would limit the step length. So the forces are implicit: those at the end of the step. Velocities are
+//! linear in these forces while the set of closed corners stays, and the energy of a step is convex in them. Newton's method with a line
+//! search therefore finds the forces of all ties together.
 //!
-//! The error of the force of a tie is measured as a length and not as a force, since a stiff one multiplies the last digit of its force by more than a million.
+//! The residual of a tie is a length, not a force: a stiff tie turns the rounding error of a length into a large force.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -21,50 +21,51 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::stance::Stance;
 use crate::mechanics::tie::TieLine;
 
-/// Velocities below this part of those without contact count as zero.
+/// Velocities below this part of those without contact are zero.
 const STANDSTILL: f64 = 1e-9;
-/// No point moves by more than this part of the size in a step,
+/// Longest movement of a point in a step, over the size of the row.
 const STEP: f64 = 1e-3;
-/// or, with ties, by this part of how far the descent has come, if that is more,
+/// Longest movement in a step of a row with ties, over the movement since the start of the descent; the larger of both limits holds.
 const STRIDE: f64 = 0.02;
-/// and by twice that if it accelerates: it does not approach an equilibrium.
+/// Factor of `STRIDE` while the descent accelerates: an equilibrium is then not near.
 const ACCELERATING: f64 = 2.0;
-/// A block that moves by this part of the size in a descent falls.
+/// A row falls once a block has moved by this part of the size, or turned by as many radians.
 const FALLEN: f64 = 0.5;
-/// An arch whose ends miss each other by more than this part of its size has fallen apart.
+/// An arch has fallen apart once the gap at its closure exceeds this part of its size.
 const PARTED: f64 = 1e-6;
-/// Steps of a descent: none needs as many, unless it goes to and fro.
+/// Limit of the number of steps of a descent. Only a descent that oscillates reaches it.
 const MOST_STEPS: usize = 20_000;
-/// A row that ties hold rests where an equilibrium of its hinges turns no block by more than this, in radians.
+/// An equilibrium held by ties is near if no block turns by more than this on the way to it, in radians.
 const NEAR_RAD: f64 = 1e-2;
-/// Forces of ties are found to this part of the weight.
+/// Tolerance of tie forces, over the weight.
 const FORCE: f64 = 1e-11;
-/// A length that is this part of what gravity alone moves a row by in a step is rounding.
+/// Lengths below this part of the movement under gravity alone in a step are rounding errors.
 const LEVEL: f64 = 1e-14;
-/// Rounds in which the forces of all ties are found, at most.
+/// Limit of the number of Newton steps for the tie forces.
 const MOST_ROUNDS: usize = 100;
-/// Trials of how far a round goes, at most.
+/// Limit of the number of trials of a line search.
 const MOST_TRIALS: usize = 20;
-/// A round ends when the slope of the energy is below this part of its initial slope.
+/// A line search ends when the slope of the energy is below this part of its initial slope.
 const FLAT: f64 = 0.1;
-/// A response to ties is rounding below this part of what they would do to free blocks.
+/// Responses to tie forces below this part of those of free blocks are rounding errors.
 const NO_MOTION: f64 = 1e-9;
-/// A step in which the forces of ties are not found is shortened, at most to this part.
+/// Shortest step after tie forces were not found, over the original step.
 const SHORTEST: f64 = 1e-6;
-/// The longest step of a descent with ties, as the time in which gravity alone moves a row by so many times its size.
+/// Longest step of a descent with ties: in it gravity alone moves the row by this multiple of its size.
 const LONGEST: f64 = 1e3;
 
-/// A step of a descent, whose forces of ties are sought.
+/// A step of a descent with ties.
 struct Step<'a> {
     stance: &'a Stance,
-    /// Lines of the ties at its beginning.
+    /// Lines of the ties at the beginning of the step.
     lines: &'a [TieLine],
-    /// The forces between which each pulls, over gravity.
+    /// Smallest and largest force of each tie, over gravity.
     bounds_kg: Vec<[f64; 2]>,
     force_g: Vector2<f64>,
     length: f64,
-    /// Corners that press, none before they are known, and what [`Descent::lengthen`] says while they do.
+    /// Closed corners for which `lengthen` was computed; empty before that.
     pressing: Vec<Corners>,
+    /// The matrix of [`Descent::lengthen`].
     lengthen: DMatrix<f64>,
 }
 
@@ -87,15 +88,16 @@ impl<'a> Step<'a> {
     }
 }
 
-/// The descent of a row, with all the memory that it needs.
+/// The descent of a row, with its buffers.
 #[derive(Clone, Debug)]
 pub(super) struct Descent<'a> {
     row: &'a Row,
     program: Program,
     load: Load,
     closer: Closer,
-    /// Force of each tie over gravity, and by how much that lengthens it for each kg.
+    /// Force of each tie over gravity.
     ties_kg: Vec<f64>,
+    /// Flexibility of each tie, in m/kg.
     ties_m_kg: Vec<f64>,
 }
 
@@ -113,8 +115,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Takes a row from one condition to the next, a little further on, and lets it come to rest there. False where it falls instead. A
-    /// push of `tilt_g` makes it choose a side.
+    /// Changes the condition of a row by a small step, and lets the row come to rest. Returns false if it falls. A push of `tilt_g`
+    /// makes a symmetric row choose a side.
     pub fn settle(
         &mut self,
         stance: &mut Stance,
@@ -141,7 +143,7 @@ impl<'a> Descent<'a> {
         let (mut hinges, mut stayed) = (Vec::new(), 0_u32);
         let (mut before, mut accelerates) = (f64::INFINITY, false);
         for step in 0..MOST_STEPS {
-            // An equilibrium costs as much as many steps, and hinges that have just changed are not yet those of rest.
+            // An equilibrium costs as much as many steps, and new hinges are seldom those of rest: look for it ever more rarely.
             let pins = (!self.ties_kg.is_empty()).then(|| Pins::of(self.row, &stance.placement));
             if let Some(pins) = pins.flatten() {
                 stayed = if pins.hinges == hinges { stayed + 1 } else { 0 };
@@ -183,7 +185,7 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
-    /// Whether ties hold a row on these hinges, in an equilibrium near by. Without ties it comes to rest by itself.
+    /// Returns true if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
     fn rests_near(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
@@ -193,8 +195,8 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// Moves the supports, and the row by the velocities that they force on it while the load decides: from one joint that shuts on the
-    /// way to the next. Returns how the ties lie then.
+    /// Moves the supports, and the row with them: of all admissible velocities the load selects those nearest to it. Each part of the
+    /// movement ends when a joint closes. Returns the lines of the ties.
     fn nudge(
         &mut self,
         stance: &mut Stance,
@@ -226,7 +228,7 @@ impl<'a> Descent<'a> {
         Ok(lines)
     }
 
-    /// Velocities where the row is, with ties that lie so, under so many times its load; the fastest of them.
+    /// Computes the velocities in the present position under a multiple of the load and of the tie forces. Returns the largest one.
     fn solve(
         &mut self,
         stance: &Stance,
@@ -240,7 +242,8 @@ impl<'a> Descent<'a> {
         self.program.fastest(&self.load, self.row, placement)
     }
 
-    /// The fastest velocity with ties that pull as at the end of a step, at most as long as this one, in which no point goes too far.
+    /// Returns the largest velocity with the tie forces at the end of the step. Shortens the step until no point moves farther than
+    /// `farthest_m`.
     fn solve_with_ties(
         &mut self,
         stance: &Stance,
@@ -254,7 +257,7 @@ impl<'a> Descent<'a> {
         loop {
             step.length = *longest;
             let fastest = match self.balance_ties(&mut step) {
-                // The shorter a step, the less forces change in it.
+                // The shorter a step, the smaller the change of the forces.
                 Err(SettlingError::Ties) if *longest > shortest => {
                     *longest *= 0.1;
                     self.ties_kg.clone_from(&before_kg);
@@ -269,7 +272,10 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Finds what the ties pull with at the end of a step, and how fast the row is with that.
+    /// Computes the tie forces at the end of a step. Returns the largest velocity with these forces.
+    ///
+    /// # Errors
+    /// When Newton's method does not converge.
     fn balance_ties(&mut self, step: &mut Step<'_>) -> Result<f64, SettlingError> {
         // Some may have broken in the step before.
         for tie in 0..step.lines.len() {
@@ -279,7 +285,7 @@ impl<'a> Descent<'a> {
         let mut fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
             let lacks_m = self.lacks_m(step);
-            // A tie changes by more alone than together with all others.
+            // A tie alone would change its force by more than together with the others, so this bounds the errors.
             let least_kg = FORCE * self.row.mass_kg();
             let mut each = lacks_m.iter().zip(&self.ties_m_kg);
             if each.all(|(lacks_m, m_kg)| lacks_m.abs() <= least_kg * m_kg) {
@@ -294,7 +300,7 @@ impl<'a> Descent<'a> {
             let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
             if left_kg <= FORCE * self.row.mass_kg() {
                 if responded {
-                    // Responses of the row have taken the place of its velocities.
+                    // The computation of responses overwrote the velocities.
                     fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
                 }
                 return Ok(fastest);
@@ -304,7 +310,7 @@ impl<'a> Descent<'a> {
         Err(SettlingError::Ties)
     }
 
-    /// Length of each tie at the end of a step beyond the length that its force gives it, with the last velocities, in m.
+    /// Residual of each tie with the last velocities, in m: its length at the end of the step less the length under its force.
     fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
         let velocities = &self.program.velocities;
         let lacks_m = step.lines.iter().enumerate().map(|(tie, line)| {
@@ -315,10 +321,10 @@ impl<'a> Descent<'a> {
         DVector::from_iterator(self.ties_kg.len(), lacks_m)
     }
 
-    /// Changes of the forces of ties, over gravity, that balance all ties while the same corners press. Ties that pull with
-    /// all or nothing, and would go beyond, stay. `None` where that is not determined.
+    /// Returns the Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
+    /// step would exceed it. `None` if the step is not determined.
     ///
-    /// The unknowns are the few speeds at which the row can go on, and not the forces of many ties: these follow from the speeds.
+    /// The unknowns are the speeds of the few degrees of freedom of the row. The forces of many ties follow from them.
     fn way_kg(&self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
         let lengthen = &step.lengthen;
         let modes = lengthen.ncols();
@@ -350,13 +356,13 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Whether a tie can pull harder or less, as this change would have it.
+    /// Returns true if the bounds of the force of a tie allow this change.
     fn may_go(&self, step: &Step<'_>, tie: usize, change: f64) -> bool {
         let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
         (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0
     }
 
-    /// Finds how ties lengthen while the corners press that do, unless that is known. Velocities are lost where it is not.
+    /// Updates `step.lengthen` if the set of closed corners has changed. Returns true if it has; the velocities are then lost.
     fn learn_to_lengthen(&mut self, step: &mut Step<'_>) -> bool {
         let unknown = step.pressing != self.program.active;
         if unknown {
@@ -366,11 +372,11 @@ impl<'a> Descent<'a> {
         unknown
     }
 
-    /// Rates at which the ties (rows) lengthen in the motions (columns) that ties can give the row while the same corners press. The
-    /// motions have no kinetic energy in common, and each has that of a unit mass at unit speed.
+    /// Rates of elongation of the ties (rows) in the motions (columns) that tie forces can cause while the set of closed corners stays.
+    /// The motions are orthonormal with respect to kinetic energy.
     ///
-    /// The response to any pulls is the part of the free motion that the joints allow. So the responses to arbitrary pulls at once span all
-    /// such motions as soon as one of them adds nothing, or there are no more.
+    /// The response to tie forces is the projection of the free motion on the admissible motions. So responses to arbitrary forces span
+    /// all these motions: the basis is complete once a response lies in it, or it has as many motions as there are degrees of freedom.
     fn lengthen(&mut self, step: &Step<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
         let centres_m = &step.stance.placement.centres_m;
@@ -384,7 +390,7 @@ impl<'a> Descent<'a> {
         };
         let mut motions: Vec<Vec<Twist>> = Vec::new();
         while motions.len() < count.min(self.program.freedom()) {
-            // No two ties, and no two trials, have parts in a simple ratio.
+            // Forces in irrational ratios, other ones in each trial.
             let ratio = (f64::sqrt(2.0) * motions.len() as f64).fract();
             let mut part = 0.0;
             self.respond(step, |_| {
@@ -392,7 +398,7 @@ impl<'a> Descent<'a> {
                 part - 0.5
             });
             let mut motion = self.program.velocities.to_vec();
-            // Twice, so that rounding leaves nothing in common.
+            // Gram-Schmidt twice, against rounding errors.
             for known in motions.iter().chain(&motions) {
                 let part = product(known, &motion);
                 for (twist, known) in motion.iter_mut().zip(known) {
@@ -400,7 +406,7 @@ impl<'a> Descent<'a> {
                 }
             }
             let size = product(&motion, &motion).sqrt();
-            // A response that is no number adds nothing either.
+            // A response that is not a number ends the search as well.
             if size.is_nan() || size <= NO_MOTION * product(&self.load.free, &self.load.free).sqrt()
             {
                 break;
@@ -412,7 +418,7 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// Velocities that ties alone give the row while the same corners press, each with so much over gravity.
+    /// Computes the response of the row to tie forces alone, over gravity, for the present set of closed corners.
     fn respond(&mut self, step: &Step<'_>, mut kg: impl FnMut(usize) -> f64) {
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
@@ -420,8 +426,8 @@ impl<'a> Descent<'a> {
         self.program.solve_alike(&self.load);
     }
 
-    /// Changes the forces of ties on this way, each until it pulls with all or nothing, and all until the energy of the step falls hardly
-    /// more: at first it falls by so much.
+    /// Line search: changes the tie forces along `way_kg`, each up to its bound, until the energy of the step is close to its minimum.
+    /// `falls` is the initial slope of the energy. Returns the largest velocity.
     fn go_along(
         &mut self,
         step: &mut Step<'_>,
@@ -429,7 +435,7 @@ impl<'a> Descent<'a> {
         falls: f64,
     ) -> Result<f64, ContactError> {
         let from_kg = self.ties_kg.clone();
-        // After which part of the way a tie pulls with nothing, or with as much as it can.
+        // Part of the way at which the force of each tie reaches its bound.
         let bounds = from_kg.iter().zip(way_kg).zip(&step.bounds_kg);
         let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
             let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
@@ -439,7 +445,7 @@ impl<'a> Descent<'a> {
             }
         });
         let ends: Vec<f64> = ends.collect();
-        // Until here all ties go.
+        // Up to here no force reaches its bound.
         let all = ends.iter().copied().fold(1.0, f64::min);
         let (mut part, mut near, mut far) = (1.0, 0.0, all);
         for _ in 0..MOST_TRIALS {
@@ -452,7 +458,7 @@ impl<'a> Descent<'a> {
             }
             let fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
             let falls_on = self.lacks_m(step).component_mul(way_kg);
-            // A tie that has come to its end stays there, unless it should come back.
+            // A force at its bound stays there, unless the slope points inwards.
             let goes = falls_on.iter().zip(&ends);
             let goes = goes.filter(|(falls, end)| part <= **end || **falls < 0.0);
             let left: f64 = goes.map(|(falls, _)| falls).sum();
@@ -468,7 +474,7 @@ impl<'a> Descent<'a> {
             } else {
                 far = part;
             }
-            // Newton's method again: with forces at which the row stands it lacks next to nothing, with a little less it lacks much.
+            // Newton's method: the slope changes abruptly near forces at which the row stands still.
             self.learn_to_lengthen(step);
             let elastic = self.ties_m_kg.iter().zip(way_kg);
             let elastic: f64 = elastic.map(|(m_kg, kg)| kg * kg * m_kg).sum();
@@ -480,7 +486,7 @@ impl<'a> Descent<'a> {
         self.solve(step.stance, step.lines, step.force_g, 1.0)
     }
 
-    /// Moves the blocks with the last velocities for this time, and shuts this corner. Returns the lines of the ties.
+    /// Moves the blocks with the last velocities for the given time, and closes the given corner. Returns the lines of the ties.
     fn go_on(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
         let placement = &mut stance.placement;
         let mut change = vec![[0.0; 2]; placement.gaps_m.len()];
@@ -492,14 +498,14 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// The pose after this part of the motion from one pose to another near by.
+/// Interpolates linearly between two neighbouring poses.
 fn partway(from: &Pose, to: &Pose, part: f64) -> Pose {
     let between = |from: f64, to: f64| from + part * (to - from);
     let translation = from.translation + (to.translation - from.translation) * part;
     Pose::new(between(from.rotation_rad(), to.rotation_rad()), translation)
 }
 
-/// The motion, over one unit of time, that takes a body from one pose to another near by.
+/// Constant velocity that moves a body from one pose to a neighbouring one in a unit of time.
 fn between(from: &Pose, to: &Pose) -> Twist {
     let rate = to.rotation_rad() - from.rotation_rad();
     Twist {
@@ -518,7 +524,7 @@ mod tests {
     use crate::mechanics::geometry::ring::Ring;
     use crate::mechanics::tie::{Anchor, Tie};
 
-    /// A row of 8 blocks with such ties, from the joint given to the one across.
+    /// A row of 8 blocks with ties of the given joints and stiffnesses, each to the opposite joint.
     fn tied(ties: &[(usize, f64)]) -> Row {
         let ring = Ring::new(0.15, PI).unwrap();
         let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
@@ -554,7 +560,7 @@ mod tests {
         (stance, lines)
     }
 
-    /// Ties that a mechanism stretches together share what holds it: each pulls as it will at the end of the step, with the other.
+    /// Two ties that one mechanism stretches: the force of each is that at the end of the step.
     #[test]
     fn ties_that_depend_on_each_other_are_balanced_together() {
         let row = tied(&[(2, 1e6), (1, 6e5)]);
@@ -576,8 +582,7 @@ mod tests {
         }
     }
 
-    /// However many ties there are, what they do to each other follows from the few motions that they can give the row: for each, the rates
-    /// add up to its response to that tie alone.
+    /// The interaction of any number of ties follows from a few motions: the product of their rates is the response to each tie alone.
     #[test]
     fn many_ties_depend_on_each_other_through_few_motions() {
         let ties: Vec<(usize, f64)> = (0..200).map(|tie| (tie % 4, 1e4)).collect();
@@ -600,8 +605,8 @@ mod tests {
         }
     }
 
-    /// Ties of millions of weights for each metre, side by side: together they hold what one of both stiffnesses holds alone. A force times
-    /// such a stiffness has no digits left.
+    /// Two very stiff parallel ties have the force of one tie with the sum of their stiffnesses, although a stiffness of millions of
+    /// weights per metre turns rounding errors of a length into forces.
     #[test]
     fn very_stiff_ties_are_balanced() {
         let pulls_kg = |ties: &[(usize, f64)], length: f64| {
