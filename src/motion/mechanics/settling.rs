@@ -1,16 +1,16 @@
-//! How a row between two supports follows them when they move slowly, and what push it then bears.
+//! Equilibrium path of a row between two supports that move slowly, and the push that the displaced row then carries.
 //!
-//! Rigid blocks without tension or sliding, at rest at every instant. Where supports have moved, the row stands on three hinges: two bodies between
-//! three pins, whose positions and forces are closed forms (`pins`). Such a state lasts while its joints open no way back and the thrust
-//! line stays inside all others. Where that ends, a joint cannot hand its hinge on little by little: with a fourth hinge the row is an unstable mechanism,
-//! which snaps to three other hinges, or falls (`descent`). So a path of equilibria is made of pieces, and which ones they are depends
-//! on where it began: here, at the undeformed row.
+//! The blocks are rigid, without tension or sliding, and inertia is neglected. With moved supports the row stands on three hinges: two bodies between
+//! three pins, with positions and forces in closed form (`pins`). Such a state is admissible while the hinges stay open and the thrust line stays
+//! inside all other joints. Beyond that, a hinge cannot move to the next joint gradually: with a fourth hinge the row is an unstable mechanism. The
+//! mechanism snaps to three other hinges, or the row falls (`descent`). An equilibrium path thus consists of pieces, and these depend on the start of
+//! the path: here, the undeformed row.
 //!
-//! Likewise for a push that grows while the supports stand still: it moves nothing until it makes hinges snap. That push is the first motion; the
-//! push at which the row falls, its capacity, may be many times larger.
+//! A push that grows while the supports rest moves nothing until the hinges snap. That push is the first motion. The push at which the row falls is
+//! the capacity, and may be many times larger.
 //!
-//! Ties are stretched by what the row does, and pull back. They may hold it on more than three hinges, where it goes on little by little: the
-//! next hinge is then the one that the last equilibrium lacks.
+//! Ties lengthen as the row moves, and pull back. Ties may hold the row on more than three hinges, where hinges change gradually: the next hinge is
+//! then at the joint where the last equilibrium becomes inadmissible.
 
 mod descent;
 mod held;
@@ -34,21 +34,21 @@ use super::sway::Sway;
 use super::tie::TieMemory;
 use crate::bisection::{Width, falls_below_zero, try_bisect};
 
-/// A way is gone in steps of this part of the row's size, of a radian, or of gravity.
+/// Length of a step along the path: a fraction of the row's size, radians, or multiples of gravity.
 const STEP: f64 = 1e-3;
-/// With ties, steps double as long as blocks turn at the same rates, but for this part of these,
+/// Relative difference of rotation rates between steps below which the step length doubles, for rows with ties.
 const EVEN: f64 = 0.05;
-/// up to this one.
+/// Longest step with ties, in the units of [`STEP`].
 const LONGEST_STEP: f64 = 0.064;
-/// A row that gives way is pushed on by these parts of size, radian, or gravity, one after the other until it has found other hinges.
+/// Perturbations beyond an inadmissible state, in the units of [`STEP`], tried in turn until the row finds other hinges.
 const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
-/// Pushes by which a symmetric row chooses a side, in units of gravity.
+/// Horizontal pushes, in multiples of gravity, that break the symmetry of a row; tried in turn.
 const TILTS_G: [f64; 3] = [0.0, 1e-6, 1e-4];
-/// Forces below this part of the weight, and rotations below it, are rounding.
+/// Tolerance: relative to the weight for forces, in radians for rotations.
 const ROUNDING: f64 = 1e-12;
-/// Hinges of a row that ties hold are exchanged so many times at once, at most.
+/// Maximum number of hinge exchanges at one point of the path, for a row held by ties.
 const MOST_EXCHANGES: usize = 20;
-/// No row bears a push of so many times gravity that is found by following it.
+/// Pushes above this multiple of gravity are not searched for.
 const LARGEST_PUSH_G: f64 = 100.0;
 
 /// Movement of a support from its original position.
@@ -56,7 +56,7 @@ const LARGEST_PUSH_G: f64 = 100.0;
 pub struct Movement {
     /// Outwards, away from the other support, in metres.
     pub spread_m: f64,
-    /// Down, in metres.
+    /// Downwards, in metres.
     pub settlement_m: f64,
     /// Anticlockwise about the middle of its joint, in radians.
     pub rotation_rad: f64,
@@ -69,7 +69,7 @@ linear!(Movement {
 });
 
 impl Movement {
-    /// Its size over that of the row, or in radians.
+    /// Returns the displacement over the size of the row plus the rotation in radians.
     fn extent(&self, size_m: f64) -> f64 {
         self.spread_m.hypot(self.settlement_m) / size_m + self.rotation_rad.abs()
     }
@@ -78,22 +78,22 @@ impl Movement {
 /// Movements of the supports of a row.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Movements {
-    /// The left one.
+    /// Movement of the left support.
     pub left: Movement,
-    /// The right one.
+    /// Movement of the right support.
     pub right: Movement,
 }
 
 linear!(Movements { left, right });
 
 impl Movements {
-    /// Whether nothing has moved.
+    /// Returns whether neither support has moved.
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether both supports of a row have moved as one body, but for rounding.
+    /// Returns whether both supports have moved as one rigid body, within rounding error.
     fn are_one_motion(&self, row: &Row) -> bool {
         let [left, right] = self.poses(row);
         let gone_m = left.translation.norm().max(row.size_m);
@@ -101,7 +101,7 @@ impl Movements {
             && (left.rotation_rad() - right.rotation_rad()).abs() <= ROUNDING
     }
 
-    /// Displacements to the right and upwards, in metres, and rotations of the left and the right support.
+    /// Returns the displacements of the left and the right support: to the right and upwards in metres, and anticlockwise in radians.
     #[must_use]
     pub fn displacements(&self) -> [[f64; 3]; 2] {
         [(-1.0, self.left), (1.0, self.right)].map(|(outwards, moved)| {
@@ -110,7 +110,7 @@ impl Movements {
         })
     }
 
-    /// Positions of the left and the right support of a row then.
+    /// Returns the poses of the left and the right support of a row after these movements.
     #[must_use]
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
         let joints = &row.joints;
@@ -127,70 +127,70 @@ impl Movements {
     }
 }
 
-/// The condition of a row: where its supports are, and the force on a unit of its mass, in units of gravity.
+/// Loading of a row: the poses of its supports, and the force on a unit of its mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Condition {
-    /// Positions of the left and the right support.
+    /// Poses of the left and the right support.
     pub supports: [Pose; 2],
-    /// Gravity and inertia over gravity.
+    /// Gravity and inertia force on a unit of mass, in multiples of gravity.
     pub force_g: Vector2<f64>,
 }
 
-/// Hinges that gave way.
+/// Snap of a row from one set of hinges to another, or its fall.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Snap {
-    /// Place along the way, in metres if supports move.
+    /// Position along the path, in metres if supports move.
     #[serde(rename = "at_m")]
     pub at: f64,
-    /// The hinges before; `None` where the row was undeformed.
+    /// Hinges before the snap; `None` if the row was undeformed.
     #[serde(rename = "hinges_before")]
     pub before: Option<Vec<Pin>>,
-    /// The hinges after; `None` where it fell.
+    /// Hinges after the snap; `None` if the row fell.
     #[serde(rename = "hinges_after")]
     pub after: Option<Vec<Pin>>,
-    /// Causes, if the row had hinges: joints whose line of thrust reached an edge, or that shut.
+    /// Joints whose thrust line reached an edge, and hinges that closed; empty if the row had no hinges.
     #[serde(rename = "by")]
     pub causes: Vec<Pin>,
 }
 
-/// The end of a followed path.
+/// End of a followed path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
-    /// To the end of the way.
+    /// The row reached the end of the path.
     End,
-    /// To here, where it falls.
+    /// The row falls at this position along the path.
     Falls(f64),
 }
 
-/// Why a row could not be followed.
+/// Reason why a row could not be followed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SettlingError {
-    /// A stack has one support.
+    /// The row is a stack, with one support only.
     #[error("the row stands on one support alone, and nothing moves against it")]
     OneSupport,
-    /// The undeformed row does not stand.
+    /// The undeformed row is not stable.
     #[error(transparent)]
     Stability(#[from] StabilityError),
-    /// Velocities were not found.
+    /// The contact solver found no velocities.
     #[error(transparent)]
     Contact(#[from] ContactError),
-    /// The forces of ties were not found.
+    /// The forces of the ties were not found.
     #[error(
         "what the ties pull with was not found where the row gives way: give them less stiffness, or other places"
     )]
     Ties,
-    /// No hinges were found on which it stands.
+    /// No other hinges were found on which the row is in equilibrium.
     #[error("its hinges give way, and no others were found on which it rests")]
     Lost {
-        /// Place along the way.
+        /// Position along the path.
         at: f64,
     },
-    /// The row rests with a joint that is open at both edges.
+    /// The row comes to rest with a joint that is open at both edges.
     #[error(
         "its hinges give way, and joint {joint} (from 0 at the left springing) parts: blocks that do not touch are not followed"
     )]
     Parted {
-        /// Place along the way.
+        /// Position along the path.
         at: f64,
         /// Index of the joint, from 0 on the left support.
         joint: usize,
@@ -198,7 +198,7 @@ pub enum SettlingError {
 }
 
 impl SettlingError {
-    /// Place along the way at which the row was lost; `None` if that is not known.
+    /// Returns the position along the path at which the row was lost; `None` if unknown.
     #[must_use]
     pub const fn at(&self) -> Option<f64> {
         match self {
@@ -208,29 +208,28 @@ impl SettlingError {
     }
 }
 
-/// A row that follows slow changes.
+/// Row that follows slow changes of its supports or of a push, in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Follower<'a> {
-    /// The row undeformed.
+    /// Undeformed row.
     pub row: &'a Row,
     descent: Descent<'a>,
-    /// The hinges on which it stands; none while it is undeformed.
+    /// Hinges of the present state; `None` while the row is undeformed.
     pub hinges: Option<Pins>,
-    /// Its condition.
+    /// Present loading.
     pub condition: Condition,
-    /// Positions of its blocks, and the memory of its ties.
+    /// Poses of the blocks, and state of the ties.
     pub stance: Stance,
-    /// Hinges that gave way so far.
+    /// Snaps of the path followed up to now.
     pub snaps: Vec<Snap>,
-    /// Tolerance of its hinges: forces over the weight and openings in radians below this are rounding.
+    /// Tolerance of the hinges: forces over the weight, and openings in radians, below this value are rounding errors.
     slack: f64,
 }
 
 impl<'a> Follower<'a> {
-    /// The undeformed row.
-    ///
+    /// Returns a follower of the undeformed row.
     /// # Errors
-    /// When it is a stack, or does not stand.
+    /// If the row is a stack, or is not stable.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
         if row.supports == Supports::Left {
             return Err(SettlingError::OneSupport);
@@ -252,29 +251,28 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// Whether it stands on more hinges than three, which ties alone hold.
+    /// Returns whether the row stands on more than three hinges, which is only possible with ties.
     #[must_use]
     pub fn is_held_by_ties(&self) -> bool {
         let hinges = self.hinges.as_ref();
         hinges.is_some_and(|pins| pins.hinges.len() > 3)
     }
 
-    /// Its forces and rotations; none while it is undeformed, where they are not determined.
+    /// Returns the present forces and rotations; `None` while the row is undeformed, where the forces are indeterminate.
     #[must_use]
     pub fn state(&self) -> Option<State> {
         self.state_in(&self.condition)
     }
 
-    /// Its forces and rotations in another condition, on the present hinges.
+    /// Returns forces and rotations under another loading, on the present hinges.
     fn state_in(&self, condition: &Condition) -> Option<State> {
         let hinges = self.hinges.as_ref()?;
         hinges.state(self.row, condition, &self.stance)
     }
 
-    /// Moves the supports on from where they are, in a straight line, from this part of a movement to that.
-    ///
+    /// Moves the supports from `movements(from)` to `movements(to)`, along a straight line.
     /// # Errors
-    /// When the row is lost where it gives way.
+    /// If no equilibrium is found where the hinges become inadmissible.
     pub fn move_supports(
         &mut self,
         movements: impl Fn(f64) -> Movements,
@@ -297,8 +295,7 @@ impl<'a> Follower<'a> {
         self.follow(&way, [from, to], (to - from) / extent)
     }
 
-    /// Moves the undeformed row along as a whole, the left foot in a straight line: it is as it was, until gravity on what has turned opens
-    /// its joints.
+    /// Moves the undeformed row as one rigid body with its supports, until gravity opens joints of the rotated row.
     fn move_along(
         &mut self,
         movements: &impl Fn(f64) -> Movements,
@@ -322,37 +319,35 @@ impl<'a> Follower<'a> {
         Ok(Reached::End)
     }
 
-    /// The push to a side, in units of gravity, that makes the row give way where it stands; `None` where none does. Zero where ties hold it
-    /// on more than three hinges.
-    ///
+    /// Returns the push to a side, in multiples of gravity, that starts a motion of the present state; `None` if no push does. The push is zero if
+    /// ties hold the row on more than three hinges.
     /// # Errors
-    /// When the velocities of a trial are not found.
+    /// If the velocities of a trial mechanism are not found.
     pub fn first_motion_g(&self, sway: Sway) -> Result<Option<f64>, ContactError> {
         if self.is_held_by_ties() {
             return Ok(Some(0.0));
         }
         match onset_at(self.row, &self.stance, sway) {
-            // Where it is about to fall, rounding may leave it on either side of zero.
+            // Rounding errors may make the push negative if the row is about to fall.
             Ok(onset) => Ok(onset.map(|onset| onset.acceleration_g.max(0.0))),
             Err(StabilityError::CannotStand(_)) => Ok(Some(0.0)),
             Err(StabilityError::Contact(error)) => Err(error),
         }
     }
 
-    /// Pushes the row to a side until it falls, and returns that push in units of gravity; `None` where none was met. `first_g` is the push
-    /// of its first motion. The row itself stays where it is.
-    ///
+    /// Returns the push to a side, in multiples of gravity, at which the row falls; `None` if it does not fall below 100 times gravity. `first_g` is
+    /// the push of the first motion. The row itself stays in its present state.
     /// # Errors
-    /// When the row is lost where it gives way.
+    /// If no equilibrium is found where the hinges become inadmissible.
     pub fn capacity_g(&self, sway: Sway, first_g: f64) -> Result<Option<f64>, SettlingError> {
-        // Undeformed, its joints hold it until they are four; then only ties can.
+        // The first motion of an undeformed row is a mechanism with four hinges; only ties can then carry more push.
         let is_built = self.hinges.is_none();
         if is_built && self.row.ties.is_empty() {
             return Ok(Some(first_g));
         }
         let from_g = if is_built { first_g } else { 0.0 };
-        // At the end of a way it lacks all the slack, with a force that a push may not even change: where the thrust vanishes, the force at
-        // the crown. The slack is counted from there, so that the last digit of that force does not make it fall.
+        // At the end of a path the margin may be minus the tolerance, in a force that a push may not change (the force at the crown where the thrust
+        // vanishes). Measure the tolerance from the present margin, so that rounding errors of that force are no fall.
         let lacks = self.state().map_or(0.0, |state| -state.margin().min(0.0));
         let mut pushed = self.clone();
         pushed.slack = ROUNDING + lacks;
@@ -363,14 +358,14 @@ impl<'a> Follower<'a> {
         };
         let reached = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
         Ok(match reached {
-            // Two computations of one push differ by rounding.
+            // Two computations of the same push differ by rounding errors.
             Reached::Falls(capacity_g) => Some(capacity_g.max(first_g)),
             Reached::End => None,
         })
     }
 
-    /// Follows what changes along a way whose parameter changes by `unit` while a support goes by the size of the row, or turns by a radian,
-    /// or a push grows by gravity.
+    /// Follows the equilibrium along a path from one parameter to another. The parameter changes by `unit` while a support moves by the size of the
+    /// row or turns by a radian, or while a push grows by gravity.
     fn follow(
         &mut self,
         way: &impl Fn(f64) -> Condition,
@@ -398,7 +393,7 @@ impl<'a> Follower<'a> {
                 continue;
             }
             if let Some(state) = held {
-                // The memory of ties depends on the path.
+                // The state of ties depends on the path.
                 if !self.row.ties.is_empty() {
                     rates = self.rates(&state, next - low).collect();
                     self.stand(&condition, state);
@@ -410,7 +405,7 @@ impl<'a> Follower<'a> {
                 continue;
             }
             let margin = |at: f64| self.margin(self.state_in(&way(at)).as_ref());
-            // Where ties hold it, its forces are found to this much.
+            // With ties the forces are accurate to the tolerance only.
             let is_held = self.is_held_by_ties();
             let rounding = if is_held { self.slack } else { 0.0 };
             let (last, _) = falls_below_zero(low, (next, margin_there), rounding, margin);
@@ -425,14 +420,15 @@ impl<'a> Follower<'a> {
         Ok(Reached::End)
     }
 
-    /// Rates at which blocks turn on the way to another state.
+    /// Returns the rotation rates of the blocks between here and another state, over a distance `way` along the path.
     fn rates(&self, there: &State, way: f64) -> impl Iterator<Item = f64> {
         let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);
         turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / way)
     }
 
-    /// Whether blocks turn on the way to a state so far on as fast as before, and no tie yields or breaks. Without ties there is no before.
+    /// Returns whether all blocks turn as fast as in the step `before`, and no tie yields or breaks. Returns false without a step before, as without
+    /// ties.
     fn goes_evenly(&self, there: &State, before: &[f64], way: f64) -> bool {
         let most = before.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         let alike =
@@ -443,19 +439,19 @@ impl<'a> Follower<'a> {
         !before.is_empty() && before_and_now.all(alike) && ties.eq(there.ties.iter().map(yielded))
     }
 
-    /// Margin of a state above the slack; not a number if there is none.
+    /// Returns the margin of a state plus the tolerance; NaN without a state.
     fn margin(&self, state: Option<&State>) -> f64 {
         state.map_or(f64::NAN, |state| state.margin() + self.slack)
     }
 
-    /// Places the row on its hinges in a condition in which they hold it.
+    /// Moves the row to a loading that its hinges can carry.
     fn stand_in(&mut self, condition: &Condition) {
         if let Some(state) = self.state_in(condition) {
             self.stand(condition, state);
         }
     }
 
-    /// Places the row on its hinges in a condition in which their state is known.
+    /// Moves the row to a loading, with a known state of its hinges.
     fn stand(&mut self, condition: &Condition, state: State) {
         self.condition = *condition;
         self.stance.placement.move_supports(condition.supports);
@@ -463,8 +459,8 @@ impl<'a> Follower<'a> {
         self.stance.ties = state.ties;
     }
 
-    /// Other hinges that hold the row in a condition beyond that of its own, where ties let it go there little by little: those that the last
-    /// equilibrium lacks, without those that would shut.
+    /// Returns other hinges, and their state, that carry a loading beyond the present one. Inadmissible joints become hinges and closing hinges
+    /// leave, as is possible only with ties; `None` without ties, or if no such hinges are found.
     fn exchanged(&self, condition: &Condition) -> Option<(Pins, State)> {
         if self.row.ties.is_empty() {
             return None;
@@ -481,7 +477,7 @@ impl<'a> Follower<'a> {
         None
     }
 
-    /// Goes on from where the present hinges hold it last. Returns from where on others do; `None` where it falls.
+    /// Replaces hinges that become inadmissible. Returns the position along the path from which other hinges carry the row; `None` if it falls.
     fn give_way(
         &mut self,
         way: &impl Fn(f64) -> Condition,

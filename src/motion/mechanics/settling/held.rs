@@ -1,8 +1,8 @@
-//! The first mechanism of a row, held at finite displacements by a push: a row on one support, or one with ties.
+//! The first mechanism of a row, in equilibrium at finite displacements under a decreasing push: for rows on one support, or with ties.
 //!
-//! Its hinges are those that a push opens while the ties pull with their prestress. They stay where they are; a tie pulls by how far the
-//! mechanism has stretched it, yields and breaks. A stack without ties that starts as one block about a toe moves as that block up to
-//! its unstable equilibrium: the push and the weight keep their direction relative to the block, so no other joint opens.
+//! A push opens the hinges of the mechanism while the ties pull with their prestress. The hinges stay in the same joints. The mechanism stretches the
+//! ties, which may yield and break. A stack without ties that starts to rock as one block about a toe moves as that block up to its unstable
+//! equilibrium: push and weight keep their direction relative to the block, so no other joint opens.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,35 +20,34 @@ use crate::mechanics::stability::{RowOnset, onset};
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::TieMemory;
 
-/// The way of a mechanism is gone in steps of this many radians.
+/// Rotation of the first body in a step along the mechanism, in radians.
 const STEP_RAD: f64 = 1e-3;
 
-/// Why a row is not held along a mechanism, in words: it does not stand, no push moves it, its mechanism may go on in several ways, or does
-/// not lose its strength.
+/// Reason, in words, why a row cannot be followed along a mechanism: it is not stable, no push moves it, its mechanism has several degrees of
+/// freedom, or the mechanism never loses its strength.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{0}")]
 pub struct HeldError(String);
 
-/// The first mechanism of a row to a side.
+/// First mechanism of a row under a push to a side.
 #[derive(Clone, Debug)]
 pub struct Held<'a> {
     row: &'a Row,
     sway: Sway,
-    /// Its hinges.
+    /// Hinges of the mechanism.
     pub pins: Pins,
-    /// 1 where the first body turns anticlockwise, or -1.
+    /// 1 if the first body turns anticlockwise, -1 if it turns clockwise.
     sense: f64,
-    /// Rotation at which it has lost its strength.
+    /// Rotation of the first body at which the push becomes zero, in radians.
     end_rad: f64,
-    /// Memory of its ties, step by step.
+    /// States of the ties after each step.
     ties: Vec<Vec<TieMemory<Lanes<1>>>>,
 }
 
 impl<'a> Held<'a> {
-    /// That of a row.
-    ///
+    /// Follows the first mechanism of a row until the push becomes zero.
     /// # Errors
-    /// When it does not start as a mechanism of one degree of freedom, or has no end.
+    /// If the first motion is no mechanism of one degree of freedom, or the push never becomes zero.
     pub fn new(row: &'a Row, sway: Sway) -> Result<Self, HeldError> {
         let (onset, side) = (onset(row, sway), sway.name());
         let onset = onset.map_err(|error| HeldError(error.to_string()))?;
@@ -85,7 +84,7 @@ impl<'a> Held<'a> {
         }))
     }
 
-    /// Number of moving bodies.
+    /// Returns the number of moving bodies.
     #[must_use]
     pub fn bodies(&self) -> usize {
         match self.row.supports {
@@ -94,10 +93,9 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// The mechanism displaced by this part of its way.
-    ///
+    /// Returns the mechanism at a fraction `part` of its ultimate displacement.
     /// # Panics
-    /// Never: its bodies meet on all of its way.
+    /// Never: the bodies meet at all displacements of the mechanism.
     #[must_use]
     pub fn displaced(&self, part: f64) -> Displaced {
         let q_rad = part * self.end_rad;
@@ -111,7 +109,7 @@ impl<'a> Held<'a> {
         let state = self.pins.state_at(self.row, &condition, &poses, before);
         Displaced {
             q_rad,
-            // A tie that breaks may take all strength at once.
+            // A breaking tie may remove all strength at once, so the computed push may not be zero here.
             acceleration_g: if part == 1.0 { 0.0 } else { push_g },
             hinges_m: self.pins.at_m(&poses),
             poses: poses[1..=self.bodies()].to_vec(),
@@ -119,7 +117,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// The parts of its way at which each tie yields and breaks. A broken tie yields no more.
+    /// Returns the fractions of the ultimate displacement at which each tie yields and breaks. Yielding after the break does not count.
     #[must_use]
     pub fn ties_give_way(&self) -> Vec<GivesWay> {
         let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
@@ -136,7 +134,8 @@ impl<'a> Held<'a> {
         ties.collect()
     }
 
-    /// The parts of its way between which a tie does for the first time what it does not undo: neighbouring numbers, or both the start.
+    /// Returns the interval of fractions of the ultimate displacement in which an irreversible event of a tie happens: neighbouring numbers, or twice
+    /// zero if it has happened at the start; `None` if it never happens.
     fn first(&self, tie: usize, does: impl Fn(&TieMemory<Lanes<1>>) -> bool) -> Option<[f64; 2]> {
         let does_at = |part: f64| {
             let ties = self.ties_at(part * self.end_rad);
@@ -149,7 +148,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Poses of its parts, before the first hinge, between them and after the last; `None` where they do not meet.
+    /// Returns the poses of the parts: before the first hinge, between hinges, after the last hinge; `None` if the bodies cannot meet.
     fn poses(&self, q_rad: f64) -> Option<Vec<Pose>> {
         let built = Pose::UNDEFORMED;
         let pins_m = &self.pins.pins_m;
@@ -164,25 +163,25 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Memory of its ties there.
+    /// Returns the states of the ties at a rotation of the first body.
     fn ties_at(&self, q_rad: f64) -> Option<Vec<TieMemory<Lanes<1>>>> {
         let poses = self.poses(q_rad)?;
         Some(self.pulls(q_rad, &poses).0)
     }
 
-    /// Memory and forces of its ties there.
+    /// Returns the states, forces and lines of the ties at a rotation of the first body.
     fn pulls(&self, q_rad: f64, poses: &[Pose]) -> Pulls {
         let built = [Pose::UNDEFORMED; 2];
         self.pins.pulls(self.row, &built, poses, self.before(q_rad))
     }
 
-    /// Memory of its ties from the steps on the way there.
+    /// Returns the states of the ties at the last step before a rotation of the first body.
     fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]
     }
 
-    /// The push, in units of gravity, with which it is in equilibrium: its loads have no moment about any pin.
+    /// Returns the push in equilibrium with weight and ties, in multiples of gravity: the loads then have no moment about any pin.
     fn bears_g(&self, q_rad: f64) -> Option<f64> {
         let (row, poses) = (self.row, self.poses(q_rad)?);
         let (_, pulls) = self.pulls(q_rad, &poses);
@@ -196,7 +195,7 @@ impl<'a> Held<'a> {
             let [held, pushed] = [held, pushed].map(|loads| loads[blocks] - loads[joint(0)]);
             return Some(-held.about(pins_m[0]) / pushed.about(pins_m[0]));
         }
-        // With the force in the first pin.
+        // Unknowns: the force in the first pin, and the push.
         let mut equations = Matrix3::zeros();
         let mut right = Vector3::zeros();
         for other in 1..=3 {
@@ -211,7 +210,9 @@ impl<'a> Held<'a> {
     }
 }
 
-/// The hinges that a push opens, if these are a mechanism of one degree of freedom.
+/// Returns the hinges that a push opens.
+/// # Errors
+/// If the hinges are no mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
     let hinges = onset.openings.iter().filter_map(|opening| {
         let (joint, edge) = (opening.joint, opening.hinge?);

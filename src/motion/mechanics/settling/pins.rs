@@ -1,7 +1,7 @@
-//! A row that stands on hinges: two rigid bodies between three pins, in closed form, or more bodies that ties hold.
+//! A row in equilibrium on hinges: two rigid bodies between three pins, in closed form, or more bodies held by ties.
 //!
-//! With more than three hinges the bodies rest where the potential energy of their weight and of the ties is least, of all places in which
-//! the pins meet: Newton's method on the rotations of the bodies and the force in the last pin.
+//! With more than three hinges the equilibrium is a minimum of the potential energy of weight and ties, subject to the condition that the pins meet.
+//! Newton's method solves for the rotations of the bodies and the force in the last pin.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 use serde::Serialize;
@@ -18,82 +18,83 @@ use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
 use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory, sum_pulls};
 
-/// Steps of Newton's method, at most.
+/// Maximum number of Newton steps.
 const MOST_STEPS: usize = 16;
-/// Forces below this part of the weight, and gaps below this part of the size, are rounding.
+/// Tolerance: relative to the weight for forces, relative to the size of the row for gaps.
 const BALANCED: f64 = 1e-12;
-/// A step of Newton's method below this, in radians and parts of the weight, is the last one.
+/// Newton steps below this value, in radians and relative to the weight, end the iteration.
 const SMALL_STEP: f64 = 1e-8;
-/// Bodies that turn by more than this from where they were, in radians, have no equilibrium near by.
+/// Largest rotation of a body from its start, in radians, in the search for an equilibrium.
 const FAR_RAD: f64 = 1.0;
-/// Stiffness of pins over that of bodies, in the test of the stability of an equilibrium.
+/// Stiffness of pins over stiffness of bodies, in the test of stability of an equilibrium.
 const STIFFER: f64 = 1e6;
 
-/// A tie lengthens as its first end goes back, and as its second one goes on.
+/// Signs of the two ends of a tie: a tie lengthens as its first end moves backwards, and as its second end moves forwards.
 const ENDS: [f64; 2] = [-1.0, 1.0];
 
-/// A joint that turns about one of its corners.
+/// Hinge: a joint that turns about one of its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Pin {
-    /// The joint, from 0 on the left support.
+    /// Index of the joint, from 0 on the left support.
     pub joint: usize,
-    /// The edge at which it is closed.
+    /// Edge at which the joint stays closed.
     pub edge: Edge,
 }
 
 /// Hinges, from left to right: three or more.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pins {
-    /// The hinges.
+    /// Joint and edge of every hinge.
     pub hinges: Vec<Pin>,
     /// Corners of the hinges in the undeformed row, in metres.
     pub(super) pins_m: Vec<Vector2<f64>>,
 }
 
-/// Memory of ties, and their forces in N with the lines on which these act.
+/// States of the ties, and their forces in N with the lines of action.
 pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 
-/// A row on hinges: positions and forces.
+/// Positions and forces of a row on hinges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// The hinges.
+    /// Joint and edge of every hinge.
     pub hinges: Vec<Pin>,
-    /// Of the part right of each hinge against the part left of it, anticlockwise.
+    /// Rotation of the part after each hinge relative to the part before it, anticlockwise.
     pub turns_rad: Vec<f64>,
-    /// Opening of each hinge, in radians; a negative one would penetrate.
+    /// Opening of each hinge, in radians; negative if the blocks would overlap.
     pub openings_rad: Vec<f64>,
     /// Rotations of the blocks.
     pub rotations_rad: Vec<f64>,
-    /// Normal force at intrados and extrados of every joint over the weight of the row; of a hinge, all at its corner.
+    /// Normal forces at intrados and extrados of every joint, over the weight of the row. A hinge has its whole force at its corner.
     pub corners: Vec<[f64; 2]>,
-    /// Force of the right support on the row over its weight, with its moment about the origin (in metres).
+    /// Force of the right support on the row over the weight, and its moment about the origin in metres.
     pub right_reaction: Momentum,
-    /// Friction coefficient without which a joint would slide.
+    /// Friction coefficient required to prevent sliding at every joint.
     pub friction: f64,
-    /// Memory of its ties there.
+    /// States of the ties.
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
 impl State {
-    /// Margin before the hinges give way: the least of all openings in radians and of all normal forces over the weight.
+    /// Returns the safety margin of the hinges: the least of all openings in radians and of all normal forces over the weight. A state is admissible
+    /// if the margin is not negative.
     #[must_use]
     pub fn margin(&self) -> f64 {
         let forces = self.pressing().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
-        // A margin that is not a number counts as none.
+        // `lower` keeps NaN, so that a margin with NaN is never admissible.
         openings.chain(forces).fold(f64::INFINITY, lower)
     }
 
-    /// Whether its hinges hold the row, but for this slack.
+    /// Returns whether the state is admissible within a tolerance.
     pub(super) fn holds(&self, slack: f64) -> bool {
         self.margin() >= -slack
     }
 
-    /// Hinges with less than this margin: the corner at which the thrust line leaves a joint, or a hinge that shuts.
+    /// Returns the joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
     #[must_use]
     pub fn beyond(&self, margin: f64) -> Vec<Pin> {
         let pull = self.pressing().filter(|(_, force)| *force < margin);
-        // Where one corner would pull the thrust line is at the other.
+        // If one corner would pull, the thrust line is beyond the opposite one.
         let pull = pull.map(|(hinge, _)| Pin {
             edge: hinge.edge.opposite(),
             ..hinge
@@ -103,7 +104,7 @@ impl State {
         pull.chain(shut.map(|(hinge, _)| *hinge)).collect()
     }
 
-    /// All forces that must press.
+    /// Returns all normal forces that must be compressive, with their corners.
     fn pressing(&self) -> impl Iterator<Item = (Pin, f64)> + '_ {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
@@ -118,7 +119,7 @@ impl State {
 }
 
 impl Pins {
-    /// These hinges of a row, three or more from left to right.
+    /// Returns hinges of a row, given from left to right; three or more between two supports.
     #[must_use]
     pub fn new(row: &Row, hinges: Vec<Pin>) -> Self {
         let pin_m = |hinge: &Pin| row.joints[hinge.joint].corner_m(hinge.edge);
@@ -128,7 +129,7 @@ impl Pins {
         }
     }
 
-    /// The open joints of a placement; `None` where they are less than three, or one has parted.
+    /// Returns the open joints of a placement as hinges; `None` if these are fewer than three, or if a joint is open at both edges.
     #[must_use]
     pub fn of(row: &Row, placement: &Placement) -> Option<Self> {
         let open = placement.gaps_m.iter().enumerate();
@@ -144,8 +145,8 @@ impl Pins {
         (hinges.len() >= 3).then(|| Self::new(row, hinges))
     }
 
-    /// These hinges with others exchanged: those already present leave, new ones are added; `None` if that leaves less than three, or a joint would open at
-    /// both edges.
+    /// Returns these hinges exchanged with others: hinges present in both sets leave, new ones are added. `None` if fewer than three remain, or if a
+    /// joint would be open at both edges.
     pub(super) fn exchanged(&self, row: &Row, others: &[Pin]) -> Option<Self> {
         let stay = self.hinges.iter().filter(|hinge| !others.contains(hinge));
         let new = others.iter().filter(|hinge| !self.hinges.contains(hinge));
@@ -155,10 +156,11 @@ impl Pins {
         (hinges.len() >= 3 && apart).then(|| Self::new(row, hinges))
     }
 
-    /// Positions of the bodies between the pins, of a row that stood so before; `None` where the pins do not meet, or nothing holds the bodies.
+    /// Returns the poses of the bodies between the pins, for a row that comes from the state `before`; `None` if the pins cannot meet, or no stable
+    /// equilibrium is found.
     fn bodies(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<Vec<Pose>> {
         match self.pins_m[..] {
-            // A snap may have taken the middle pin to the other side of the outer ones than that on which it was built.
+            // A snap may have moved the middle pin to the other side of the line between the outer pins.
             [left, middle, right] => {
                 let side = side(&self.pins_in(before));
                 two_bodies([left, middle, right], &condition.supports, side)
@@ -167,7 +169,7 @@ impl Pins {
         }
     }
 
-    /// Positions of the pins in a row that stands so.
+    /// Returns the positions of the pins in a given state of the row, in metres.
     fn pins_in(&self, stance: &Stance) -> Vec<Vector2<f64>> {
         let placement = &stance.placement;
         let last = &placement.support_poses[1];
@@ -176,8 +178,8 @@ impl Pins {
             .collect()
     }
 
-    /// Positions and forces of a row on these hinges that stood so before; `None` where they cannot meet, carry no force, or nothing holds
-    /// them.
+    /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
+    /// equations are singular, or no stable equilibrium is found.
     #[must_use]
     pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<State> {
         let mut poses = vec![condition.supports[0]];
@@ -186,25 +188,25 @@ impl Pins {
         self.state_at(row, condition, &poses, &before.ties)
     }
 
-    /// Positions of the pins, with the parts between them at these poses.
+    /// Returns the positions of the pins, in metres, for given poses of the parts before, between and after the pins.
     pub(super) fn at_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
         let pins = self.pins_m.iter().zip(&poses[1..]);
         pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
     }
 
-    /// Number of hinges before each block.
+    /// Returns the number of hinges before each block.
     fn parts(&self, row: &Row) -> impl Iterator<Item = usize> {
         (0..row.blocks.len()).map(|block| self.part_of(block))
     }
 
-    /// Number of hinges before a block.
+    /// Returns the number of hinges before a block.
     pub(super) fn part_of(&self, block: usize) -> usize {
         let before = self.hinges.iter().filter(|hinge| hinge.joint <= block);
         before.count()
     }
 
-    /// Forces of a row whose parts before, between and after the hinges have these poses, and whose ties remembered so much before; `None`
-    /// where they carry none.
+    /// Returns the forces of a row for given poses of the parts before, between and after the hinges. `before` are the states of the ties in the step
+    /// before. `None` if the equilibrium equations are singular.
     pub(super) fn state_at(
         &self,
         row: &Row,
@@ -224,12 +226,12 @@ impl Pins {
         let loads = self.loads(row, poses, condition.force_g, &pulls);
         let blocks = row.blocks.len();
         let start = match row.supports {
-            // Nothing holds a stack from above.
+            // The end of a stack is free.
             Supports::Left => loads[blocks] * -1.0,
             Supports::Both => {
                 let pins_m = self.at_m(poses);
                 let between = |last: usize| loads[joints[last]] - loads[joints[0]];
-                // The force at the first pin has no moment with the loads about any two others.
+                // Moment equilibrium of the loads about two other pins gives the force at the first pin.
                 let others = [joints.len() / 2, joints.len() - 1];
                 let arms = others.map(|other| pins_m[0] - pins_m[other]);
                 let equations = Matrix2::new(-arms[0].y, arms[0].x, -arms[1].y, arms[1].x);
@@ -242,12 +244,12 @@ impl Pins {
         let mut corners = Vec::with_capacity(row.joints.len());
         for (index, joint) in row.joints.iter().enumerate() {
             let force = start + loads[index];
-            // Either face of a shut joint, and the corner of a hinge, are where the block after it is.
+            // The faces of a closed joint, and the corner of a hinge, move with the block after the joint.
             let pose = poses[self.part_of(index)];
             let hinge = self.hinges.iter().position(|hinge| hinge.joint == index);
             let mut along = pose.turned(joint.along());
             if let Some(index) = hinge {
-                // At the mean angle of its faces.
+                // Direction of the joint: mean of the directions of its two faces.
                 along = Pose::new(-0.5 * turns_rad[index], Vector2::zeros()).turned(along);
             }
             let normal = turned(along) * row.handedness;
@@ -278,7 +280,7 @@ impl Pins {
         })
     }
 
-    /// Memory and forces of the ties of a row whose parts have these poses.
+    /// Returns states, forces and lines of the ties for given poses of the parts.
     pub(super) fn pulls(
         &self,
         row: &Row,
@@ -296,7 +298,8 @@ impl Pins {
         ties.unzip()
     }
 
-    /// Sums of the loads on the blocks before every joint, and at last on all, over the weight: a force on a unit of mass, and pulls in N.
+    /// Returns the sums of the loads on all blocks before each joint, then on all blocks, over the weight. Loads are a force on a unit of mass, in
+    /// multiples of gravity, and tie forces in N.
     pub(super) fn loads(
         &self,
         row: &Row,
@@ -322,13 +325,14 @@ impl Pins {
     }
 }
 
-/// Side of the middle one of three pins, seen from the first to the last: 1 to the left, or -1.
+/// Returns 1 if the middle one of three pins is left of the line from the first to the last, -1 if it is right.
 pub(super) fn side(pins_m: &[Vector2<f64>]) -> f64 {
     let [left, middle, right] = [0, 1, 2].map(|pin| pins_m[pin]);
     (right - left).perp(&(middle - left)).signum()
 }
 
-/// Positions of two bodies between three pins, the middle pin on this side of the outer ones; `None` where these are too far apart.
+/// Returns the poses of two bodies between three pins, with the middle pin on the given side of the outer pins. `None` if the outer pins are too far
+/// apart.
 pub(super) fn two_bodies(
     [left, middle, right]: [Vector2<f64>; 3],
     supports: &[Pose; 2],
@@ -338,7 +342,7 @@ pub(super) fn two_bodies(
     let (first, second) = (middle - left, right - middle);
     let apart = ends[1] - ends[0];
     let distance = apart.norm();
-    // The middle pin by its components along the line between the outer ones, and across it on its side.
+    // Components of the middle pin along and across the line between the outer pins.
     let squares = [distance, first.norm(), second.norm()].map(|length| length * length);
     let along = (squares[0] + squares[1] - squares[2]) / (2.0 * distance);
     let height_squared = squares[1] - along * along;
@@ -357,30 +361,31 @@ pub(super) fn two_bodies(
     ])
 }
 
-/// Bodies between more than three pins, in equilibrium with the ties that hold them. Forces are parts of the weight.
+/// Bodies between more than three pins, in equilibrium with the ties that hold them. Forces are relative to the weight.
 struct Chain<'a> {
     pins: &'a Pins,
     row: &'a Row,
     condition: &'a Condition,
-    /// Of every body: from its first pin to its last one, in metres.
+    /// Vector from the first to the last pin of every body, in metres.
     arms_m: Vec<Vector2<f64>>,
-    /// Of every body: its first moment of mass about its first pin, and what is beyond it at its last one, over the whole mass.
+    /// First moment of mass of every body about its first pin, with the mass of all later bodies at its last pin, over the mass of the row, in
+    /// metres.
     moments_m: Vec<Vector2<f64>>,
     bars: Vec<Bar>,
     rotations_rad: Vec<f64>,
 }
 
-/// A tie of a chain that has not broken. Its forces are parts of the weight.
+/// Unbroken tie of a chain. Forces are relative to the weight.
 struct Bar {
-    /// Number of hinges before each of its ends.
+    /// Number of hinges before each end.
     parts: [usize; 2],
-    /// Its ends in the undeformed row, the vector between them, and their distance.
+    /// Ends in the undeformed row, the vector between them, and its length.
     ends_m: [Vector2<f64>; 2],
     apart_m: Vector2<f64>,
     length_m: f64,
-    /// Its stretch there beyond its earlier yielding.
+    /// Elastic stretch in the undeformed row: the initial stretch minus the plastic stretch.
     stretch_m: f64,
-    /// The stretch beyond which it has broken, counted likewise.
+    /// Stretch at which the tie breaks, minus the plastic stretch.
     breaks_m: f64,
     stiffness_m: f64,
     most: f64,
@@ -403,21 +408,21 @@ impl Bar {
     }
 }
 
-/// The effect of ties between two bodies, each described by the place of its first pin and its rotation: slopes of their energy, and
-/// curvatures. Ends count as if a tie pulled both bodies the same way.
+/// Gradient and Hessian of the energy of all ties between two bodies. The coordinates of a body are the position of its first pin and its rotation.
+/// Signs are as if a tie pulled both bodies in the same direction.
 #[derive(Default)]
 struct Between {
     force: Vector2<f64>,
     moments: Vector2<f64>,
     along: Vector2<f64>,
     places: Matrix2<f64>,
-    /// By places (rows) and rotations (columns).
+    /// Second derivatives by positions (rows) and rotations (columns).
     mixed: Matrix2<f64>,
     rotations: Matrix2<f64>,
 }
 
 impl Between {
-    /// Sums the forces of ties between two bodies at these poses; `pins_m` are the first pins of the bodies.
+    /// Sums the ties between two bodies at these poses; `pins_m` are the first pins of the bodies.
     fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
         let mut all = Self::default();
         for bar in bars {
@@ -425,7 +430,7 @@ impl Between {
             let by_m = (ends_m[1] - bar.ends_m[1]) - (ends_m[0] - bar.ends_m[0]);
             let now_m = bar.apart_m + by_m;
             let length_m = now_m.norm();
-            // As in `Tie::span`, small changes keep their digits.
+            // This form avoids cancellation for small changes, as in `Tie::span`.
             let lengthened_m = by_m.dot(&(by_m + bar.apart_m * 2.0)) / (length_m + bar.length_m);
             let stretch_m = lengthened_m + bar.stretch_m;
             if stretch_m <= 0.0 || stretch_m >= bar.breaks_m {
@@ -445,7 +450,7 @@ impl Between {
             all.force += along * force;
             all.moments += turns * force;
             all.along += across * force;
-            // It pulls harder as it lengthens, and turns with its ends.
+            // Material stiffness along the tie, geometric stiffness across it.
             for (way, turns, stiffness_m) in [
                 (along, turns, stiffness_m),
                 (turned(along), across, force * per_length),
@@ -460,18 +465,18 @@ impl Between {
     }
 }
 
-/// Residuals of the equations of a chain, and their slopes.
+/// Residuals of the equilibrium equations of a chain, and their derivatives.
 struct Unbalanced {
-    /// Slopes of the energy by the rotations.
+    /// Derivatives of the energy by the rotations.
     slopes: DVector<f64>,
     curvature: DMatrix<f64>,
-    /// Distance of the last pin from its place on the support, and its slopes.
+    /// Gap between the last pin and its position on the support, and its derivatives.
     parted: Vector2<f64>,
     reach: DMatrix<f64>,
 }
 
 impl Unbalanced {
-    /// With this force of the right support on the last pin.
+    /// Adds the force of the right support on the last pin.
     fn held_by(mut self, reaction: Vector2<f64>) -> Self {
         for (body, reach) in self.reach.column_iter().enumerate() {
             self.slopes[body] -= reach[0] * reaction.x + reach[1] * reaction.y;
@@ -523,7 +528,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Positions of the bodies.
+    /// Returns the poses of the bodies.
     fn poses(&self) -> Vec<Pose> {
         let mut at = self.condition.supports[0].of(self.pins.pins_m[0]);
         let bodies = self.rotations_rad.iter().enumerate();
@@ -535,7 +540,7 @@ impl<'a> Chain<'a> {
         poses.collect()
     }
 
-    /// Slopes and curvatures of the energy, without the right support.
+    /// Returns gradient and Hessian of the energy, without the force of the right support.
     fn unbalanced(&self) -> Unbalanced {
         let count = self.rotations_rad.len();
         let poses = self.poses();
@@ -560,8 +565,8 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Adds what ties do. Each acts on the two bodies at its ends alone while these are described by the places of their first pins and
-    /// their rotations; their effect on these then follows from the rotations.
+    /// Adds gradient and Hessian of the ties. Each tie acts on two bodies, described by positions of first pins and rotations. The chain rule then
+    /// gives the derivatives by the rotations of all bodies.
     fn add_ties(&self, poses: &[Pose], slopes: &mut DVector<f64>, curvature: &mut DMatrix<f64>) {
         let count = poses.len();
         let supports = &self.condition.supports;
@@ -573,7 +578,7 @@ impl<'a> Chain<'a> {
         for bars in alike {
             let tied = bars[0].parts;
             let body = tied.map(|part| part.checked_sub(1).filter(|body| *body < count));
-            // A support has no pin, and does not turn.
+            // Supports have no first pin and do not turn.
             let pins_m = body.map(|body| body.map_or(Vector2::zeros(), |body| pins_m[body]));
             let all = Between::new(bars, tied.map(|part| &parts[part]), pins_m);
             for (one, first) in body.iter().enumerate() {
@@ -593,7 +598,7 @@ impl<'a> Chain<'a> {
                 }
             }
         }
-        // A body moves the pins of all bodies after it.
+        // The rotation of a body moves the pins of all bodies after it.
         let mut by_rotations = DMatrix::zeros(3 * count, count);
         for (body, pose) in poses.iter().enumerate() {
             let arm_m = pose.turned(self.arms_m[body]);
@@ -608,11 +613,12 @@ impl<'a> Chain<'a> {
         *curvature += by_rotations.tr_mul(&(stiffnesses * &by_rotations));
     }
 
-    /// Turns the bodies until they rest; `None` where they go far, or come to where the energy does not rise whatever they do.
+    /// Finds the stable equilibrium by Newton's method and returns the poses of the bodies. `None` if a body turns by more than a radian, an
+    /// equilibrium is unstable, or the iteration does not converge.
     fn rest(mut self) -> Option<Vec<Pose>> {
         let count = self.rotations_rad.len();
         let size_m = self.row.size_m;
-        // The force that balances the energy best.
+        // Start with the least-squares force of the support.
         let mut free = self.unbalanced();
         let squares = &free.reach * free.reach.transpose();
         let force = squares.lu().solve(&(&free.reach * &free.slopes))?;
@@ -620,7 +626,7 @@ impl<'a> Chain<'a> {
         let start_rad = self.rotations_rad.clone();
         for _ in 0..MOST_STEPS {
             let left = free.held_by(reaction);
-            // Stable is where the energy rises whatever the bodies do while the pins meet.
+            // Stability: the Hessian is positive definite in all directions in which the pins still meet.
             let pins = left.reach.transpose() * &left.reach;
             let held = STIFFER * left.curvature.amax() / pins.amax();
             (&left.curvature + pins * held).cholesky()?;
@@ -639,7 +645,7 @@ impl<'a> Chain<'a> {
                 *rotation_rad += by;
             }
             reaction += Vector2::new(step[count], step[count + 1]);
-            // Errors after a step are of the order of its square.
+            // Newton's method converges quadratically: the remaining error is of the order of the square of the step.
             if step.amax() < SMALL_STEP {
                 return Some(self.poses());
             }
@@ -660,8 +666,7 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// The curvature of the energy of weight, ties and the force in the last pin is the slope of its slopes, by central differences: on five
-    /// hinges, with ties between bodies and from one to the ground.
+    /// The Hessian of the energy equals central differences of its gradient: for a chain on five hinges, with ties between bodies and to the ground.
     #[test]
     fn curvatures_are_slopes_of_slopes() {
         let ring = Ring::new(0.15, PI).unwrap();
@@ -710,7 +715,7 @@ mod tests {
                 slopes
             };
             let due = (slopes_at(step) - slopes_at(-step)) / (2.0 * step);
-            // Squares of the step, and rounding over it.
+            // Truncation error of the difference, and rounding error over the step.
             let off = (found.column(body) - due).amax();
             assert!(off < 1e-8 * found.amax(), "{body}: {off:e}");
         }
