@@ -1,20 +1,17 @@
-//! The velocities of a row of blocks whose joints may open but neither close further nor slide.
+//! Velocities of a row of blocks under unilateral contact: joints may open, but may neither close beyond contact nor slide.
 //!
-//! Given the velocities that the blocks would have without each other, the row takes the nearest ones, in the metric of the kinetic
-//! energy, among those that close no joint further: a convex quadratic program, with one solution. Its multipliers are the impulses
-//! at the corners of the joints. Both are compressive where a joint stays shut: the thrust line then passes between them. Where it
-//! reaches a corner, the joint opens about that corner. So the active constraints are the shut joints (both corners active), the
-//! hinges (one), and the parted joints (none).
+//! Input are the free velocities: those of the blocks without contact forces. The solution is the nearest admissible set of velocities, in the metric
+//! of the kinetic energy. This is a strictly convex quadratic program with a unique solution. Its multipliers are the impulses at the corners of the
+//! joints. In a closed joint both impulses are compressive: the thrust line passes between the corners. Where the thrust line reaches a corner, the
+//! joint opens about that corner. The active set thus has both corners of closed joints, one corner of hinges, and no corner of parted joints.
 //!
-//! Shut joints make rigid bodies of the blocks between open joints. The impulses at open joints solve a block-tridiagonal system of
-//! 2x2 blocks, one per open joint; those at the shut joints follow by one running sum of the changes of momentum. The active set is
-//! found from the last one by exchanges of many corners at once, which nearly always succeed. The rest is left to the dual method
-//! of Goldfarb and Idnani ("A numerically stable dual method for solving strictly convex quadratic programs", Math. Programming 27,
-//! 1983): corners that pull are released, then the corner that closes fastest is stopped. Rows that depend on others never become
-//! active, so rest, where the impulses are not unique, is no special case.
+//! The blocks between open joints form rigid bodies. The impulses at open joints solve a block-tridiagonal system with one 2x2 block per open joint.
+//! The impulses at closed joints follow from a running sum of momentum changes. The search for the active set starts from the last one and exchanges
+//! many corners at once, which nearly always succeeds. Otherwise the dual method of Goldfarb and Idnani takes over ("A numerically stable dual method
+//! for solving strictly convex quadratic programs", Math. Programming 27, 1983): it releases corners that pull, then adds the corner that closes
+//! fastest. Linearly dependent constraints never become active. A row at rest, with impulses that are not unique, is therefore no special case.
 //!
-//! Bodies and pivots do not depend on the motion: those to the left of the first change of corners are kept from solution to
-//! solution.
+//! Bodies and pivots do not depend on the velocities: those left of the first changed corner are reused from one solution to the next.
 
 mod answer;
 pub mod closing;
@@ -36,28 +33,27 @@ use answer::Answer;
 use exchange::Wrong;
 use factor::Factor;
 
-/// Corner impulses pull when they are more negative than this fraction of all momentum, for rows that nothing presses together.
+/// Tolerance for tensile corner impulses, relative to the sum of all momenta; it matters for rows without compression.
 const MOMENTUM_TOLERANCE: f64 = 1e-14;
-/// Corners count as closing when they do so faster than this fraction of the largest velocity.
+/// Tolerance for closing rates of corners, relative to the largest velocity.
 const RATE_TOLERANCE: f64 = 1e-11;
-/// A corner depends on the active ones if a unit impulse accelerates it by less than this fraction of what
-/// it does to free bodies.
+/// A corner is linearly dependent on the active ones if its compliance under a unit impulse is below this fraction of the compliance of free bodies.
 const DEPENDENCE: f64 = 1e-10;
 
-/// Why a program has no solution, or none was found.
+/// Reason why a quadratic program has no solution, or why none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ContactError {
-    /// The program was not solved within its number of iterations, at the loosest tolerance.
+    /// The active set was not found within the maximum number of iterations, at the loosest tolerance.
     #[error(
         "the velocities of the blocks were not found in {iterations} iterations: where the heaviest block is more than some \
          1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
     )]
     Unsolved {
-        /// Iterations spent.
+        /// Number of iterations.
         iterations: usize,
     },
-    /// No velocities satisfy the program: whatever the blocks do, the corner of a joint closes further. Supports that approach each other
-    /// jam a flat, thick arch.
+    /// No velocities are admissible: the corner of a joint closes further under any motion of the blocks. An example is a flat, thick arch whose
+    /// supports approach each other.
     #[error(
         "the blocks jam: rigid blocks that do not slide cannot follow the supports, since joint {joint} (from 0 at the left springing) \
          would overlap"
@@ -68,31 +64,31 @@ pub enum ContactError {
     },
 }
 
-/// The cost of a solution.
+/// Computational effort of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Systems of pin forces solved.
+    /// Number of solved pin systems.
     pub iterations: usize,
-    /// Number of times that the tolerance was relaxed tenfold.
+    /// Number of times the tolerance was relaxed, tenfold each time.
     pub relaxed: usize,
 }
 
-/// Corners of a joint, intrados and extrados: true for those concerned.
+/// Flags of the two corners of a joint: intrados, extrados.
 pub type Corners = [bool; 2];
 
-/// The data of a program, besides the positions.
+/// Input of a quadratic program, besides the positions.
 #[derive(Clone, Debug)]
 pub struct Load {
-    /// Motion of every block without the others (m/s at the origin, rad/s).
+    /// Free velocity of every block, without contact forces (m/s at the origin, rad/s).
     pub free: Vec<Twist>,
-    /// Motion of the right block of every joint relative to its left one that counts as standing still.
+    /// Prescribed relative velocity of the block after each joint against the block before it, at which the joint counts as at rest.
     pub jumps: Vec<Twist>,
-    /// Corners that may not close further.
+    /// Corners in contact, which may not close further.
     pub touching: Vec<Corners>,
 }
 
 impl Load {
-    /// None on a row whose joints are shut.
+    /// Returns the zero load of a row with all joints closed.
     #[must_use]
     pub fn none(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
@@ -103,7 +99,7 @@ impl Load {
         }
     }
 
-    /// Takes a force per unit mass on all blocks where they are, with impulses of ties; corners that touch there may not close further.
+    /// Sets the load to a force per unit mass on all blocks of a placement, with forces of ties. Corners in contact are constrained.
     pub(super) fn push<'a>(
         &mut self,
         row: &Row,
@@ -119,10 +115,10 @@ impl Load {
     }
 }
 
-/// The program of a row, with all the memory that it needs and the active set of the last solution.
+/// Quadratic program of a row, with its work space and the active set of the last solution.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Active corners of every joint: where the joint is pressed, in the last solution.
+    /// Active corners of every joint in the last solution: those with a compressive impulse.
     pub active: Vec<Corners>,
     factor: Factor,
     answer: Answer,
@@ -131,16 +127,16 @@ pub struct Program {
     /// Velocities of the blocks in the last solution.
     pub velocities: Vec<Twist>,
     force_floor: f64,
-    /// Corners that pull or close.
+    /// Corners that violate a condition: active ones that pull, or inactive ones that close.
     wrong: Vec<Wrong>,
-    /// The active set before the last exchange.
+    /// Active set before the last exchange.
     earlier: Vec<Corners>,
-    /// The joint that closes although all active corners press more the more it is pressed.
+    /// Joint that closes although an impulse there makes no active corner pull.
     jammed: Option<usize>,
 }
 
 impl Program {
-    /// A program for the undeformed row that starts with all joints of a stack shut, or with an arch of three pins.
+    /// Returns a program for the undeformed row. The initial active set has all joints of a stack closed, or three pins in an arch.
     #[must_use]
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
@@ -160,17 +156,17 @@ impl Program {
         program
     }
 
-    /// Takes the positions of the blocks.
+    /// Sets the positions of the blocks.
     pub fn place(&mut self, placement: &Placement) {
         self.factor.place(placement);
     }
 
-    /// Goes back to the initial active set.
+    /// Resets the active set to the initial one.
     pub fn reset(&mut self) {
         self.active.fill([true; 2]);
         if self.factor.row.supports == Supports::Both {
             let last = self.active.len() - 1;
-            // Three hinges, so that the impulses at rest are determined; one block has two joints only.
+            // Three hinges make the impulses at rest unique; a single block has two joints only.
             self.active[0] = [true, false];
             self.active[last] = [last > 1, false];
             if last > 1 {
@@ -179,44 +175,44 @@ impl Program {
         }
     }
 
-    /// Starts the next solution from these active corners.
+    /// Sets the active corners from which the next solution starts.
     pub(crate) fn start_from(&mut self, active: &[Corners]) {
         self.active.copy_from_slice(active);
     }
 
-    /// Starts the next solution with this corner active too.
+    /// Adds a corner to the active set from which the next solution starts.
     pub fn press(&mut self, joint: usize, edge: usize) {
         self.active[joint][edge] = true;
     }
 
-    /// Mass moments of the blocks before each joint, about the origin.
+    /// Returns the mass moments about the origin of all blocks before each joint.
     #[must_use]
     pub fn moments(&self) -> &[MassMoments] {
         &self.factor.row.moments
     }
 
-    /// The joints that are open in the last solution, and the rates of their gaps in m/s, relative to the
-    /// jumps. A corner that is pressed has the rate zero.
+    /// Returns the open joints of the last solution, with the rates of their gaps in m/s beyond the prescribed ones. Active corners have the rate
+    /// zero.
     pub fn open_joints(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
         let joints = self.factor.pins.iter().map(|pin| pin.joint);
         joints.zip(self.answer.rates.iter().copied())
     }
 
-    /// Impulses in N s at the corners of every joint, intrados and extrados.
+    /// Returns the impulses in N s at the corners of every joint: intrados, extrados.
     #[must_use]
     pub(crate) fn corner_impulses(&self) -> &[[f64; 2]] {
         &self.answer.corners
     }
 
-    /// Impulses in N s on the right block of every joint: along the joint towards the extrados, and normal.
+    /// Writes the impulses in N s on the block after each joint: along the joint towards the extrados, and normal to it.
     pub(crate) fn joint_impulses(&self, into: &mut [[f64; 2]]) {
         self.answer.joint_impulses(&self.factor, into);
     }
 
-    /// Solves the program for the row where it was placed.
+    /// Solves the program for the current positions.
     ///
     /// # Errors
-    /// When the active set is not found.
+    /// If the active set is not found.
     pub fn solve(&mut self, load: &Load) -> Result<Effort, ContactError> {
         let largest_rate = self.set_up(load);
         for (active, touching) in self.active.iter_mut().zip(&load.touching) {
@@ -241,7 +237,9 @@ impl Program {
         found.ok_or(ContactError::Unsolved { iterations })
     }
 
-    /// The fastest velocity under a load on the row where it was placed: of a centre, or the rate of a block times the size of the row.
+    /// Returns the largest velocity in m/s under a load: of a block's centre, or of a block's rotation times the size of the row.
+    /// # Errors
+    /// If the active set is not found.
     pub(super) fn fastest(
         &mut self,
         load: &Load,
@@ -257,28 +255,28 @@ impl Program {
         Ok(speeds.fold(0.0, f64::max))
     }
 
-    /// Velocities under another load while the same corners press as in the last solution, even where they would pull.
+    /// Computes the velocities under another load with the active corners of the last solution, even if some of these pull.
     pub(crate) fn solve_alike(&mut self, load: &Load) {
         self.set_up(load);
         self.answer.take_load(&self.factor, None);
         self.set_velocities();
     }
 
-    /// Number of independent motions that the pressed corners allow.
+    /// Returns the number of degrees of freedom under the active constraints.
     pub(crate) fn freedom(&self) -> usize {
         let moving = self.factor.bodies.iter().filter(|body| !body.is_held());
         let pressed = self.factor.pins.iter().filter(|pin| !pin.parted);
         (3 * moving.count()).saturating_sub(2 * pressed.count())
     }
 
-    /// Takes the load; returns the largest velocity.
+    /// Sets the load and returns the largest velocity.
     fn set_up(&mut self, load: &Load) -> f64 {
         let (largest_rate, momentum) = self.factor.row.load(load);
         self.force_floor = MOMENTUM_TOLERANCE * momentum;
         largest_rate
     }
 
-    /// Velocities of the blocks in the last solution. False where they are not finite.
+    /// Computes the velocities of the blocks. Returns false if they are not finite.
     fn set_velocities(&mut self) -> bool {
         let mut sum = 0.0;
         for body in 0..self.factor.bodies.len() {
@@ -293,9 +291,8 @@ impl Program {
         sum.is_finite()
     }
 
-    /// The displacement of least kinetic norm that takes up the closure error of an arch, without opening or shutting a
-    /// joint: changes of the gaps at the open joints, through [`Program::open_joints`]. False when the open joints
-    /// leave no such displacement.
+    /// Computes the displacement of least kinetic norm that removes the closure error of an arch, without opening or closing joints.
+    /// [`Program::open_joints`] then returns the changes of the gaps. Returns false if the open joints allow no such displacement.
     pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
         self.place(placement);
         self.set_up(load);
@@ -311,17 +308,17 @@ impl Program {
     }
 }
 
-/// False also for a pivot that is NaN.
+/// Returns whether a pivot exceeds a limit; false for NaN.
 fn exceeds(pivot: f64, least: f64) -> bool {
     pivot > least
 }
 
-/// The lower of two numbers; the second one if either is NaN.
+/// Returns the lower of two numbers; the second one if either is NaN.
 pub(super) fn lower(one: f64, other: f64) -> f64 {
     if one <= other { one } else { other }
 }
 
-/// The higher of two numbers; the first one if either is NaN.
+/// Returns the higher of two numbers; the first one if either is NaN.
 fn higher(one: f64, other: f64) -> f64 {
     if other > one { other } else { one }
 }
@@ -331,8 +328,8 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Whatever the motion of the blocks, exchanges of many corners lead to the same velocities as the dual method alone, which
-    /// starts from the initial corners. Nearly always they do so without its help, in a few dozen rounds.
+    /// Exchanges of many corners give the same velocities as the dual method alone, which starts from the initial active set. In nearly all programs
+    /// they converge without the dual method, within a few dozen rounds.
     #[test]
     fn the_dual_method_alone_has_the_same_solution() {
         let mut state = 7_u64;
@@ -398,7 +395,7 @@ mod tests {
                 }
             }
         }
-        // Measured: 153 of 160 in at most 39 rounds; in the others corners depend on each other, and the dual method is needed.
+        // Measured: 153 of 160 converge within 39 rounds; the others have dependent corners and need the dual method.
         let counts = [settled, programs, most];
         assert!(20 * settled >= 19 * programs && most <= 60, "{counts:?}");
     }

@@ -1,4 +1,4 @@
-//! The impulses between bodies under a load, and the motion of the bodies that results.
+//! Impulses between bodies under a load, and the resulting velocities of the bodies.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -8,7 +8,7 @@ use crate::mechanics::geometry::field::{Momentum, Twist, turned};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Closure;
 
-/// Motion of a body, given by the velocity of its centre.
+/// Velocities of a body at its centre.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     centre: Vector2<f64>,
@@ -17,7 +17,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// The motion of a body with this momentum.
+    /// Returns the velocities of a body with a given momentum.
     fn with(body: &Body, momentum: &Momentum) -> Self {
         Self {
             centre: body.centre,
@@ -26,7 +26,7 @@ impl Motion {
         }
     }
 
-    /// The motion of a body that a support holds.
+    /// Returns the velocities of a body fixed to a support.
     fn held(twist: Twist) -> Self {
         Self {
             centre: Vector2::zeros(),
@@ -54,7 +54,7 @@ impl Motion {
 }
 
 impl Pin {
-    /// Velocity of its right body against its left one, along the joint and across it.
+    /// Returns the velocity of the right body relative to the left one at the pin, along and normal to the joint.
     fn rate(&self, left: &Motion, right: &Motion) -> Vector2<f64> {
         let apart = right.velocity - left.velocity;
         let [on_left, on_right] = self.turns;
@@ -64,13 +64,13 @@ impl Pin {
         Vector2::new(rate(0), rate(1))
     }
 
-    /// An impulse along the joint and across it.
+    /// Returns the impulse vector with given components along and normal to the joint.
     fn impulse(&self, shares: &Vector2<f64>) -> Vector2<f64> {
         self.axes[0] * shares.x + self.axes[1] * shares.y
     }
 }
 
-/// An impulse at one corner of an open joint, on both its bodies.
+/// Impulse at one corner of an open joint, on both its bodies.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Press {
     pub pin: usize,
@@ -78,11 +78,11 @@ pub(super) struct Press {
     pub impulse: f64,
 }
 
-/// Solution of a pin system: of the load, or the response to a unit impulse.
+/// Solution of a pin system for a load, or for a unit impulse.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Answer {
     pub motions: Vec<Motion>,
-    /// Impulses on the right body at the open joints, along the joint and across it.
+    /// Impulses on the right body at the open joints, along and normal to the joint.
     pub pins: Vec<Vector2<f64>>,
     /// Impulses at the corners of all joints.
     pub corners: Vec<[f64; 2]>,
@@ -100,13 +100,13 @@ impl Answer {
         }
     }
 
-    /// Solves for the load and an impulse at one corner.
+    /// Solves for the load, with an optional impulse at one corner.
     pub fn take_load(&mut self, factor: &Factor, press: Option<Press>) {
         self.free_motions(factor);
         self.complete(factor, press, None, true);
     }
 
-    /// Solves for a unit impulse at one corner alone.
+    /// Solves for a unit impulse at one corner, without the load.
     pub(crate) fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
         self.motions.clear();
         let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
@@ -121,7 +121,7 @@ impl Answer {
         self.complete(factor, None, Some(closure), true);
     }
 
-    /// Motions of the bodies without impulses between them.
+    /// Computes the velocities of the bodies without impulses between them.
     fn free_motions(&mut self, factor: &Factor) {
         let row = &factor.row;
         self.motions.clear();
@@ -138,7 +138,7 @@ impl Answer {
         }
     }
 
-    /// Completes motions without impulses between the bodies to those with them.
+    /// Adds impulses between the bodies to velocities without them, and computes gap rates and corner impulses.
     fn complete(
         &mut self,
         factor: &Factor,
@@ -158,7 +158,7 @@ impl Answer {
         self.press_corners(factor, press, loaded);
     }
 
-    /// Impulses at the pins that hold their bodies together.
+    /// Solves for the impulses at the pins.
     fn solve_pins(&mut self, factor: &Factor, closure: Option<&Closure>) {
         self.pins.clear();
         let mut carried = Vector2::zeros();
@@ -181,7 +181,7 @@ impl Answer {
         }
     }
 
-    /// Each body takes the impulses of the pins on both its sides.
+    /// Adds the impulses of the pins at both ends to each body.
     fn move_bodies(&mut self, factor: &Factor) {
         let mut left: Option<(&Pin, Vector2<f64>)> = None;
         for (index, (body, motion)) in factor.bodies.iter().zip(&mut self.motions).enumerate() {
@@ -219,7 +219,7 @@ impl Answer {
         }
     }
 
-    /// Impulses at the corners: at hinges those of the pins, at shut joints by the running sum.
+    /// Computes the corner impulses: at hinges from the pins, at closed joints from the running sum of momentum changes.
     fn press_corners(&mut self, factor: &Factor, press: Option<Press>, loaded: bool) {
         let row = &factor.row;
         for body in 0..factor.bodies.len() {
@@ -247,8 +247,8 @@ impl Answer {
         }
     }
 
-    /// The resultant impulse at a joint of a body plus the change of momentum before it: this sum is constant
-    /// along the body. It is taken at a hinge, or at the free end.
+    /// Returns the resultant impulse at a joint of a body plus the change of momentum before that joint. This sum is constant along the body. A hinge
+    /// or the free end gives its value.
     fn start(&self, factor: &Factor, body: usize, press: Option<Press>, loaded: bool) -> Momentum {
         let row = &factor.row;
         let twist = self.motions[body].twist();
@@ -266,7 +266,7 @@ impl Answer {
         resultant + row.change(&twist, pin.joint, loaded)
     }
 
-    /// Impulses under the load on the right block of every joint: along the joint towards the extrados, and normal.
+    /// Writes the impulses under the load on the block after each joint: along the joint towards the extrados, and normal to it.
     pub(crate) fn joint_impulses(&self, factor: &Factor, into: &mut [[f64; 2]]) {
         let row = &factor.row;
         for body in 0..factor.bodies.len() {

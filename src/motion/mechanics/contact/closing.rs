@@ -1,13 +1,13 @@
-//! Positions of an arch whose two parts meet again, from those that rounding or a straight step has parted.
+//! Removal of the closure error: the gap between the two parts of an arch due to rounding errors or a linear step.
 
 use super::{Load, Program};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::joints::Placement;
 
-/// Below this part of the thickness of a joint the closure error is left alone.
+/// Tolerance of the closure error, relative to the thickness of the thinnest joint.
 const CLOSURE_RATIO: f64 = 1e-13;
 
-/// Takes up closure errors, with all the memory that it needs.
+/// Solver that removes closure errors, with its work space.
 #[derive(Clone, Debug)]
 pub struct Closer {
     program: Program,
@@ -18,7 +18,7 @@ pub struct Closer {
 }
 
 impl Closer {
-    /// For placements of a row.
+    /// Returns a solver for placements of a row.
     #[must_use]
     pub fn new(row: &Row) -> Self {
         let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
@@ -31,8 +31,9 @@ impl Closer {
         }
     }
 
-    /// Takes up the closure error by the open joints, in positions only, while that at least halves it: the displacement of
-    /// least kinetic norm, as far as the first corner shuts. That one stays shut, and the others take up the rest.
+    /// Removes the closure error by displacements at the open joints, without velocities. Each step is the displacement of least kinetic norm, up to
+    /// the first closing corner; that corner stays closed in the next step. The steps stop if a step without a closing corner does not halve the
+    /// error.
     pub fn close(&mut self, placement: &mut Placement) {
         while let Some(closure) = placement.closure {
             let error_m = closure.error_m.norm();
@@ -55,11 +56,11 @@ impl Closer {
     }
 }
 
-/// How long open joints move, and the joint and the edge of the corner that shuts then.
+/// Time until the first corner closes, and the joint and edge of that corner; `None` if no corner closes before the end of the step.
 pub(in crate::mechanics) type FirstShut = (f64, Option<(usize, usize)>);
 
 impl Program {
-    /// Time until a corner shuts with the last velocities, at most `longest`, and that corner.
+    /// Returns the time until the first corner closes with the last velocities, at most `longest`, and that corner.
     pub(in crate::mechanics) fn first_shut(
         &self,
         placement: &Placement,
@@ -77,7 +78,7 @@ impl Program {
         first
     }
 
-    /// Changes of the gaps until then; the corner that shuts loses its whole gap.
+    /// Writes the changes of all gaps until the first corner closes. That corner loses its whole gap.
     pub(in crate::mechanics) fn open_until(
         &self,
         placement: &Placement,

@@ -1,17 +1,16 @@
-//! The dual method of Goldfarb and Idnani, one corner at a time.
+//! Active-set search by the dual method of Goldfarb and Idnani, one corner at a time.
 
 use super::answer::Press;
 use super::{ContactError, Corners, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
 
-/// The tolerance of rates is relaxed to this, tenfold at a time, before a program counts as unsolved.
+/// Loosest tolerance of closing rates; beyond it a program counts as unsolved.
 const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
-/// A corner whose impulse falls by less than this fraction of a unit impulse elsewhere keeps it.
+/// Smallest decrease of a corner impulse per unit impulse elsewhere that is no rounding error.
 const LEAST_SLOPE: f64 = 1e-12;
 
 impl Program {
-    /// Releases the corners that pull, and stops closing corners one after the other. False when that takes
-    /// too many iterations, or when a corner depends on others of which none gives way: its closing is
-    /// rounding.
+    /// Releases corners that pull, and activates closing corners one by one. Returns false after too many iterations, or if a closing corner depends
+    /// on active ones and none of these can be released: its closing rate is then a rounding error.
     fn exchange_singly(
         &mut self,
         touching: &[Corners],
@@ -40,7 +39,7 @@ impl Program {
         false
     }
 
-    /// The dual method, with tolerances that are relaxed where it does not terminate.
+    /// Runs the dual method, and relaxes the tolerance tenfold each time it does not converge.
     pub(super) fn exchange_tolerantly(
         &mut self,
         touching: &[Corners],
@@ -63,7 +62,7 @@ impl Program {
         Ok(())
     }
 
-    /// Releases the corners that pull, the worst one of each run of neighbours. False if none does.
+    /// Releases the worst corner of each run of neighbours that pull. Returns false if none pulls.
     fn release(&mut self) -> bool {
         let limit = self.pull_limit();
         self.wrong.clear();
@@ -75,7 +74,7 @@ impl Program {
         !self.wrong.is_empty()
     }
 
-    /// Pin and edge of the corner that closes fastest, beyond a tolerance.
+    /// Returns pin and edge of the corner that closes fastest; `None` if all closing rates are within the tolerance.
     fn fastest_closing(&self, touching: &[Corners], tolerance: f64) -> Option<(usize, usize)> {
         let mut fastest = None;
         let mut least = -tolerance;
@@ -91,8 +90,7 @@ impl Program {
         fastest
     }
 
-    /// Makes a closing corner active; others that would pull on the way are released. False when it is not possible
-    /// within the iterations.
+    /// Adds a closing corner to the active set, and releases those that would pull as its impulse grows. Returns false if no corner can be released.
     fn stop(&mut self, mut pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
         let joint = self.factor.pins[pin].joint;
         let mut impulse = 0.0;
@@ -113,7 +111,7 @@ impl Program {
                     *iterations += 1;
                     return true;
                 }
-                // It depends on the others after all.
+                // The corner depends on the active ones.
                 self.active[joint][edge] = false;
                 self.factor.update(&self.active);
             }
@@ -138,7 +136,7 @@ impl Program {
         }
     }
 
-    /// The impulse at which the first active corner stops pressing, and that corner.
+    /// Returns the impulse at which the first active corner becomes tensile, and that corner.
     fn first_to_pull(&self) -> (f64, Option<(usize, usize)>) {
         let mut first = (f64::INFINITY, None);
         for (joint, active) in self.active.iter().enumerate() {

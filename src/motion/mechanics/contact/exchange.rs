@@ -1,18 +1,18 @@
-//! Exchanges of many corners at once.
+//! Active-set search by exchanges of many corners at once.
 
 use super::{Corners, DEPENDENCE, Program, exceeds, higher};
 
-/// Rounds of exchanging many corners without progress after which the dual method takes over.
+/// Number of exchanges without progress before the dual method takes over.
 const EXCHANGE_PATIENCE: usize = 30;
-/// Corner impulses pull when they are more negative than this fraction of the largest one.
+/// Tolerance for tensile corner impulses, relative to the largest impulse.
 const FORCE_TOLERANCE: f64 = 1e-9;
 
-/// A corner that pulls or closes, and the run of joints whose corners change with it.
+/// Corner that pulls or closes, and the range of joints whose corners change with it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wrong {
     joint: usize,
     edge: usize,
-    /// Its impulse or its rate, below zero.
+    /// Impulse or closing rate of the corner, below zero.
     by: f64,
     first: usize,
     last: usize,
@@ -31,10 +31,11 @@ impl Wrong {
 }
 
 impl Program {
-    /// In each run of neighbours that pull, releases the corner that pulls most, because that often lets the others press again.
-    /// Stops all corners that close. It repeats this while that leaves fewer wrong corners; then it stops only the corner of each
-    /// run that closes fastest. It solves impacts at which many corners change in a few rounds, but may go in circles: the dual
-    /// method takes over what it leaves. True if nothing is left.
+    /// Exchanges many corners at once until none pulls or closes, and returns whether that succeeds.
+    ///
+    /// In each run of neighbouring corners that pull, only the worst one is released: the others often become compressive again. All closing corners
+    /// become active. Without progress, only the fastest closing corner of each run becomes active. Impacts with many changed corners converge in a
+    /// few rounds. The exchanges may cycle: the dual method then takes over.
     pub(super) fn exchange(
         &mut self,
         touching: &[Corners],
@@ -95,7 +96,7 @@ impl Program {
         }
     }
 
-    /// Adds the corners at an edge whose impulses are below a limit; inactive corners have no impulse.
+    /// Adds the corners of an edge with impulses below a limit. Inactive corners have zero impulse.
     pub(super) fn find_pulling(&mut self, edge: usize, limit: f64) {
         for (joint, impulses) in self.answer.corners.iter().enumerate() {
             if impulses[edge] < limit {
@@ -104,7 +105,7 @@ impl Program {
         }
     }
 
-    /// Keeps the worst one of each run of neighbours that pull, on request also of those that close.
+    /// Keeps only the worst corner of each run of neighbours that pull; with `of_closing` also of each run that closes.
     pub(super) fn keep_worst(&mut self, of_closing: bool) {
         let active = &self.active;
         let mut end = None;
@@ -121,8 +122,8 @@ impl Program {
         });
     }
 
-    /// Openings and closings travel along the row from joint to joint: extends each run by as many joints as the last
-    /// exchange changed next to its corner in the same way.
+    /// Extends each run of joints by as many joints as the last exchange changed next to it in the same way: openings and closings propagate along
+    /// the row.
     fn go_on(&mut self, touching: &[Corners]) {
         let (active, earlier) = (&self.active, &self.earlier);
         for wrong in &mut self.wrong {
@@ -138,7 +139,7 @@ impl Program {
         }
     }
 
-    /// Releases the wrong corners that are active, and stops the others.
+    /// Removes wrong corners from the active set, or adds them if they are inactive.
     pub(super) fn flip_wrong(&mut self) {
         self.earlier.copy_from_slice(&self.active);
         for wrong in &self.wrong {
@@ -149,9 +150,9 @@ impl Program {
         }
     }
 
-    /// Impulses below this limit pull.
+    /// Returns the limit below which an impulse counts as tension.
     pub(super) fn pull_limit(&self) -> f64 {
-        // Edge by edge, so that one comparison does not wait for the other.
+        // Two independent maxima are faster than one.
         let corners = self.answer.corners.iter();
         let [intrados, extrados] = corners.fold([0.0_f64; 2], |most, corner| {
             [0, 1].map(|edge| higher(most[edge], corner[edge].abs()))

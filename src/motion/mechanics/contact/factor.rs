@@ -1,5 +1,5 @@
-//! Bodies between open joints, and the block-tridiagonal system of the impulses between them, factored from left to right. The
-//! part to the left of the first change of corners is kept.
+//! Bodies between open joints, and the block-tridiagonal system of the impulses between them, factored from left to right. The part left of the first
+//! changed corner is reused.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::geometry::ring::{Edge, MassMoments};
 use crate::mechanics::joints::Placement;
 
-/// A run of blocks that move as one, with its inverse inertia; zero for one that a support holds.
+/// Run of blocks that move as one body, with its inverse inertia; zero for a body fixed to a support.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     pub inverse_mass: f64,
@@ -20,7 +20,7 @@ pub(super) struct Body {
 }
 
 impl Body {
-    /// A body whose motion is prescribed.
+    /// Body with prescribed motion.
     const HELD: Self = Self {
         inverse_mass: 0.0,
         inverse_inertia: 0.0,
@@ -42,32 +42,32 @@ impl Body {
     }
 }
 
-/// An open joint of the present active set, left of body `index + 1` and right of body `index`.
+/// Open joint of the active set, between body `index` and body `index + 1`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pin {
     pub joint: usize,
     pub point: Vector2<f64>,
     pub parted: bool,
-    /// Unit vectors along the joint and across it.
+    /// Unit vectors along and normal to the joint.
     pub axes: [Vector2<f64>; 2],
-    /// Moments of unit impulses along them about the centres of the left and of the right body.
+    /// Moments of unit impulses along the axes about the centres of the left and the right body.
     pub turns: [[f64; 2]; 2],
     /// Inverse of the pivot of the elimination.
     pub pivot: Matrix2<f64>,
-    /// Pivot of the joint before times the coupling with it.
+    /// Inverse pivot of the previous pin times the coupling with it.
     pub gain: Matrix2<f64>,
 }
 
-/// The system of a placed row under an active set.
+/// System of equations of a placed row under an active set.
 #[derive(Clone, Debug)]
 pub(super) struct Factor {
     pub row: Placed,
-    /// The active set for which bodies and pins were computed, at the joints before `factored`.
+    /// Active set of the current bodies and pins, at the joints before `factored`.
     pub active: Vec<Corners>,
     factored: usize,
     pub bodies: Vec<Body>,
     pub pins: Vec<Pin>,
-    /// The least pivot up to each pin, over its value without the other rows.
+    /// Least pivot up to each pin, relative to its value before the elimination.
     least: Vec<f64>,
 }
 
@@ -84,14 +84,14 @@ impl Factor {
         }
     }
 
-    /// Takes the positions of the blocks.
+    /// Sets the positions of the blocks.
     pub fn place(&mut self, placement: &Placement) {
         self.row.place(placement);
         self.factored = 0;
     }
 
-    /// Computes bodies, pins and pivots of the active set. Returns the least pivot over its value without the other rows:
-    /// zero when rows depend on each other.
+    /// Computes bodies, pins and pivots of an active set. Returns the least pivot relative to its value before the elimination: zero for linearly
+    /// dependent constraints.
     pub fn update(&mut self, active: &[Corners]) -> f64 {
         let known = active.iter().zip(&self.active);
         let same = known.take_while(|(now, then)| now == then).count();
@@ -101,7 +101,7 @@ impl Factor {
         }
         self.active[from..].copy_from_slice(&active[from..]);
         self.factored = active.len();
-        // The body after the last pin that stays depends on where the next one is.
+        // The body after the last kept pin ends at the next pin, which may be new.
         let kept = self.pins.partition_point(|pin| pin.joint < from);
         self.pins.truncate(kept);
         self.bodies.truncate(kept);
@@ -133,7 +133,7 @@ impl Factor {
             (Supports::Left, Some(first)) => self.body(first, self.row.own.len()),
             (Supports::Left, None) | (Supports::Both, _) => Body::HELD,
         });
-        // The pivot of a pin depends on the bodies on both sides.
+        // The pivot of a pin depends on the bodies at both sides.
         self.eliminate(kept.saturating_sub(1));
         self.least_pivot()
     }
@@ -142,7 +142,7 @@ impl Factor {
         match (self.least.last(), self.row.supports) {
             (Some(least), _) => *least,
             (None, Supports::Left) => 1.0,
-            // An arch without any hinge is held at both ends.
+            // An arch without hinges is fixed at both ends.
             (None, Supports::Both) => 0.0,
         }
     }
@@ -151,7 +151,7 @@ impl Factor {
         Body::free(&(self.row.moments[end] - self.row.moments[first]))
     }
 
-    /// Forward elimination of the compliances at the pins from this one on, in axes along and across each joint.
+    /// Eliminates the compliances at the pins from `start` on, in axes along and normal to each joint.
     fn eliminate(&mut self, start: usize) {
         self.least.truncate(start);
         let mut least = self.least.last().copied().unwrap_or(1.0);
@@ -200,19 +200,19 @@ impl Factor {
         }
     }
 
-    /// The joints at the ends of a body, where they are open.
+    /// Returns the open joints at the two ends of a body; `None` at a support or a free end.
     fn ends(&self, body: usize) -> [Option<usize>; 2] {
         let pin = |pin: usize| Some(self.pins.get(pin)?.joint);
         [body.checked_sub(1).and_then(pin), pin(body)]
     }
 
-    /// The shut joints inside a body.
+    /// Returns the closed joints inside a body.
     pub(crate) fn shut_joints(&self, body: usize) -> Range<usize> {
         let [first, last] = self.ends(body);
         first.map_or(0, |joint| joint + 1)..last.unwrap_or(self.active.len())
     }
 
-    /// The blocks of a body.
+    /// Returns the blocks of a body.
     pub fn blocks(&self, body: usize) -> Range<usize> {
         let [first, last] = self.ends(body);
         first.unwrap_or(0)..last.unwrap_or(self.row.own.len())

@@ -1,5 +1,5 @@
-//! A row in its present position and its load, as sums over its blocks from the left: the sum over any run of blocks is a
-//! difference of two.
+//! A row in its present position with its load, as cumulative sums over the blocks from the left. The sum over any run of blocks is a difference of
+//! two.
 
 use super::{Load, higher};
 use crate::mechanics::blocks::{Block, Row, Supports};
@@ -16,10 +16,10 @@ pub(super) struct Placed {
     pub frames: Vec<Frame>,
     /// Mass moments of every block.
     pub own: Vec<MassMoments>,
-    /// Sums over the blocks before each joint.
+    /// Cumulative mass moments of the blocks before each joint.
     pub moments: Vec<MassMoments>,
     pub momenta: Vec<Momentum>,
-    /// Sums of the jumps up to each block.
+    /// Cumulative prescribed relative velocities up to each block.
     pub datum: Vec<Twist>,
 }
 
@@ -38,7 +38,7 @@ impl Placed {
         }
     }
 
-    /// Takes the positions of the blocks.
+    /// Sets the positions of the blocks.
     pub fn place(&mut self, placement: &Placement) {
         self.frames.clear();
         self.frames.extend_from_slice(&placement.frames);
@@ -51,7 +51,7 @@ impl Placed {
         }
     }
 
-    /// Takes the load; returns the largest velocity, and the sum of all momenta in magnitude.
+    /// Sets the load. Returns the largest velocity, and the sum of the magnitudes of all momenta.
     pub fn load(&mut self, load: &Load) -> (f64, f64) {
         let (mut momentum, mut datum) = (Momentum::ZERO, Twist::ZERO);
         let (mut largest, mut total) = (0.0_f64, 0.0);
@@ -74,7 +74,7 @@ impl Placed {
         (largest, total)
     }
 
-    /// Change of momentum of the blocks before a joint if they all moved with this twist.
+    /// Returns the change of momentum of all blocks before a joint if they move together with this velocity.
     pub fn change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
         let change = twist.momentum(&self.moments[joint]);
         if loaded {
