@@ -1,11 +1,11 @@
-//! Elastic joints: interfaces of finite stiffness between two rigid bodies, without tension, with Coulomb friction, damping and
-//! crushing.
+//! Elastic joints: interfaces of finite stiffness between two rigid bodies, without tension, with Coulomb friction, damping and crushing.
 //!
-//! `kinematics` says how far the faces of a joint penetrate each other and slip, exactly at any rotation. `contact` gives the stress
-//! that results, summed over the joint. `structure` collects bodies and the joints between them, and `statics` finds where they
-//! rest.
+//! - `kinematics` computes penetration and slip of the faces of a joint, exactly at any rotation.
+//! - `contact` integrates the resulting stress over the joint.
+//! - `structure` holds the bodies and the joints between them.
+//! - `statics` finds their equilibrium.
 //!
-//! The code is written once for any [`Real`](super::lanes::Real): a motion alone, several side by side, or derivatives.
+//! The code is generic over [`Real`](super::lanes::Real): one motion, several motions in parallel, or derivatives.
 
 mod banded;
 mod contact;

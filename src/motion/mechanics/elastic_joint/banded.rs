@@ -1,11 +1,10 @@
-//! Linear equations whose matrix has a band: Gaussian elimination with partial pivoting.
+//! Linear equations with a banded matrix, by Gaussian elimination with partial pivoting.
 
-/// A square matrix that is zero farther than `width` from its diagonal.
+/// Square matrix that is zero more than `width` from its diagonal.
 pub(super) struct Banded {
     size: usize,
     width: usize,
-    /// Row by row, each from `width` before the diagonal to `2 width` after it: exchanges of rows fill the additional
-    /// width.
+    /// Entries by rows, each row from `width` before the diagonal to `2 width` after it; pivoting fills the additional width.
     rows: Vec<f64>,
 }
 
@@ -31,7 +30,7 @@ impl Banded {
         self.rows[index] += value;
     }
 
-    /// Solves for right-hand sides, in place; the matrix is overwritten. False if it is singular.
+    /// Solves for the right-hand sides in place, and overwrites the matrix. Returns false if the matrix is singular.
     pub(super) fn solve<const K: usize>(&mut self, mut rights: [&mut [f64]; K]) -> bool {
         let (size, width) = (self.size, self.width);
         for column in 0..size {

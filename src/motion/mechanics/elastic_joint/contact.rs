@@ -1,35 +1,34 @@
-//! The stress that a joint bears, summed over its length.
+//! Contact stress of a joint, integrated over its length.
 //!
-//! The penetration changes linearly from edge to edge, so the part that presses is an interval, found without branches, and Simpson's
-//! rule is exact for forces, moments and energies. Its sixth, and the stiffness of the joint, are multiplied in at the end: until then a
-//! force is in metres.
+//! The penetration is linear from edge to edge, so the part in compression is an interval, computed without branches. Simpson's rule is exact for
+//! forces, moments and energies. Its factor of 1/6 and the stiffness of the joint are applied at the end: until then, forces are in metres.
 
 use std::f64::consts::PI;
 
 use super::kinematics::{Gap, Link};
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
-/// Integration of the stress over a joint.
+/// Method to integrate the stress over a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Contact {
-    /// Exactly, over the part that presses.
+    /// Exact integration over the part in compression.
     #[default]
     Continuous,
-    /// At points, evenly spaced with two on the edges (2 to 100): those on the edges count half as much as the others.
+    /// Integration at evenly spaced points (2 to 100), two of them on the edges. Points on the edges have half the weight of the others.
     Points(usize),
 }
 
-/// Cells of a joint that may crush, each with linear stress: they are narrower near the edges, where the stress is.
+/// Number of cells of a joint that may crush, each with linear stress. Cells are narrower near the edges, where stress concentrates.
 const CELLS: usize = 12;
 
-/// Places along a joint at which its stress is known.
+/// Positions along a joint at which the stress is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Section {
-    /// At the edges, and so everywhere.
+    /// At the edges only; the stress is linear between them.
     Whole,
-    /// At nodes, from edge 0 to edge 1, as fractions of the length; linear between two of them.
+    /// At nodes from edge 0 to edge 1, as fractions of the length; the stress is linear between nodes.
     Cells(Vec<f64>),
-    /// At points, each with its share of the joint.
+    /// At points: position as a fraction of the length, and share of the joint's area.
     Points(Vec<[f64; 2]>),
 }
 
@@ -53,7 +52,7 @@ impl Section {
         }
     }
 
-    /// Number of places with a memory of crushing.
+    /// Returns the number of positions with a state of crushing.
     pub(super) fn fibres(&self) -> usize {
         match self {
             Self::Whole => 0,
@@ -62,7 +61,7 @@ impl Section {
         }
     }
 
-    /// Rotational stiffness of the closed joint, over its stiffness times its length squared: a twelfth where continuous.
+    /// Returns the rotational stiffness of the closed joint, over its normal stiffness times its length squared; 1/12 for continuous contact.
     pub(super) fn second_moment(&self) -> f64 {
         match self {
             Self::Whole | Self::Cells(_) => 1.0 / 12.0,
@@ -73,13 +72,13 @@ impl Section {
         }
     }
 
-    /// Forces at the edges if the joint could pull as well.
+    /// Returns the edge forces of a joint with tensile strength, per stiffness.
     pub(super) fn bonded<R: Real>(&self, p: [R; 2]) -> [R; 2] {
         let [mean, half] = [(p[0] + p[1]) * 0.5, (p[1] - p[0]) * self.second_moment()];
         [mean * 0.5 - half, mean * 0.5 + half]
     }
 
-    /// Energy of pressing, per stiffness.
+    /// Returns the elastic energy of compression, per stiffness.
     #[inline(always)]
     pub(super) fn energy<R: Real>(&self, p: [R; 2], fibres: &[Fibre<R>]) -> R {
         let at = |part: f64| p[0] + (p[1] - p[0]) * part;
@@ -105,7 +104,7 @@ impl Section {
     }
 }
 
-/// Memory of a joint from the step before.
+/// State of a joint after the last step.
 #[derive(Clone, Copy, Debug)]
 pub struct Memory<R> {
     /// Penetrations at the edges, in m.
@@ -116,76 +115,77 @@ pub struct Memory<R> {
     pub shear_n: R,
     /// Permanent slip, in m.
     pub slipped_m: R,
-    /// Forces of damping at the edges, in N.
+    /// Normal forces of damping at the edges, in N.
     viscous_n: [R; 2],
     /// Shear force of damping, in N.
     viscous_shear_n: R,
 }
 
-/// Memory of a place along a joint.
+/// State of crushing at one position along a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Fibre<R> {
     /// Depth of crushing, in m.
     pub crushed_m: R,
-    /// Six times its elastic force, per stiffness.
+    /// Six times the elastic force at the position, per stiffness.
     force_m: R,
 }
 
 remembered!(Memory { slip_m, shear_n, slipped_m, viscous_shear_n; penetrations_m, viscous_n });
 remembered!(Fibre { crushed_m, force_m });
 
-/// Normal stress and energy of a joint.
+/// Normal forces of a joint, and the energy dissipated with them.
 #[derive(Clone, Copy, Debug)]
 pub struct Pressing<R> {
-    /// Forces at the edges that are equivalent to the stress, in N.
+    /// Statically equivalent normal forces at the edges, in N.
     pub edges_n: [R; 2],
-    /// Energy taken in the step by damping, in J, by the trapezoidal rule, as all of these are.
+    /// Energy dissipated by damping in the step, in J, by the trapezoidal rule.
     pub damped_j: R,
-    /// By crushing.
+    /// Energy dissipated by crushing in the step, in J, by the trapezoidal rule.
     pub crushed_j: R,
 }
 
-/// Friction between the faces of a joint.
+/// Shear force of a joint, and the energy dissipated with it.
 #[derive(Clone, Copy, Debug)]
 pub struct Rubbing<R> {
     /// Shear force, in N.
     pub shear_n: R,
-    /// Energy taken in the step by damping, in J.
+    /// Energy dissipated by damping in the step, in J.
     pub damped_j: R,
-    /// Energy taken in the step by friction, in J: the slip times the mean of the forces before and after, or times the force after
-    /// where the force before pulled the other way. Never negative.
+    /// Energy dissipated by friction in the step, in J, never negative: the slip times the mean of the forces before and after the step. If the force
+    /// changes sign, the force after the step replaces the mean.
     pub friction_j: R,
-    /// Energy that the balance of the discrete motion misses by slip, in J: the trapezoidal rule. Negative where the force reverses within
-    /// a step, which creates energy.
+    /// Energy lost by slip in the balance of the discrete motion, in J, by the trapezoidal rule. It is negative if the force changes sign within a
+    /// step, which adds energy.
     pub balance_j: R,
 }
 
-/// A joint between two bodies.
+/// Elastic joint between two bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticJoint {
-    /// The geometry of the joint.
+    /// Geometry of the joint.
     pub link: Link,
-    /// Stiffness of the closed joint against penetration, in N/m.
+    /// Normal stiffness of the closed joint, in N/m.
     pub normal_n_m: f64,
-    /// Its stiffness against slip, in N/m.
+    /// Shear stiffness of the closed joint, in N/m.
     pub shear_n_m: f64,
-    /// Penetration at which it crushes, in m; infinite where it does not.
+    /// Penetration at which the joint crushes, in m; infinite without crushing.
     pub strength_m: f64,
-    /// Area in m2.
+    /// Area of the joint, in m2.
     pub area_m2: f64,
 }
 
-/// The law that all joints of a structure share.
+/// Contact law of all joints of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Law {
     pub section: Section,
     pub crushes: bool,
-    /// Coefficient of friction, and what is added to the bound: infinity where nothing slips.
+    /// Coefficient of friction, and a constant added to the bound of the shear force: zero, or infinity to prevent slip.
     pub friction: [f64; 2],
 }
 
 impl Law {
-    /// Normal forces of a joint with this gap; updates its memory. `damping` is the damping time over the length of the step.
+    /// Computes the normal forces of a joint for a gap, and updates the state of the joint. `damping` is the damping time over the length of the
+    /// step.
     #[inline(always)]
     pub fn press<R: Real>(
         &self,
@@ -236,7 +236,7 @@ impl Law {
         }
     }
 
-    /// Friction of a joint with this gap and these normal forces at its edges; updates its memory.
+    /// Computes the shear force of a joint for a gap and given normal forces at the edges, and updates the state of the joint.
     #[inline(always)]
     pub(crate) fn rub<R: Real>(
         &self,
@@ -275,17 +275,16 @@ impl Law {
     }
 }
 
-/// The force, at most as large as its bound.
+/// Limits a force to `-bound..=bound`.
 #[inline(always)]
 fn clamped<R: Real>(force: R, bound: R) -> R {
     force.min(bound).max(-bound)
 }
 
-/// Six times the forces at the edges, elastic and with damping, and the work of crushing, per stiffness.
+/// Six times the edge forces, elastic and with damping, and the work of crushing; all per stiffness.
 type Sums<R> = ([R; 2], [R; 2], R);
 
-/// At one place, this fraction of the length along: the elastic stress, the stress with damping, and by how much the place
-/// crushes now.
+/// Computes, at a position given as a fraction of the length, the elastic stress, the stress with damping, and the increment of crushing.
 #[inline(always)]
 fn fibre<R: Real>(
     at: f64,
@@ -349,7 +348,7 @@ fn in_cells<R: Real>(
     let zero = R::of(0.0);
     let (mut elastic_sum, mut total_sum, mut crushed) = ([zero; 2], [zero; 2], zero);
     let mut before = (0.0, (zero, zero, zero));
-    // The force at the previous node due to the cell before it.
+    // Force at the previous node from the cell before it.
     let mut carried = zero;
     let mut index = 0;
     while index <= nodes.len() {
@@ -389,7 +388,7 @@ fn in_cells<R: Real>(
     (elastic_sum, total_sum, crushed)
 }
 
-/// The interval in which a function that is linear between two ends is positive, as fractions of the length; an empty interval if nowhere.
+/// Returns the interval in which a linear function with given end values is positive, as fractions of the length; empty if it is positive nowhere.
 #[inline(always)]
 fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     let (zero, one) = (R::of(0.0), R::of(1.0));
@@ -400,7 +399,7 @@ fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     ]
 }
 
-/// Six times the forces at the ends equivalent to a stress that is linear over a part of the length, between these values.
+/// Returns six times the end forces that are equivalent to a stress on a part of the length, linear between the values `low` and `high`.
 #[inline(always)]
 fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     let (part, sum) = (to - from, from + to);
@@ -409,14 +408,14 @@ fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     [part * (whole - at_one), part * at_one]
 }
 
-/// Six times the forces at the ends due to a stress that is linear between them, where it presses; nothing pulls.
+/// Returns six times the end forces of the compressive part of a stress that is linear between the ends.
 #[inline(always)]
 fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
     let zero = R::of(0.0);
     amount(positive_part(ends), both!(end: ends[end].max(zero)))
 }
 
-/// Six times the forces at the ends due to another linear stress, over the part where both press.
+/// Returns six times the end forces of a second linear stress, over the part where both stresses are compressive.
 #[inline(always)]
 fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));
@@ -427,7 +426,7 @@ fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     amount(ends, presses)
 }
 
-/// Energy of the part that presses.
+/// Returns the energy of the compressive part.
 #[inline(always)]
 fn energy<R: Real>(ends: [R; 2]) -> R {
     let [from, to] = positive_part(ends);

@@ -1,20 +1,20 @@
-//! The relative position of the two faces of a joint.
+//! Relative position of the two faces of a joint.
 
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
-/// Position of a body: how far its centre has moved, and how it has turned.
+/// Position of a body: displacement of its centre, and rotation.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<R> {
     /// Displacement of the centre, in m.
     pub moved_m: [R; 2],
-    /// Cosine less one, and sine, of half the rotation: small rotations keep all their digits.
+    /// Cosine minus one, and sine, of half the rotation. This form is accurate for small rotations.
     pub half_turn: [R; 2],
 }
 
 remembered!(Place { ; moved_m, half_turn });
 
 impl<R: Real> Place<R> {
-    /// Moved and turned by this much, in m and rad.
+    /// Returns the position for displacements in m and a rotation in rad.
     #[must_use]
     pub fn at(moved: &[f64; 3]) -> Self {
         let quarter = (0.25 * moved[2]).sin();
@@ -25,7 +25,7 @@ impl<R: Real> Place<R> {
         }
     }
 
-    /// Displacement of the end of an arm from the centre by a rotation.
+    /// Returns the displacement of the end of an arm relative to the centre, due to the rotation.
     #[inline(always)]
     pub(super) fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
         let [half_cos, half_sin] = self.half_turn;
@@ -36,61 +36,61 @@ impl<R: Real> Place<R> {
     }
 }
 
-/// The geometry of a joint, undeformed: the first body is before the joint, the second one after it.
+/// Geometry of an undeformed joint between a first body, before the joint, and a second body after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// The indices of the two bodies.
+    /// Indices of the two bodies.
     pub bodies: [usize; 2],
-    /// From the centres of the bodies to the middle of the joint, in m.
+    /// Vectors from the centres of the bodies to the middle of the joint, in m.
     pub arms_m: [[f64; 2]; 2],
     /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
     pub along: [f64; 2],
-    /// 1 where the second body is to the left of that vector, else -1.
+    /// 1 if the second body is left of the vector `along`, -1 if it is right.
     pub handedness: f64,
     /// Length of the joint, in m.
     pub length_m: f64,
-    /// The arm of the first body along the joint, and across it, a quarter turn anticlockwise from there. Twice the second one less
-    /// the first one, and their sum, likewise.
+    /// Components along and across the joint (a quarter turn anticlockwise from `along`), in m: of the arm of the first body, of twice the difference
+    /// of both arms, and of their sum.
     first_m: [f64; 2],
     twice_between_m: [f64; 2],
     sum_m: [f64; 2],
 }
 
-/// The relative position of the faces of a joint.
+/// Relative position of the two faces of a joint.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap<R> {
-    /// Penetration at edge 0 and edge 1, in m; it changes linearly between them.
+    /// Penetrations at edge 0 and edge 1, in m; linear between the edges.
     pub penetrations_m: [R; 2],
     /// Slip of the second face towards edge 1, in m.
     pub slip_m: R,
-    /// Displacement in the direction a quarter turn anticlockwise from there, in m.
+    /// Displacement of the second face across the mean direction, a quarter turn anticlockwise from it, in m.
     rise_m: R,
     /// Displacement of the second body relative to the first one, in m.
     apart_m: [R; 2],
-    /// Mean direction of the faces.
+    /// Unit vector in the mean direction of the faces.
     along: [R; 2],
     /// Cosine and sine of half the angle between the faces.
     half: [R; 2],
 }
 
-/// The action of a joint on its two bodies, at their centres.
+/// Forces of a joint on its two bodies, with moments about their centres.
 #[derive(Clone, Copy, Debug)]
 pub struct Action<R> {
-    /// Force on the second body, in N; the first one feels its opposite.
+    /// Force on the second body, in N; the force on the first body is opposite.
     pub force_n: [R; 2],
-    /// Moments on the first and on the second body, in N m.
+    /// Moments on the first and the second body, in N m.
     pub moments_n_m: [R; 2],
 }
 
 remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, along, half });
 
 impl Link {
-    /// A joint between the bodies with these indices.
+    /// Returns a joint between the bodies with these indices.
     ///
-    /// * `arms_m`: from the centres of the bodies to the middle of the joint.
-    /// * `along`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
-    /// * `handedness`: 1 where the second body is to the left of that vector, else -1.
-    /// * `length_m`: length of the joint.
+    /// - `arms_m`: vectors from the centres of the bodies to the middle of the joint, in m.
+    /// - `along`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
+    /// - `handedness`: 1 if the second body is left of that vector, -1 if it is right.
+    /// - `length_m`: length of the joint, in m.
     #[must_use]
     pub fn new(
         bodies: [usize; 2],
@@ -113,18 +113,18 @@ impl Link {
         }
     }
 
-    /// The relative position of the faces with the bodies at these places.
+    /// Returns the relative position of the faces for given positions of the bodies.
     ///
-    /// With `e_a`, `e_b` the directions of the faces, `e` the mean direction and `n` its normal, `e_b - e_a` is along `n` whatever the
-    /// angle. So the gap is linear along the joint, and the slip the same everywhere.
+    /// Let `e_a`, `e_b` be the directions of the faces, `e` the mean direction and `n` its normal. `e_b - e_a` is parallel to `n` at any angle. The
+    /// gap is therefore linear along the joint, and the slip is constant.
     ///
-    /// The bodies turn by `m - d` and `m + d`, so their arms `a`, `b` move the middles of the faces apart by
-    /// `R(m) (cos d (b - a) + sin d J (a + b)) - (b - a)`, with `J` a quarter turn. Along `e = R(m) e_0` and `J e` that is, by the
-    /// components of the arms along `e_0` and `J e_0`, a sum of terms that are small while the turns are: they keep all their digits.
+    /// The bodies rotate by `m - d` and `m + d`. Their arms `a`, `b` then move the middles of the faces apart by `R(m) (cos d (b - a) + sin d J (a +
+    /// b)) - (b - a)`, where `J` is a quarter turn. The components along `e = R(m) e_0` and `J e` are sums of terms that are small for small
+    /// rotations, without cancellation.
     #[inline(always)]
     pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
         let apart = both!(i: second.moved_m[i] - first.moved_m[i]);
-        // Cosines and sines of `m` and `d` are products, without a root, of those of the halves of the rotations.
+        // Cosines and sines of `m` and `d` follow from those of the half rotations without a square root.
         let ([cos_a, sin_a], [cos_b, sin_b]) = (first.half_turn, second.half_turn);
         let (cosines, sines) = (cos_a * cos_b, sin_a * sin_b);
         let (forth, back) = (cos_a * sin_b, sin_a * cos_b);
@@ -153,10 +153,10 @@ impl Link {
         }
     }
 
-    /// The action of the joint with this gap, for these pressing forces at its edges and this shear force, which resists slip. The
-    /// work of the action equals theirs on the penetrations and the slip.
+    /// Returns the forces of the joint on its bodies for a gap, compressive edge forces, and a shear force that resists slip. The work of these
+    /// forces equals the work of the edge forces on the penetrations plus that of the shear force on the slip.
     ///
-    /// The force acts midway between the middles of the faces, since both bodies share in turning the mean direction.
+    /// The force acts midway between the middles of the faces, because both bodies contribute equally to the mean direction.
     #[inline(always)]
     pub fn action<R: Real>(&self, gap: &Gap<R>, edges_n: [R; 2], shear_n: R) -> Action<R> {
         let q = self.handedness;
@@ -166,7 +166,7 @@ impl Link {
             -(ey * across_n + ex * shear_n),
             ex * across_n - ey * shear_n,
         ];
-        // Twice the lever from the centre of the first body, along the mean direction and across it.
+        // Twice the lever arm from the centre of the first body, along and across the mean direction.
         let ([half_cos, half_sin], [a, b]) = (gap.half, both!(i: 2.0 * self.first_m[i]));
         let lever_m = [
             half_cos * a + half_sin * b + gap.slip_m,
@@ -174,7 +174,7 @@ impl Link {
         ];
         let couple = (edges_n[1] - edges_n[0]) * (half_cos * (q * self.length_m));
         let about_first = (lever_m[0] * across_n + lever_m[1] * shear_n + couple) * 0.5;
-        // From the centre of the first body to that of the second one.
+        // Vector from the centre of the first body to the centre of the second.
         let [from, to] = self.arms_m;
         let between_m = both!(i: gap.apart_m[i] + R::of(from[i] - to[i]));
         Action {

@@ -1,4 +1,4 @@
-//! Equilibrium of a structure with elastic joints at rest: Newton's method with exact tangents.
+//! Equilibrium of a structure with elastic joints, by Newton's method with exact tangents.
 
 use thiserror::Error;
 
@@ -9,72 +9,72 @@ use super::structure::ElasticStructure;
 use crate::mechanics::lanes::{Dual, Lanes, Real};
 use crate::mechanics::tie::TieMemory;
 
-/// The number type of a single motion.
+/// Number type of a single motion.
 type Alone = Lanes<1>;
 
-/// A structure at rest.
+/// Structure in equilibrium.
 #[derive(Clone, Debug)]
 pub struct Rest {
     /// Displacements (m) and rotations (rad) of the bodies.
     pub moved: Vec<[f64; 3]>,
-    /// Displacements and rotations by the weight alone, on supports where they were built.
+    /// Displacements (m) and rotations (rad) under the weight alone, on supports in their original position.
     pub bent: Vec<[f64; 3]>,
-    /// Memory of the joints.
+    /// States of the joints.
     pub memories: Vec<Memory<Alone>>,
-    /// Memory of the places along the joints, joint by joint.
+    /// States of crushing at the positions along the joints, joint by joint.
     pub fibres: Vec<Fibre<Alone>>,
-    /// Memory of the ties.
+    /// States of the ties.
     pub ties: Vec<TieMemory<Alone>>,
     /// Unbalanced force over the weight.
     pub unbalanced: f64,
-    /// Steps of Newton's method.
+    /// Number of Newton steps.
     pub steps: usize,
 }
 
-/// Why a structure does not rest.
+/// Reason why a structure has no equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RestError {
-    /// It would rest if nothing slipped.
+    /// Equilibrium exists without slip only.
     #[error(
         "the joints slip under the weight of the structure: it needs a larger friction_coefficient"
     )]
     Friction,
-    /// It would rest if nothing crushed.
+    /// Equilibrium exists without crushing only.
     #[error(
         "the joints crush under the weight of the structure: it needs a larger compressive_strength_mpa"
     )]
     Strength,
-    /// It would rest with continuous contact.
+    /// Equilibrium exists with continuous contact only.
     #[error(
         "with so few contact points the structure is a mechanism: between two points the thrust bends no joint; give more \
          contact_points, or contact = \"continuous\""
     )]
     Points,
-    /// It would rest with stiffer joints.
+    /// Equilibrium exists with stiffer joints only.
     #[error(
         "with joints as soft as these the structure bends so far under its weight that it falls: it needs a larger stiffness, \
          or a greater thickness"
     )]
     Stiffness,
-    /// It falls while its supports move.
+    /// The structure falls while its supports move.
     #[error("the structure falls when its supports have moved {:.2} % of the way", 1e2 * .0)]
     Supports(
-        /// At this part of the movement.
+        /// Fraction of the movement.
         f64,
     ),
-    /// A tie breaks.
+    /// The tie with this index breaks under the weight.
     #[error("tie {number} breaks under the weight of the structure: it needs a larger breaks_at_strain, or less prestress_n", number = .0 + 1)]
     Tie(usize),
-    /// A tie breaks while its supports move.
+    /// A tie breaks while the supports move.
     #[error(
         "tie {number} breaks when the supports have moved {part:.2} % of the way: it needs a larger breaks_at_strain",
         number = tie + 1,
         part = 1e2 * part
     )]
     TieOnTheWay {
-        /// Its index.
+        /// Index of the tie.
         tie: usize,
-        /// At this part of the movement.
+        /// Fraction of the movement.
         part: f64,
     },
     /// No equilibrium was found.
@@ -82,24 +82,24 @@ pub enum RestError {
     NotFound,
 }
 
-/// Forces that are unbalanced by less than this fraction of the weight are rounding.
+/// Tolerance of unbalanced forces over the weight, at which the iteration stops.
 const ROUNDING: f64 = 1e-12;
-/// Largest unbalanced force at rest, over the weight.
+/// Largest unbalanced force over the weight that counts as equilibrium.
 const BALANCED: f64 = 1e-8;
-/// Steps of Newton's method at one stiffness, at most.
+/// Maximum number of Newton steps at one stiffness.
 const MOST_STEPS: usize = 80;
-/// Factor by which stiffness is raised from one equilibrium to the next.
+/// Factor between the stiffnesses of successive equilibria, if the stiffness is raised in steps.
 const RAISED: f64 = 3.162_277_660_168_379_5;
-/// Stiffnesses from which it is raised, over the full one, where that fails at once.
+/// First stiffnesses over the full one, tried in turn if no equilibrium is found at full stiffness.
 const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 impl Rest {
-    /// The first tie that has broken.
+    /// Returns the index of the first broken tie.
     fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
     }
 
-    /// The joint whose thrust lies farthest from its middle, and how far over its length.
+    /// Returns the joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
     #[must_use]
     pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
@@ -123,11 +123,11 @@ impl Rest {
 }
 
 impl ElasticStructure {
-    /// Its equilibrium under a load per unit mass, in m/s2, to the right and upwards. The search starts from the undeformed
-    /// structure, first with joints that can pull.
+    /// Finds the equilibrium under a load per unit mass, in m/s2, to the right and upwards. The search starts from the undeformed structure, with a
+    /// first step for joints with tensile strength.
     ///
     /// # Errors
-    /// When it does not rest, with the reason.
+    /// If no equilibrium is found, with the reason.
     pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
         if self.has_settled() {
             let built = self.clone().on_supports([[0.0; 3]; 2]);
@@ -154,19 +154,18 @@ impl ElasticStructure {
         Err(cause.map_or(RestError::NotFound, |(.., error)| error))
     }
 
-    /// Its rest once its supports have moved slowly, from the rest before: steps of the movement, each from the equilibrium
-    /// that the last two let expect. Joints slip by what they have slipped in all; ties that have yielded on the way are longer from then
-    /// on.
+    /// Finds the equilibrium after a slow movement of the supports, from the equilibrium `built` before it. The movement is divided into steps; each
+    /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. Ties that yield stay longer.
     fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
         let bent = built.bent.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
-        // A movement common to both supports bends nothing.
+        // A common displacement of both supports causes no forces.
         let (along_m, along) = self.moved_along();
         let from = along.supports.iter().zip(self.supports);
         let ways = from.map(|(from, to)| far(&[0, 1, 2].map(|axis| to[axis] - from[axis])));
         let extent_m = ways.sum::<f64>();
-        // Parts of the whole movement.
+        // Fractions of the whole movement.
         let longest = LONGEST_SETTLING * length_m / extent_m;
         let (mut part, mut stride) = (0.0, 0.1 * longest);
         let mut here = built;
@@ -215,7 +214,7 @@ impl ElasticStructure {
         Ok(here)
     }
 
-    /// Its equilibrium, if one is found.
+    /// Finds the equilibrium on supports that stay in place; `None` if the search does not converge.
     fn balanced(&self, load_m_s2: [f64; 2]) -> Option<Rest> {
         let bonded = Search::new(self, load_m_s2).bonded()?;
         if let Some(rest) = Search::new(self, load_m_s2).from(bonded.clone(), 0) {
@@ -242,40 +241,40 @@ impl ElasticStructure {
     }
 }
 
-/// Supports move in steps of at most this part of the length of a joint, ...
+/// Longest step of the supports, over the mean length of the joints.
 const LONGEST_SETTLING: f64 = 2e-2;
-/// ... and the structure falls where they would be shorter than this part of that.
+/// Shortest step of the supports over the longest one; the structure falls if shorter steps would be required.
 const SHORTEST_SETTLING: f64 = 1e-5;
-/// A step of supports moves no body by more than so many times as much: else it snapped to another equilibrium.
+/// Largest displacement of a body in a step, over the displacement of the supports. A larger one is a jump to another equilibrium.
 const FARTHEST: f64 = 50.0;
-/// By less than this part of the length of a joint it only corrects rounding.
+/// Displacements below this fraction of the length of a joint are rounding errors.
 const NOT_FAR: f64 = 1e-9;
-/// Steps of Newton's method that let the next step be longer.
+/// Largest number of Newton steps after which the next step of the supports is longer.
 const QUICK_STEPS: usize = 8;
 
-/// The path along which a structure is pushed over is followed in steps of this fraction of its joints' length at first, ...
+/// First step of the overturning path, over the mean length of the joints; the longest step is ten times as long.
 const FIRST_STRIDE: f64 = 2e-3;
-/// ... and of ten times as much at most. It is lost where they would be shorter than this fraction of the first one.
+/// Shortest step of the overturning path, over the first one. The path is lost if shorter steps would be required.
 const SHORTEST_STRIDE: f64 = 1e-6;
-/// The energy of the structure may differ from the work on such a path by this fraction of it.
+/// Tolerance between the energy gained by the structure and the work of the push, relative to the work.
 const SAME_ENERGY: f64 = 0.03;
-/// Steps of such a path, at most.
+/// Maximum number of steps of the overturning path.
 const MOST_STRIDES: usize = 1000;
-/// Number of times that joints are made softer to find a path.
+/// Number of softer structures for which a path is searched.
 const SOFTER: usize = 6;
-/// Largest unbalanced force along the path, over the weight.
+/// Largest unbalanced force over the weight on the overturning path.
 const BALANCED_ON_WAY: f64 = 1e-7;
 
 impl ElasticStructure {
-    /// Energy in J above that at rest that it needs at least to overturn while no joint slips; `None` if that is not found, or if something
-    /// crushes on the path. What slips may overturn with less.
+    /// Returns a lower bound, in J, of the energy above that at rest that the structure needs to overturn without slip. `None` if the bound is not
+    /// found, or if a joint crushes on the path. With slip, less energy may suffice.
     ///
-    /// It is pushed over slowly. If that path is lost, because joints are too stiff or bear on points, the path of softer joints with
-    /// continuous contact gives a lower bound: in no shape do these have more energy (the sum over points is the trapezoidal rule, which
-    /// overestimates a convex function), so neither on the path.
+    /// The structure is pushed over slowly. This path may be lost if the joints are too stiff or have contact points. The path of softer joints with
+    /// continuous contact then gives a lower bound: their energy is lower in every shape, because a sum over points, as the trapezoidal rule,
+    /// overestimates a convex function.
     #[must_use]
     pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
-        // The contribution of ties is not known.
+        // Ties are not supported.
         if !self.ties.is_empty() {
             return None;
         }
@@ -284,7 +283,7 @@ impl ElasticStructure {
         if let Some(pass_j) = self.pass_j(rest, gravity_m_s2) {
             return Some(pass_j - rest_j);
         }
-        // Where it rests on supports that have moved depends on its way there, which softer joints go differently.
+        // With moved supports the state depends on the path, which is different for softer joints.
         if self.law.crushes || self.has_settled() {
             return None;
         }
@@ -299,18 +298,18 @@ impl ElasticStructure {
         })
     }
 
-    /// Energy in J, above that of the undeformed structure, at the top of the lower of its paths to the right and to the left.
+    /// Returns the energy in J, above that of the undeformed structure, at the top of the lower one of the paths to the right and to the left.
     fn pass_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
         let to = |sense| self.pass_towards_j(rest, gravity_m_s2, sense);
         Some(to(1.0)?.min(to(-1.0)?))
     }
 
-    /// Energy in J at which it falls by itself, when it is pushed over slowly from rest to the right (or the left). Its
-    /// centre of gravity is led aside, everything else is in equilibrium without slip, and the push does the work. `None` if no such path
-    /// is found, or if something crushes on it.
+    /// Returns the energy in J at the top of the path to the right (`sense` 1) or to the left (-1): there the structure falls without a push. The
+    /// horizontal position of the centre of gravity is prescribed. Everything else is in equilibrium without slip, and the push does the work. `None`
+    /// if the path is lost, or if a joint crushes on the path.
     ///
-    /// A structure that moves to a side has to pass through all positions of its centre of gravity. Of all nearby shapes with the same
-    /// position, those along the path have the least energy. So a structure with less than the energy at the top cannot pass it.
+    /// A structure that overturns passes through all positions of its centre of gravity. Among nearby shapes with the same position, those on the
+    /// path have the least energy. A structure with less energy than at the top cannot pass it.
     fn pass_towards_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
         let without_slip = self.without_slip();
         let search = Search::new(&without_slip, [0.0, -gravity_m_s2]);
@@ -332,7 +331,7 @@ impl ElasticStructure {
                 }
                 continue;
             };
-            // On the last stride the push falls to zero on a straight line.
+            // In the last step the push decreases linearly to zero.
             let (from, to) = (sense * here.push_m_s2, sense * there.push_m_s2);
             let part = if to > 0.0 { 1.0 } else { from / (from - to) };
             work_j += 0.5 * (from + to.max(0.0)) * part * stride_m * mass_kg;
@@ -341,7 +340,7 @@ impl ElasticStructure {
                 return None;
             }
             if to <= 0.0 {
-                // If the search jumped from one path to another, the work is not what the structure gained.
+                // If the search jumped to another path, the work differs from the energy gained by the structure.
                 let rest_j = search.energy_j(rest);
                 let gained_j = search.energy_j(&shape) - rest_j;
                 let same = (work_j - gained_j).abs() < SAME_ENERGY * work_j;
@@ -356,23 +355,23 @@ impl ElasticStructure {
     }
 }
 
-/// A structure that is pushed sideways.
+/// Structure in equilibrium with a sideways push.
 struct Pushed {
     moved: Vec<[f64; 3]>,
-    /// Push to the right, per mass.
+    /// Push to the right per unit mass, in m/s2.
     push_m_s2: f64,
-    /// Displacement of its centre of gravity to the right.
+    /// Displacement of the centre of gravity to the right, in m.
     sway_m: f64,
 }
 
-/// A search for the equilibrium of a structure.
+/// Search for the equilibrium of a structure.
 struct Search<'a> {
     structure: &'a ElasticStructure,
     load_m_s2: [f64; 2],
-    /// Earlier plastic lengthening of its ties, in m.
+    /// Plastic elongation of the ties before the search, in m.
     yielded_m: Vec<f64>,
     weight_n: f64,
-    /// Rotations and moments are scaled with this length.
+    /// Scale of rotations and moments, in m.
     length_m: f64,
     width: usize,
 }
@@ -398,13 +397,13 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The search with ties of this memory.
+    /// Returns the search with given states of the ties.
     fn with_ties(mut self, ties: &[TieMemory<Alone>]) -> Self {
         self.yielded_m = ties.iter().map(|tie| tie.yielded_m.0[0]).collect();
         self
     }
 
-    /// Unbalanced forces (moments over the length); with a matrix, minus their derivatives with respect to the coordinates as well.
+    /// Computes the unbalanced forces (moments over the length). Fills the matrix, if given, with minus their derivatives by the coordinates.
     fn unbalanced(
         &self,
         moved: &[[f64; 3]],
@@ -440,8 +439,8 @@ impl<'a> Search<'a> {
         });
     }
 
-    /// Finds what acts between the bodies of each joint and of each tie, of which the first and the second one are at these places: for
-    /// each coordinate of a body, the pair and the force or moment.
+    /// Computes the forces between the bodies of each joint and of each tie. `place` gives the position of a body as the first or second of a pair.
+    /// `found` receives, for each coordinate of a body, the index of the coordinate, the pair, and the force or moment.
     fn act<R: Real>(
         &self,
         bonded: bool,
@@ -492,12 +491,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Position of a body or a support.
+    /// Returns the position of a body or a support.
     fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<Alone> {
         Place::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
-    /// Position of the first or the second of two bodies, with the derivatives by the coordinates of both.
+    /// Returns the position of the first or second body of a pair, with the derivatives by the coordinates of both.
     fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> Place<Dual<6>> {
         let Some(at) = moved.get(body) else {
             return Place::at(self.structure.support(body));
@@ -520,7 +519,7 @@ impl<'a> Search<'a> {
         forces.iter().map(|force| force * force).sum::<f64>().sqrt() / self.weight_n
     }
 
-    /// Displacements with joints that can pull as well.
+    /// Computes the displacements with joints of unlimited tensile strength, in one linear step.
     fn bonded(&self) -> Option<Vec<[f64; 3]>> {
         let bodies = self.structure.bodies.len();
         let moved = vec![[0.0; 3]; bodies];
@@ -538,7 +537,7 @@ impl<'a> Search<'a> {
             .collect()
     }
 
-    /// Newton's method from these displacements; `None` where it stalls.
+    /// Runs Newton's method from given displacements; `None` if it does not converge.
     fn from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Rest> {
         let size = 3 * moved.len();
         let mut matrix = Banded::new(size, self.width);
@@ -566,15 +565,15 @@ impl<'a> Search<'a> {
         (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
     }
 
-    /// Displacement of the centre of gravity to the right.
+    /// Returns the displacement of the centre of gravity to the right.
     fn sway_m(&self, moved: &[[f64; 3]]) -> f64 {
         let bodies = self.structure.bodies.iter().zip(moved);
         let moments: f64 = bodies.map(|(body, moved)| body.mass_kg * moved[0]).sum();
         moments / self.structure.mass_kg()
     }
 
-    /// The equilibrium with the centre of gravity a stride farther to the right, extrapolated from this one and the one before;
-    /// with the number of steps.
+    /// Finds the equilibrium with the centre of gravity `stride_m` farther to the right, from an extrapolation of the last two. Returns also the
+    /// number of Newton steps; `None` if it does not converge.
     fn pushed(
         &self,
         before: Option<&Pushed>,
@@ -637,14 +636,14 @@ impl<'a> Search<'a> {
         None
     }
 
-    /// Adds a push to the right, per mass, to forces.
+    /// Adds a push to the right per unit mass to the forces.
     fn push(&self, push_m_s2: f64, forces: &mut [f64]) {
         for (index, body) in self.structure.bodies.iter().enumerate() {
             forces[3 * index] += body.mass_kg * push_m_s2;
         }
     }
 
-    /// Elastic and potential energy, in J.
+    /// Returns the elastic and potential energy, in J.
     fn energy_j(&self, rest: &Rest) -> f64 {
         let bodies = self.structure.bodies.iter().zip(&rest.moved);
         let lifted = bodies.map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1]);
@@ -688,7 +687,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The displacements that are so many times farther on than those before.
+/// Extrapolates displacements linearly, by `times` the last step.
 fn extrapolated(here: &[[f64; 3]], before: &[[f64; 3]], times: f64) -> Vec<[f64; 3]> {
     let ahead = |here: f64, before: f64| here + times * (here - before);
     let pairs = here.iter().zip(before);
@@ -697,5 +696,5 @@ fn extrapolated(here: &[[f64; 3]], before: &[[f64; 3]], times: f64) -> Vec<[f64;
         .collect()
 }
 
-/// The most places along a joint.
+/// Maximum number of positions along a joint.
 const MOST_FIBRES: usize = 100;

@@ -15,9 +15,9 @@ use crate::mechanics::tie::square_frequency;
 /// Stiffness of an interface per area, in Pa/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointStiffness {
-    /// Against penetration.
+    /// Normal stiffness, against penetration.
     pub normal_pa_m: f64,
-    /// Against slip.
+    /// Shear stiffness, against slip.
     pub shear_pa_m: f64,
 }
 
@@ -26,59 +26,60 @@ pub struct JointStiffness {
 pub struct Materials {
     /// Young's modulus of the blocks, in Pa.
     pub stone_modulus_pa: f64,
-    /// Young's modulus of the mortar, in Pa, and its thickness, in m, if there is any.
+    /// Young's modulus of the mortar in Pa, and its thickness in m; `None` for dry joints.
     pub mortar: Option<[f64; 2]>,
-    /// Stiffness against slip over that against penetration.
+    /// Ratio of shear stiffness to normal stiffness.
     pub shear_ratio: f64,
 }
 
-/// The stiffness of the joints of a structure.
+/// Stiffness of the joints of a structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stiffness {
     /// One stiffness for all joints.
     Uniform(JointStiffness),
-    /// Blocks and mortar in series: `1/kn = t_m/E_m + L/E_b`, with the distance `L` between the centres of the two blocks across the
-    /// joint; at a support, from the centre of the block to the joint.
+    /// Stone and mortar in series: `1/kn = t_m/E_m + L/E_b`. `L` is the distance between the centres of the two blocks across the joint; at a
+    /// support, between the centre of the block and the joint.
     Materials(Materials),
 }
 
 /// Properties of elastic joints.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticProperties {
-    /// Their stiffness.
+    /// Stiffness of the joints.
     pub stiffness: Stiffness,
     /// Width of the structure out of its plane, in m.
     pub depth_m: f64,
-    /// Coulomb's coefficient of friction; if `None`, nothing slips permanently.
+    /// Coulomb's coefficient of friction; `None` prevents permanent slip.
     pub friction_coefficient: Option<f64>,
-    /// Damping time in s: damping forces are this times the rates of the elastic ones.
+    /// Damping time in s: a damping force is this time multiplied by the rate of the elastic force.
     pub damping_time_s: f64,
-    /// Stress at which joints crush, in Pa; if `None`, they do not.
+    /// Compressive strength of the joints in Pa; `None` prevents crushing.
     pub compressive_strength_pa: Option<f64>,
-    /// Integration of the stress.
+    /// Method to integrate the stress.
     pub contact: Contact,
 }
 
 impl ElasticProperties {
-    /// Above this range explicit steps are too many, and joints as good as rigid; below it nothing stands.
+    /// Range of normal stiffness, in Pa/m. Stiffer joints need too many explicit steps and behave as rigid ones; with softer joints no structure is
+    /// stable.
     pub const NORMAL_STIFFNESS_PA_M: RangeInclusive<f64> = 1e6..=1e14;
-    /// Stiffness against slip over that against penetration.
+    /// Range of the ratio of shear stiffness to normal stiffness.
     pub(crate) const SHEAR_RATIO: RangeInclusive<f64> = 1e-2..=1e2;
-    /// From soft rubber to beyond diamond, in Pa.
+    /// Range of Young's moduli in Pa, from soft rubber to beyond diamond.
     pub const MODULUS_PA: RangeInclusive<f64> = 1e5..=1e13;
-    /// Thickness of mortar, in m.
+    /// Range of the thickness of mortar, in m.
     pub const MORTAR_M: RangeInclusive<f64> = 0.0..=1.0;
-    /// Joints of stone have 0.5 to 0.8.
+    /// Range of friction coefficients; stone joints have 0.5 to 0.8.
     pub const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
-    /// Damping times, in s. One of 0.05 s is that of a very viscous base.
+    /// Range of damping times in s; 0.05 s is that of a very viscous base.
     pub const DAMPING_TIME_S: RangeInclusive<f64> = 0.0..=1.0;
-    /// Strengths, in Pa.
+    /// Range of compressive strengths, in Pa.
     pub const STRENGTH_PA: RangeInclusive<f64> = 1e3..=1e12;
-    /// Numbers of contact points. One does not hold a block.
+    /// Range of the number of contact points; a single point does not support a block.
     pub const CONTACT_POINTS: RangeInclusive<usize> = 2..=100;
 
-    /// Joints of this stiffness against penetration, and 0.4 of it against slip (the shear modulus over Young's); friction 0.7, a
-    /// damping time of 0.1 ms, continuous contact, no crushing; a metre wide.
+    /// Returns joints with this normal stiffness and default properties: shear stiffness 0.4 of it (shear modulus over Young's modulus), friction
+    /// coefficient 0.7, damping time 0.1 ms, continuous contact, no crushing, depth 1 m.
     #[must_use]
     pub const fn of_stiffness(normal_pa_m: f64) -> Self {
         Self {
@@ -94,7 +95,7 @@ impl ElasticProperties {
         }
     }
 
-    /// Refuses properties out of range; the stiffness of joints is checked joint by joint.
+    /// Returns an error if a property is out of range. The stiffness is checked for each joint later.
     fn check(&self) -> Result<(), ArgumentError> {
         if let Stiffness::Materials(materials) = self.stiffness {
             let modulus_pa = materials.stone_modulus_pa;
@@ -122,7 +123,7 @@ impl ElasticProperties {
         Ok(())
     }
 
-    /// These properties or this structure with all stiffness multiplied.
+    /// Returns these properties with all stiffnesses multiplied by a factor.
     #[must_use]
     pub(crate) fn stiffness_times(mut self, factor: f64) -> Self {
         match &mut self.stiffness {
@@ -151,7 +152,7 @@ fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
     within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
 }
 
-/// A rigid body.
+/// Rigid body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Mass in kg.
@@ -160,31 +161,31 @@ pub struct Body {
     pub inertia_kg_m2: f64,
 }
 
-/// Rigid bodies with elastic joints between them. The body after the last one is the left support (or the only one), and
-/// whatever joints name beyond that is the right one.
+/// Rigid bodies with elastic joints between them. In a joint, the index after the last body is the left (or only) support; larger indices are the
+/// right support.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticStructure {
-    /// The bodies.
+    /// Rigid bodies.
     pub bodies: Vec<Body>,
     /// Displacements (m) and rotations (rad) of the supports.
     pub supports: [[f64; 3]; 2],
-    /// The joints.
+    /// Elastic joints.
     pub joints: Vec<ElasticJoint>,
-    /// The ties.
+    /// Ties between bodies, or between a body and the ground.
     pub ties: Vec<BoundTie>,
-    /// The most that ties add to the square of the highest frequency.
+    /// Upper bound of the contribution of ties to the square of the highest angular frequency, in rad2/s2.
     ties_square_frequency: f64,
-    /// The law of its joints.
+    /// Contact law of all joints.
     pub(crate) law: Law,
     /// Damping time in s.
     pub damping_time_s: f64,
 }
 
 impl ElasticStructure {
-    /// A row of blocks.
+    /// Returns the structure of a row of blocks.
     ///
     /// # Errors
-    /// When a property is out of range.
+    /// If a property is out of range.
     pub fn of_row(row: &Row, properties: &ElasticProperties) -> Result<Self, ArgumentError> {
         properties.check()?;
         let blocks = &row.blocks;
@@ -199,7 +200,7 @@ impl ElasticStructure {
             let middle_m = joint.middle_m();
             let along = joint.along();
             let centres = pair.map(|body| blocks.get(body).map(|block| block.centre_m));
-            // The support's centre is the middle of its joint.
+            // The centre of a support is the middle of its joint.
             let arms_m = centres.map(|centre| middle_m - centre.unwrap_or(middle_m));
             let across_m = |centre: Option<Vector2<f64>>| {
                 centre.map_or(0.0, |centre| along.perp(&(centre - middle_m)).abs())
@@ -236,7 +237,7 @@ impl ElasticStructure {
         })
     }
 
-    /// A structure of any bodies and joints, without ties.
+    /// Returns a structure of given bodies and joints, without ties.
     #[must_use]
     pub fn new(
         bodies: Vec<Body>,
@@ -263,33 +264,33 @@ impl ElasticStructure {
         }
     }
 
-    /// This structure on supports moved by these displacements (m) and rotations (rad), those of a row about the middle of its
-    /// first and last joint.
+    /// Returns this structure on supports with given displacements (m) and rotations (rad). In a row, supports rotate about the middle of the first
+    /// and the last joint.
     #[must_use]
     pub const fn on_supports(mut self, moved: [[f64; 3]; 2]) -> Self {
         self.supports = moved;
         self
     }
 
-    /// Those of the support that joints name so.
+    /// Returns the displacements (m) and the rotation (rad) of the support with an index as in joints.
     #[must_use]
     pub fn support(&self, body: usize) -> &[f64; 3] {
         &self.supports[usize::from(body > self.bodies.len())]
     }
 
-    /// Whether a support has moved.
+    /// Returns whether a support has moved.
     #[must_use]
     pub fn has_settled(&self) -> bool {
         self.supports != [[0.0; 3]; 2]
     }
 
-    /// This structure with both supports moved as the left one has, without rotation.
+    /// Returns the displacement of the left support, in m, and this structure with both supports displaced by it, without rotation.
     pub(super) fn moved_along(&self) -> ([f64; 2], Self) {
         let [x, y, _] = self.supports[0];
         ([x, y], self.clone().on_supports([[x, y, 0.0]; 2]))
     }
 
-    /// This structure when its supports have gone this part of their way from where they moved along.
+    /// Returns this structure with the supports at a fraction of their movement, which starts at the common displacement of [`Self::moved_along`].
     pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
         let from = self.moved_along().1.supports;
         let between = |from: f64, to: f64| to - (1.0 - part) * (to - from);
@@ -298,46 +299,46 @@ impl ElasticStructure {
         (self.clone()).on_supports([0, 1].map(|side| [0, 1, 2].map(|axis| on_way(side, axis))))
     }
 
-    /// Whether joints slip for good.
+    /// Returns whether joints may slip permanently.
     #[must_use]
     pub const fn slips(&self) -> bool {
         self.law.friction[1] == 0.0
     }
 
-    /// Mass of all bodies, in kg.
+    /// Returns the mass of all bodies, in kg.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.bodies.iter().map(|body| body.mass_kg).sum()
     }
 
-    /// Number of places along each joint that remember crushing.
+    /// Returns the number of positions along each joint with a state of crushing.
     #[must_use]
     pub fn fibres(&self) -> usize {
         self.law.section.fibres()
     }
 
-    /// This structure without bounds of friction.
+    /// Returns this structure with unlimited friction.
     pub(super) fn without_slip(&self) -> Self {
         let mut other = self.clone();
         other.law.friction = [0.0, f64::INFINITY];
         other
     }
 
-    /// This structure without crushing.
+    /// Returns this structure without crushing.
     pub(super) fn without_crushing(&self) -> Self {
         let mut other = self.clone();
         other.law.crushes = false;
         other
     }
 
-    /// This structure with continuous contact, without crushing.
+    /// Returns this structure with continuous contact, without crushing.
     pub(super) fn continuous(&self) -> Self {
         let mut other = self.without_crushing();
         other.law.section = Section::Whole;
         other
     }
 
-    /// These properties or this structure with all stiffness multiplied.
+    /// Returns this structure with all stiffnesses multiplied by a factor. The strength of the joints stays the same.
     pub(super) fn stiffness_times(&self, factor: f64) -> Self {
         let mut other = self.clone();
         for joint in &mut other.joints {
@@ -351,8 +352,8 @@ impl ElasticStructure {
         other
     }
 
-    /// Forces of a joint with its bodies at these places, and its action on them; its memory is updated. `damping` is the damping time over
-    /// the length of the step.
+    /// Computes the forces of a joint for given positions of its bodies, and updates its state. `damping` is the damping time over the length of the
+    /// step.
     #[inline(always)]
     pub fn act<R: Real>(
         &self,
@@ -369,7 +370,7 @@ impl ElasticStructure {
         (action, pressing, rubbing)
     }
 
-    /// The elastic stress of a joint at rest, summed up: forces at its edges and the shear force, in N.
+    /// Returns the elastic forces of a joint at rest: the normal forces at its edges and the shear force, in N.
     #[must_use]
     pub(crate) fn elastic_n(
         &self,
@@ -382,7 +383,7 @@ impl ElasticStructure {
         (pressing.edges_n.map(|edge| edge.0[0]), rubbing.shear_n.0[0])
     }
 
-    /// Elastic energy of a joint, in J.
+    /// Returns the elastic energy of a joint, in J.
     #[inline(always)]
     pub fn energy_j<R: Real>(
         &self,
@@ -394,11 +395,11 @@ impl ElasticStructure {
         pressing * joint.normal_n_m + memory.shear_n * memory.shear_n * (0.5 / joint.shear_n_m)
     }
 
-    /// A bound of the highest angular frequency, in rad/s, with any joints closed.
+    /// Returns an upper bound of the highest angular frequency, in rad/s, for any set of closed joints.
     ///
-    /// Every joint is given a part of the mass of its bodies, in proportion to its stiffness. By Rayleigh's quotient the highest
-    /// frequency of a joint with its part is then not below that of the whole (Irons and Treharne, "A bound theorem in eigenvalues and
-    /// its practical applications", 1971). Joints that are partly open are softer than closed ones.
+    /// Each joint gets a part of the mass of its bodies, in proportion to its stiffness. By Rayleigh's quotient, the highest frequency of such a
+    /// joint with its mass is not below the highest frequency of the structure (Irons and Treharne, "A bound theorem in eigenvalues and its practical
+    /// applications", 1971). Partly open joints are softer than closed ones.
     #[must_use]
     pub(crate) fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
@@ -420,7 +421,7 @@ impl ElasticStructure {
                 };
                 let part = joint.normal_n_m / held_n_m[body];
                 let arm = Vector2::from(arm_m);
-                // Gap, slip and angle due to the motion of the body; signs drop out when squared.
+                // Gap, slip and angle due to the motion of the body; signs cancel in the squares.
                 let by_x = Vector3::new(normal.x, along.x, 0.0);
                 let by_y = Vector3::new(normal.y, along.y, 0.0);
                 let by_turn = Vector3::new(arm.perp(&normal), arm.perp(&along), 1.0);
@@ -434,23 +435,24 @@ impl ElasticStructure {
             let scaled = flexibility.component_mul(&(roots * roots.transpose()));
             scaled.symmetric_eigenvalues().max()
         });
-        // That of a sum is at most the sum of those of its parts.
+        // The largest eigenvalue of a sum is at most the sum of the largest eigenvalues.
         (squares.fold(0.0, f64::max) + self.ties_square_frequency).sqrt()
     }
 
-    /// The longest step, in s, for which central differences are stable, with damping that lags by half a step.
+    /// Returns the longest step, in s, for which central differences are stable, with damping that lags by half a step.
     ///
-    /// With frequency `w` and `z = beta w/2` that is `2/w (sqrt(1 + z^2) - z)`, by Jury's criterion; it falls with `w`.
+    /// By Jury's criterion this is `2/w (sqrt(1 + z^2) - z)` for the frequency `w` and `z = beta w/2`, with the damping time `beta`; it decreases
+    /// with `w`.
     #[must_use]
     pub fn stable_step_s(&self) -> f64 {
         let frequency = self.frequency_bound_rad_s();
         let z = 0.5 * self.damping_time_s * frequency;
-        // The difference, written without cancellation.
+        // Difference of square root and `z`, written without cancellation.
         2.0 / frequency / (1.0_f64.hypot(z) + z)
     }
 }
 
-/// Stiffness of mortar and of a length of stone, in series.
+/// Returns the stiffness of mortar and a length of stone in series.
 fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
     let mortar = materials.mortar;
     let mortar = mortar.map_or(0.0, |[modulus, thickness]| thickness / modulus);

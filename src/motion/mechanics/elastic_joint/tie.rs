@@ -7,19 +7,19 @@ use crate::mechanics::blocks::Block;
 use crate::mechanics::lanes::{Real, both};
 use crate::mechanics::tie::{Tie, TieSpan};
 
-/// A tie with the bodies that it holds on to.
+/// Tie with the bodies at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BoundTie {
-    /// The tie.
+    /// Properties of the tie.
     pub tie: Tie,
-    /// The bodies at its ends; beyond the last one are the left support and the right one.
+    /// Indices of the bodies at its ends; the left and the right support follow after the last body.
     pub bodies: [usize; 2],
-    /// From their centres to its ends, in m; from the middle of its joint where that is a support.
+    /// Vectors from the centres of the bodies to the ends of the tie, in m; from the middle of its joint for a support.
     pub arms_m: [[f64; 2]; 2],
 }
 
 impl BoundTie {
-    /// Of a row between these feet: the ground moves an end as it does the nearer one.
+    /// Returns the tie of a row with given feet. An end in the ground moves with the nearer support.
     pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [Vector2<f64>; 2]) -> Self {
         let body = |end: usize| {
             let anchor = &tie.ends[end];
@@ -43,7 +43,7 @@ impl BoundTie {
         }
     }
 
-    /// Its line with its bodies at these places.
+    /// Returns length, stretch and direction of the tie for given positions of its bodies.
     #[inline(always)]
     #[must_use]
     pub fn span<R: Real>(&self, places: [&Place<R>; 2]) -> TieSpan<R> {
@@ -53,7 +53,7 @@ impl BoundTie {
         self.tie.span([first, second])
     }
 
-    /// The action of the tie on its bodies with this force.
+    /// Returns the forces of the tie on its bodies for a given tie force.
     #[inline(always)]
     #[must_use]
     pub fn action<R: Real>(

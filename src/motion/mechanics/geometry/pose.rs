@@ -2,8 +2,7 @@
 
 use nalgebra::Vector2;
 
-/// Position of a rigid body relative to where it is in the undeformed structure: it is turned about the
-/// origin, then moved.
+/// Position of a rigid body relative to the undeformed structure: a rotation about the origin, then a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Rotation in radians, positive anticlockwise.
@@ -16,14 +15,14 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Undeformed.
+    /// Pose of an undeformed body.
     pub const UNDEFORMED: Self = Self {
         rotation_rad: 0.0,
         turn: Vector2::new(1.0, 0.0),
         translation: Vector2::new(0.0, 0.0),
     };
 
-    /// Turned by `rotation_rad` about the origin, then moved.
+    /// Returns the pose after a rotation by `rotation_rad` about the origin and a displacement.
     #[must_use]
     pub fn new(rotation_rad: f64, translation: Vector2<f64>) -> Self {
         Self {
@@ -33,7 +32,7 @@ impl Pose {
         }
     }
 
-    /// Turned by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
+    /// Returns the pose after a rotation by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
     #[must_use]
     pub fn about(pole: Vector2<f64>, moved: Vector2<f64>, rotation_rad: f64) -> Self {
         // Adding zero makes a negative zero positive.
@@ -83,13 +82,13 @@ impl Pose {
     }
 }
 
-/// Unit vector at this angle.
+/// Returns the unit vector at an angle from the x axis.
 pub(crate) fn unit(angle_rad: f64) -> Vector2<f64> {
     let (sin, cos) = angle_rad.sin_cos();
     Vector2::new(cos, sin)
 }
 
-/// Product of complex numbers: turns one vector by the angle of a unit vector.
+/// Returns a vector rotated by the angle of a unit vector: a product of complex numbers.
 pub(crate) fn product(unit: Vector2<f64>, vector: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(
         unit.x * vector.x - unit.y * vector.y,

@@ -1,7 +1,7 @@
-//! The profile that hinges divide into rigid parts: a continuous ring, or a row of blocks between joints.
+//! Profile that hinges divide into rigid parts: a continuous ring, or a row of blocks with joints.
 //!
-//! Sections follow each other from the left support to the right one and are named by a number that rises from zero to
-//! [`Profile::end`]: the angle of a ring, the index of a joint. At each of them a hinge may sit on either edge.
+//! Sections are numbered from left to right, from zero to [`Profile::end`]: by the angle of a ring, or by the index of a joint. A hinge is on one of
+//! the two edges of a section.
 
 use std::fmt::Debug;
 use std::sync::Arc;
@@ -37,40 +37,38 @@ pub trait Profile: Debug + Send + Sync {
     /// Distance of the edges at a section.
     fn thickness(&self, section: f64) -> f64;
 
-    /// Mass moments of what lies before a section.
+    /// Returns the mass moments of the part before a section.
     fn moments_to(&self, section: f64) -> MassMoments;
 
-    /// Mass moments between two sections.
+    /// Returns the mass moments between two sections.
     fn sector(&self, from: f64, to: f64) -> MassMoments {
         self.moments_to(to) - self.moments_to(from)
     }
 
-    /// Mass moments per unit of the section's number; none where hinges can sit at joints only.
+    /// Returns the mass moments per unit of the section's number; zero if hinges are possible at joints only.
     fn slice(&self, _section: f64) -> MassMoments {
         MassMoments::default()
     }
 
-    /// Derivative of the point on an edge with respect to the section's number; zero where hinges can sit at joints only.
+    /// Returns the derivative of the point on an edge by the section's number; zero if hinges are possible at joints only.
     fn edge_slope(&self, _section: f64, _edge: Edge) -> Vector2<f64> {
         Vector2::zeros()
     }
 
-    /// The sections that cut it into equal parts, the supports included; for a row its joints, whatever the number of
-    /// parts.
+    /// Returns the sections that divide the profile into equal parts, including the supports. A row returns its joints for any number of parts.
     fn sections(&self, parts: usize) -> Vec<f64>;
 
-    /// The joint at a section; `None` where sections are angles.
+    /// Returns the joint at a section; `None` if sections are angles.
     fn joint(&self, _section: f64) -> Option<usize> {
         None
     }
 
-    /// The closed polygons that are drawn between two sections, one for each block; `None` where the edges are arcs about
-    /// the origin.
+    /// Returns the closed polygons to draw between two sections, one for each block; `None` if the edges are arcs about the origin.
     fn outlines(&self, _from: f64, _to: f64) -> Option<&[Vec<Vector2<f64>>]> {
         None
     }
 
-    /// This profile, shared.
+    /// Returns this profile with shared ownership.
     fn shared(&self) -> Arc<dyn Profile>;
 }
 
