@@ -1,21 +1,19 @@
-//! The quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
+//! Quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
 //!
-//! Held at the rotation `q`, the first mechanism is in equilibrium under gravity and the horizontal acceleration
-//! `a(q) = S_y(q) / S_x(q)` (in g). This follows from virtual power, as at the onset, where `a(0) = A_L`. The acceleration
-//! falls to zero at the unstable equilibrium. Drawn against the horizontal displacement `d` of a control point it is the
-//! capacity curve; `d` at its end is the ultimate displacement.
+//! At the rotation `q`, the first mechanism is in equilibrium under gravity and the horizontal acceleration `a(q) = S_y(q) / S_x(q)` (in multiples of
+//! gravity). This follows from virtual power. At the onset, `a(0) = A_L`. The acceleration decreases to zero at the unstable equilibrium. The
+//! capacity curve is `a` against the horizontal displacement `d` of a control point. The value of `d` at its end is the ultimate displacement.
 //!
-//! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço,
-//! Rocking and kinematic approaches for rigid block analysis of masonry walls, Buildings 7, 69, 2017), defined
-//! here as follows. With `m_i` the masses of the blocks at their centres of gravity, `u_i` the horizontal velocities of these
-//! as the mechanism starts and `u_c` that of the control point,
+//! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço, Rocking and kinematic
+//! approaches for rigid block analysis of masonry walls, Buildings 7, 69, 2017), defined here as follows. Let `m_i` be the masses of the blocks at
+//! their centres of gravity, `u_i` their horizontal velocities at the start of the mechanism, and `u_c` that of the control point:
 //!
 //! - participating mass `M* = (sum m u)^2 / sum m u^2`, fraction `e* = M* / sum m`;
 //! - acceleration `a* = a / e*`: `M* a*` is the force `a sum m`;
 //! - displacement `d* = d sum m u^2 / (u_c sum m u)`;
 //! - secant period `T = 2 pi sqrt(d* / (g a*))`.
 //!
-//! The sums run over the blocks that the mechanism moves. One block has `e* = 1`.
+//! The sums include the blocks that the mechanism moves. A single block has `e* = 1`.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -27,22 +25,22 @@ use super::geometry::pose::Pose;
 use super::sway::Sway;
 use super::virtual_work::{MovingBody, Participation};
 
-/// A structure displaced along its first mechanism.
+/// Structure displaced along its first mechanism, in equilibrium with a horizontal acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Displaced {
     /// The coordinate of the mechanism, in radians.
     pub q_rad: f64,
-    /// Horizontal acceleration of the ground, against the sway, that holds it in equilibrium, in units of gravity.
+    /// Horizontal ground acceleration against the sway at which the structure is in equilibrium, in multiples of gravity.
     pub acceleration_g: f64,
     /// Poses of its bodies from left to right, in metres, in the frame of the ground.
     pub poses: Vec<Pose>,
-    /// Positions of its hinges from left to right, likewise.
+    /// Positions of its hinges from left to right, in metres, in the frame of the ground.
     pub hinges_m: Vec<Vector2<f64>>,
-    /// Friction coefficient below which it would slide there, held at rest by that acceleration.
+    /// Friction coefficient required to prevent sliding in this equilibrium.
     pub friction: f64,
 }
 
-/// The first mechanism to a side, displaced by this fraction of the way to its unstable equilibrium.
+/// Returns the first mechanism to a side at a fraction `part` of the displacement at its unstable equilibrium. `None` without such a mechanism.
 #[must_use]
 pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
     let link = structure.link_from(sway, 0)?;
@@ -67,8 +65,8 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     })
 }
 
-/// The rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements for one radian of
-/// its coordinate, in metres. Parts that stand still are left out.
+/// Returns the rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
+/// metres. Parts at rest are omitted. `None` without such a mechanism.
 #[must_use]
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -95,34 +93,34 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     Some(moving)
 }
 
-/// A point that moves with a body.
+/// Point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
-    /// Index of the body; `None`: it stands still.
+    /// Index of the body; `None` for a fixed point.
     pub body: Option<usize>,
 }
 
 impl Carried {
-    /// Its horizontal displacement in metres.
+    /// Returns the horizontal displacement of the point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
         pose.map_or(0.0, |pose| (pose.of(self.at_m) - self.at_m).x)
     }
 }
 
-/// The point whose displacement is reported: a point of the structure, or the common centre of several.
+/// Control point, whose displacement is reported: a point of the structure, or the common centre of several points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
     /// Its position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
-    /// The points with their weights, which add up to one.
+    /// Points with their weights; the weights sum to one.
     points: Vec<(f64, Carried)>,
 }
 
 impl Control {
-    /// A point of the structure.
+    /// Returns a control point at a point of the structure.
     #[must_use]
     pub fn point(point: Carried) -> Self {
         Self {
@@ -131,7 +129,7 @@ impl Control {
         }
     }
 
-    /// The common centre of the masses, in kg, that move.
+    /// Returns the common centre of the moving masses, given in kg, as control point.
     #[must_use]
     pub fn centre_of(masses: &[(f64, Carried)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
@@ -142,7 +140,7 @@ impl Control {
         Self { at_m, points }
     }
 
-    /// Its horizontal displacement in metres.
+    /// Returns the horizontal displacement of the control point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let points = self.points.iter();
         let shifts_m = points.map(|(part, point)| part * point.shift_m(poses));
@@ -150,7 +148,7 @@ impl Control {
     }
 }
 
-/// A point of the capacity curve.
+/// Point of the capacity curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
     /// The coordinate of the mechanism, in radians.
@@ -159,57 +157,57 @@ pub struct CurvePoint {
     pub displacement_m: f64,
     /// Acceleration `a`, in g.
     pub acceleration_g: f64,
-    /// Displacement `d*` of the oscillator, in metres.
+    /// Displacement `d*` of the equivalent oscillator, in metres.
     pub oscillator_displacement_m: f64,
-    /// Its acceleration `a*`, in g.
+    /// Acceleration `a*` of the equivalent oscillator, in multiples of gravity.
     pub oscillator_acceleration_g: f64,
     /// Its secant period in seconds, 0 at rest; `None` at the unstable equilibrium, where it is infinite.
     pub secant_period_s: Option<f64>,
-    /// Friction coefficient below which it would slide there.
+    /// Friction coefficient required to prevent sliding.
     pub friction: f64,
 }
 
-/// The capacity of the first mechanism to a side.
+/// Capacity of the first mechanism to a side.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capacity {
-    /// To which side.
+    /// Side to which the structure sways.
     pub sway: Sway,
     /// The control point.
     pub control: Control,
     /// Participating mass `M*` in kg.
     pub participating_mass_kg: f64,
-    /// `e*`: the participating mass as a fraction of the mass that moves.
+    /// Participating mass over moving mass, `e*`.
     pub mass_fraction: f64,
-    /// Factor from displacements of the control point to those of the oscillator.
+    /// Factor from displacements of the control point to those of the equivalent oscillator.
     pub to_oscillator: f64,
-    /// From rest to the unstable equilibrium, at equal steps of the coordinate, and where ties yield or break.
+    /// Capacity curve from rest to the unstable equilibrium, at equal steps of the coordinate and at yield or break of ties.
     pub curve: Vec<CurvePoint>,
-    /// Points of the way at which its ties give way; empty without ties.
+    /// Displacements at which each tie yields or breaks; empty without ties.
     pub ties: Vec<TieOnTheWay>,
 }
 
-/// Parts of the way to the unstable equilibrium at which a tie yields or breaks.
+/// Fractions of the displacement at the unstable equilibrium at which a tie yields or breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivesWay {
-    /// The part of the way at which it first yields, if it does.
+    /// Fraction at which the tie first yields; `None` if it does not.
     pub yields: Option<f64>,
-    /// The last at which it is whole and the first at which it is broken, if it breaks.
+    /// Last fraction at which the tie is intact and first one at which it is broken; `None` if it does not break.
     pub breaks: Option<[f64; 2]>,
 }
 
 /// Displacements of the control point at which a tie yields or breaks, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TieOnTheWay {
-    /// Displacement at which it yields, if it does.
+    /// Displacement at which the tie yields; `None` if it does not.
     pub yields_at_m: Option<f64>,
-    /// Displacement at which it breaks, if it does.
+    /// Displacement at which the tie breaks; `None` if it does not.
     pub breaks_at_m: Option<f64>,
 }
 
-/// Why there is no capacity curve.
+/// Reason why there is no capacity curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CapacityError {
-    /// The control point stands still, or moves against the sway.
+    /// The control point does not move, or moves against the sway.
     #[error(
         "the control point ({:?}, {:?}) m does not move to the {side} with the mechanism: choose a point of a block that does",
         .at_m.x, .at_m.y, side = .sway.name()
@@ -231,19 +229,19 @@ pub enum CapacityError {
     },
 }
 
-/// Intervals of a capacity curve.
+/// Number of intervals of a capacity curve.
 const INTERVALS: u32 = 100;
 
-/// Step of the central differences that give the velocities at the start, as a fraction of the way to the unstable
-/// equilibrium: their error is its square.
+/// Step of the central differences for the initial velocities, as a fraction of the displacement at the unstable equilibrium. Their error is of the
+/// order of its square.
 const START: f64 = 1e-5;
 
 impl Capacity {
-    /// The capacity of a mechanism given by its positions at fractions of the way to the unstable equilibrium; `masses`
+    /// Computes the capacity of a mechanism. `displaced` returns its positions at fractions of the displacement at the unstable equilibrium; `masses`
     /// are in kg.
     ///
     /// # Errors
-    /// When the control point does not move, or the mechanism locks before its acceleration falls to zero.
+    /// If the control point does not move, or the acceleration does not decrease to zero.
     pub fn new(
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
@@ -269,7 +267,7 @@ impl Capacity {
         }
         let participation = Participation::of(moving);
         let to_oscillator = participation.oscillator_displacement / control_velocity;
-        // At the end of the way the acceleration may be NaN.
+        // At the end of the path the acceleration may be NaN.
         let [start_g, end_g] = [0.0, 1.0].map(|part| displaced(part).acceleration_g);
         if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
             return Err(CapacityError::Locks { sway });
@@ -291,7 +289,7 @@ impl Capacity {
         Ok(capacity)
     }
 
-    /// This capacity with points where ties yield, and just before and after they break.
+    /// Returns this capacity with additional points: at yield of each tie, and just before and after its break.
     #[must_use]
     pub fn with_ties(
         mut self,
@@ -315,9 +313,9 @@ impl Capacity {
         self
     }
 
-    /// The point at this part of the way.
+    /// Returns the point of the curve at a fraction of the path.
     fn point(&self, part: f64, here: &Displaced, gravity_m_s2: f64) -> CurvePoint {
-        // Rounding may leave the first displacement and the last acceleration on either side of zero.
+        // Rounding errors may change the sign of the first displacement and of the last acceleration.
         let (first, last) = (part == 0.0, part == 1.0);
         let shift_m = self.sway.sign() * self.control.shift_m(&here.poses);
         let displacement_m = if first { 0.0 } else { shift_m };
@@ -336,7 +334,7 @@ impl Capacity {
         }
     }
 
-    /// Its start: `a(0) = A_L`, and `a0*`.
+    /// Returns the first point of the curve: `a(0) = A_L`, and `a0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -345,7 +343,7 @@ impl Capacity {
         self.curve.first().expect("a curve has points")
     }
 
-    /// Its end: the ultimate displacement, and `d0*`.
+    /// Returns the last point of the curve: the ultimate displacement, and `d0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -354,8 +352,8 @@ impl Capacity {
         self.curve.last().expect("a curve has points")
     }
 
-    /// The acceleration of the oscillator, in g, at this fraction of `d0*`, between 0 and 1, interpolated linearly between
-    /// the points of the curve.
+    /// Returns the acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
+    /// interpolation of the curve.
     #[must_use]
     pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
         let wanted_m = part * self.end().oscillator_displacement_m;
@@ -370,7 +368,7 @@ impl Capacity {
             + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g)
     }
 
-    /// The secant period, in seconds, at this fraction of the ultimate displacement, between 0 and 1; `None` at its end.
+    /// Returns the secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
     #[must_use]
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;

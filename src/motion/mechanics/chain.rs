@@ -1,8 +1,7 @@
-//! Mechanisms with one degree of freedom each that follow one another through impacts: the four-link
-//! mechanisms of an arch, the two of a free-standing column.
+//! Sequences of mechanisms with one degree of freedom, linked by impacts: the four-link mechanisms of an arch, the two mechanisms of a free-standing
+//! column.
 //!
-//! Lengths are in units of the structure's size, masses in its unit of mass; every mechanism is described in
-//! the frame in which it sways right.
+//! Lengths are relative to the structure's size, masses to its unit of mass. Every mechanism is described in the frame in which it sways right.
 
 use std::collections::BTreeMap;
 
@@ -14,8 +13,7 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::{Edge, MassMoments};
 use crate::mechanics::sway::Sway;
 
-/// Coefficients of the equation of motion of a system with one degree of freedom,
-/// `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`, at some `q`.
+/// Coefficients of the equation of motion of a system with one degree of freedom at a given `q`, `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// `M`: generalised mass.
@@ -28,7 +26,7 @@ pub struct Coefficients {
     pub s_y: f64,
 }
 
-/// A mechanism at an instant, in its own frame, with the length of the structure and gravity as units.
+/// State of a mechanism, in its own frame, with the length of the structure and gravity as units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// The coordinate `q`.
@@ -41,26 +39,25 @@ pub struct Motion {
     pub body_force_g: Vector2<f64>,
 }
 
-/// Thrust excess and friction demand of a structure: see [`crate::mechanics::four_link::thrust`].
+/// Thrust excess and friction demand of a structure; see [`crate::mechanics::four_link::thrust`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
-    /// Excess of the line of thrust beyond the structure, over the thickness: the largest value of
-    /// its sections, zero if it stays inside.
+    /// Largest distance of the thrust line beyond the structure, over the thickness; zero if it stays inside.
     pub excess_ratio: f64,
-    /// Friction coefficient needed to prevent sliding, the largest over the sections that bear at least [`LEAST_LOAD`].
+    /// Friction coefficient required to prevent sliding: the largest value of all sections with at least [`LEAST_LOAD`].
     pub friction: f64,
 }
 
-/// Sections with a normal force below this fraction of the weight of the structure do not count in the friction that it needs: an almost
-/// unloaded one can show any ratio, and whether it slips hardly matters.
+/// Least normal force of a section, over the weight of the structure, that counts in the friction demand. An almost unloaded section can show any
+/// ratio, and its slip hardly matters.
 pub const LEAST_LOAD: f64 = 0.01;
 
-/// A mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
+/// Mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
 pub trait Mechanism {
-    /// Rotations of its bodies from left to right, anticlockwise, in radians; or their rates.
+    /// Rotations of the bodies from left to right, anticlockwise, in radians; also the type of their rates.
     type Rotations: Copy + AsRef<[f64]> + AsMut<[f64]>;
 
-    /// Names of the bodies, from left to right; one empty name if there is only one body.
+    /// Names of the bodies, from left to right; one empty name for a single body.
     const BODIES: &'static [&'static str];
 
     /// Mass moments of the bodies, undeformed, from left to right.
@@ -73,50 +70,49 @@ pub trait Mechanism {
     fn rotations(&self, q_rad: f64) -> Self::Rotations;
     /// Rotation rates of the bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
-    /// Puts the poses of the bodies at `q`, from left to right, and the positions of the hinges into the two
-    /// lists, which are emptied first.
+    /// Writes the poses of the bodies at `q`, from left to right, and the positions of the hinges into two lists, which are emptied first.
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
 }
 
-/// A mechanism in the sequence that the impacts produce.
+/// Mechanism in the sequence that impacts produce.
 #[derive(Clone, Debug)]
 pub struct Link<M> {
     /// The mechanism at finite rotations.
     pub mechanism: M,
-    /// Its coefficients at `q = 0`, where every arc begins and ends.
+    /// Coefficients at `q = 0`, where every arc of the motion begins and ends.
     pub at_zero: Coefficients,
     /// `q` at the unstable equilibrium under gravity alone.
     pub critical_rad: f64,
-    /// `q` at which the mechanism cannot go any further.
+    /// Largest possible `q` of the mechanism.
     pub limit_rad: f64,
     /// Energy barrier: work against unit gravity from `q = 0` to the unstable equilibrium, in the units of
     /// mass and length.
     pub barrier: f64,
     /// Rate of this mechanism for a unit closing rate of the one before; 1 for the first.
     pub rate_ratio: f64,
-    /// Restitution coefficient of the impact that leads here, energy after over before; 1 for the first.
+    /// Restitution coefficient of the impact that starts this mechanism, energy after over before; 1 for the first.
     pub restitution: f64,
 }
 
-/// A hinge: where one part of a structure turns against another, or against the ground.
+/// Hinge between two parts of a structure, or between a part and the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Hinge {
-    /// At an edge of a section of an arch.
+    /// Hinge at an edge of a section of an arch.
     Section {
-        /// The section, in radians from the left springing; in degrees as `angle_deg` of files.
+        /// Section, in radians from the left springing; in degrees as `angle_deg` in files.
         #[serde(rename = "angle_deg", serialize_with = "in_degrees")]
         angle_rad: f64,
         /// The edge.
         edge: Edge,
     },
-    /// At a toe of the base of a column, on this side; `toe` of files.
+    /// Hinge at the toe of a column's base on this side; `toe` in files.
     Toe(#[serde(serialize_with = "as_toe")] Sway),
-    /// At a joint of a row of blocks.
+    /// Hinge at a joint of a row of blocks.
     Joint {
-        /// The joint, from 0 at the left springing or the base.
+        /// Index of the joint, from 0 at the left springing or the base.
         joint: usize,
-        /// The edge about which it opens; `None` where both edges open.
+        /// Edge about which the joint opens; `None` if it opens at both edges.
         edge: Option<Edge>,
     },
 }
@@ -130,7 +126,7 @@ fn as_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> 
 }
 
 impl<M: Mechanism> Link<M> {
-    /// The link of a mechanism with its unstable equilibrium and its limit, and with the impact that leads to it.
+    /// Returns the link of a mechanism with its unstable equilibrium and its limit, and with the impact that starts it.
     #[must_use]
     pub fn new(
         mechanism: M,
@@ -151,33 +147,31 @@ impl<M: Mechanism> Link<M> {
     }
 }
 
-/// The mechanisms by which a structure rocks under an impact model.
+/// Mechanisms by which a structure rocks under an impact model.
 ///
-/// Which mechanism follows an impact depends on the one that closes, not on how fast it closes. So the
-/// sequence is fixed from the mechanism that starts at the incipient acceleration. Every implementor
-/// is a [`Model`](crate::dynamics::model::Model).
+/// The mechanism after an impact depends on the mechanism before it, not on the velocity. The sequence therefore follows from the mechanism that
+/// starts at the incipient acceleration. Every implementor is a [`Model`](crate::dynamics::model::Model).
 pub trait MechanismChain: std::fmt::Debug + Send + Sync {
-    /// Its mechanisms.
+    /// Type of the mechanisms.
     type Mechanism: Mechanism + Send + Sync;
 
     /// Size of the structure: the unit of length of its mechanisms, in metres.
     fn length_m(&self) -> f64;
     /// Unit of mass of its mechanisms, in kg.
     fn mass_unit_kg(&self) -> f64;
-    /// The unit of energy of its mechanisms (see
-    /// [`barrier`](crate::dynamics::hybrid::rocking::Rocking::barrier)) in J.
+    /// Returns the unit of energy of the mechanisms (see [`barrier`](crate::dynamics::hybrid::rocking::Rocking::barrier)) in J.
     fn joules_per_unit(&self) -> f64 {
         self.mass_unit_kg() * self.length_m() * self.length_m()
     }
 
-    /// Horizontal acceleration at which it starts to rock from rest to a side, in units of gravity.
+    /// Returns the horizontal acceleration at which rocking starts from rest to a side, in multiples of gravity.
     fn incipient_towards_g(&self, sway: Sway) -> f64;
-    /// Incipient acceleration to the right, in units of gravity; for a structure that is its own mirror image, to either side.
+    /// Returns the incipient acceleration to the right, in multiples of gravity; for symmetric structures, to either side.
     fn incipient_g(&self) -> f64 {
         self.incipient_towards_g(Sway::Right)
     }
-    /// Puts the poses of the bodies of one of its mechanisms, displaced to a side, and the positions of its hinges into the two lists, from
-    /// left to right and in metres.
+    /// Writes the poses of the bodies of a mechanism displaced to a side, and the positions of its hinges, into two lists, from left to right and in
+    /// metres.
     fn place_m(
         &self,
         mechanism: &Self::Mechanism,
@@ -201,47 +195,45 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
             *hinge = Vector2::new(sway.sign() * hinge.x, hinge.y) * self.length_m();
         }
     }
-    /// Thrust excess and friction demand of one of its mechanisms in motion.
+    /// Returns thrust excess and friction demand of a mechanism in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
-    /// Thrust excess and friction demand at rest, for a force per unit mass (gravity less the acceleration of the ground) in g.
+    /// Returns thrust excess and friction demand at rest, for a force per unit mass (gravity minus ground acceleration) in multiples of gravity.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
-    /// The line of thrust of one of its mechanisms in motion, section by section, where it is known: its outward distance
-    /// from the axis over the thickness, from left to right in the mechanism's frame. In a column the sections go from
-    /// the base up and the distance is to the right. `None` where a section is not pressed.
+    /// Returns the thrust line of a mechanism in motion, section by section from left to right in the mechanism's frame: outward distance from the
+    /// axis over the thickness. The sections of a column go from the base up, with distances to the right. `None` for a section without compression;
+    /// empty if unknown.
     fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &Motion) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// The mirror image of that line: its sections from the other end. In a column the sections stay and the distances
-    /// change sign.
+    /// Returns the mirror image of a thrust line, with sections in reverse order. For a column the distances change sign instead.
     fn mirrored(&self, mut eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
         eccentricity_ratios.reverse();
         eccentricity_ratios
     }
-    /// The line of thrust at rest.
+    /// Returns the thrust line at rest, in the form of [`Self::eccentricity_ratios`]; empty if unknown.
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// The mechanism after a number of impacts and a first sway to this side; `None` when an impact before it stops
-    /// the structure.
+    /// Returns the mechanism after a number of impacts and a first sway to this side; `None` if an earlier impact stops the structure.
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
-    /// The mechanism after a number of impacts and a first sway to the right; for a structure that is its own mirror image, to either side.
+    /// Returns the mechanism after a number of impacts and a first sway to the right; for symmetric structures, to either side.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
         self.link_from(Sway::Right, impacts)
     }
-    /// Hinges of that mechanism from left to right, as seen when it sways to the given side; none when
-    /// there is no such mechanism.
+    /// Returns the hinges of the mechanism after a number of impacts, from left to right, for a sway to the given side; empty without such a
+    /// mechanism.
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
-    /// Impulses at those hinges of the impact that leads to the mechanism, in the frame of the ground,
-    /// for a unit closing rate, in units of mass and length; none where they are not known.
+    /// Returns the impulses at the hinges in the impact that starts the mechanism, in the frame of the ground, for a unit closing rate, in the units
+    /// of mass and length; empty if unknown.
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>>;
 }
 
-/// The unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of
-/// the potential energy, falls to zero; the limit itself if there is none.
+/// Returns the unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of the potential energy, becomes zero.
+/// Returns the limit if there is none.
 #[must_use]
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
     let rise = |q| mechanism.coefficients(q).s_y;
-    // The potential has one maximum before the limit; the scan only brackets it.
+    // The potential energy has one maximum before the limit; the scan only brackets it.
     let steps = 64;
     let at = |step: i32| limit_rad * f64::from(step) / f64::from(steps);
     let Some(first) = (1..steps).find(|step| rise(at(*step)) <= 0.0) else {

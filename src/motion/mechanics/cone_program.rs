@@ -5,7 +5,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver as _, NonnegativeConeT, ZeroConeT,
 };
 
-/// The sparse matrix of this height and width with these entries: row, column and value.
+/// Returns a sparse matrix with given height, width and entries (row, column, value).
 pub(crate) fn matrix(
     height: usize,
     width: usize,
@@ -15,7 +15,7 @@ pub(crate) fn matrix(
     CscMatrix::new_from_triplets(height, width, rows, columns, values)
 }
 
-/// Minimises `x P x / 2 + q x` where `s = b - A x` is zero in its first rows, the equations, and not negative in the others.
+/// Minimises `x P x / 2 + q x` subject to `s = b - A x`. The first components of `s`, `equations` in number, are zero; the others are not negative.
 pub(crate) fn solve(
     [quadratic, matrix]: [&CscMatrix; 2],
     linear: &[f64],

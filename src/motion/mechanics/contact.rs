@@ -238,6 +238,7 @@ impl Program {
     }
 
     /// Returns the largest velocity in m/s under a load: of a block's centre, or of a block's rotation times the size of the row.
+    ///
     /// # Errors
     /// If the active set is not found.
     pub(super) fn fastest(

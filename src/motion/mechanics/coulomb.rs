@@ -1,19 +1,20 @@
-//! The velocities of a row of blocks whose joints may open and slip: Coulomb's law at every joint, on the whole row at once.
+//! Velocities of a row of blocks with joints that open and slip, by Coulomb's law at all joints simultaneously.
 //!
-//! A joint has three rows: the rates of the gaps at the two ends of its contact, and the rate of its offset, each with its impulse `N_I`,
-//! `N_E` and `T` ([`crate::mechanics::slip`]). An end is pressed (rate zero, impulse compressive) or free. Along the joint it sticks
-//! (rate zero, `|T| <= mu (N_I + N_E)`), slips (`T = +-mu (N_I + N_E)` against the slip), or, with both ends free, takes no impulse.
-//! Given these modes the impulses solve a block-tridiagonal system with 3x3 blocks. Newton's method goes from modes to modes, starting
-//! from those of the step before. Where it finds modes that confirm themselves, Coulomb's law holds exactly.
+//! A joint has three coordinates ([`crate::mechanics::slip`]): the gaps at the two ends of its contact, and its offset. Their impulses are `N_I`,
+//! `N_E` and `T`. An end is in contact (rate zero, compressive impulse) or free. Along the joint there are three modes: the joint sticks (rate zero,
+//! `|T| <= mu (N_I + N_E)`), slips (`T = +-mu (N_I + N_E)` against the slip), or has no contact and no impulse. For given modes the impulses solve a
+//! block-tridiagonal system with 3x3 blocks. Newton's method updates the modes, starting from those of the last step. Once the solution confirms the
+//! modes, Coulomb's law holds exactly.
 //!
-//! Where it does not, the bounds of friction are held at those of the last impulses (Tresca). That program is convex, and is solved by
-//! projected Newton steps on its dual. Newton's method starts again from its modes; if that fails, the bounds follow the impulses. Bounds
-//! fail to settle in one case in a hundred thousand, and more often in long rows near the least friction with which they stand. These
-//! cases are left to an interior-point method (`interior`), and beyond that to Lemke's ([`crate::mechanics::complementarity`]). In every
-//! result friction never drives a slip and contact never pulls: an early stop makes a bound wrong, never the sign of the work.
+//! If Newton's method fails, the friction bounds are fixed at those of the last impulses (Tresca). This problem is convex; projected Newton steps
+//! solve its dual. Newton's method restarts from the modes of this solution. If it fails again, the bounds are updated from the impulses. This
+//! fixed-point iteration fails in one case in a hundred thousand, and more often in long rows close to the least friction coefficient for
+//! equilibrium. An interior-point method (`interior`) handles these cases, and as a last resort Lemke's method
+//! ([`crate::mechanics::complementarity`]). In every result friction never adds energy and contact forces are never tensile: without convergence a
+//! friction bound is wrong, but never the sign of the work.
 //!
-//! A small proximal term draws the impulses to those of the previous solution. It determines them where the row does not, as at rest.
-//! Where they jump, as at an impact, it leaves rates, which another solution from these impulses removes.
+//! A small proximal term pulls the impulses towards those of the last solution. It makes impulses unique that are otherwise indeterminate, as at
+//! rest. If impulses jump, as in an impact, the term leaves small residual rates. A second solution from the new impulses removes these.
 
 mod interior;
 mod pivoting;
@@ -25,49 +26,49 @@ use super::slip::{Contact, Faces, Position};
 
 /// Weight of the proximal term, as a fraction of the diagonal.
 const PROXIMAL: f64 = 1e-6;
-/// Newton passes before the method gives up.
+/// Maximum number of Newton steps from the modes of the last solution.
 const PASSES: usize = 8;
-/// Passes that change one mode at a time, after a program with given bounds.
+/// Maximum number of Newton steps that change one mode at a time, after a problem with fixed bounds.
 const SINGLE_PASSES: usize = 12;
-/// Steps of projected Newton on a program with given bounds.
+/// Maximum number of projected Newton steps with fixed bounds.
 const BOUNDED_STEPS: usize = 60;
-/// Number of times that the bounds follow the impulses: bounds that do not settle soon oscillate.
+/// Maximum number of updates of the bounds; bounds that have not converged by then oscillate.
 const BOUND_PASSES: usize = 5;
-/// Bounds that change by less than this fraction of the largest one have settled.
+/// Tolerance for changes of the bounds, relative to the largest bound.
 const SAME_BOUND: f64 = 1e-10;
-/// A step has to achieve this fraction of the descent that the slope predicts.
+/// Least decrease in a line search, relative to the decrease predicted by the slope.
 const DESCENT: f64 = 1e-4;
-/// The shortest step of the line search, as a fraction of Newton's.
+/// Shortest step of the line search, as a fraction of the Newton step.
 const LEAST_PART: f64 = 1e-6;
 
-/// The state of a joint along itself.
+/// Tangential mode of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Along {
-    /// Both ends are free: there is no friction.
+    /// Both ends are free, so there is no friction.
     Free,
     /// The joint sticks.
     Stick,
-    /// The joint slips; friction on the right block has this sign.
+    /// The joint slips; the value is the sign of the friction on the right block.
     Slip(f64),
 }
 
-/// The mode of a joint: which ends are pressed, and whether it slips.
+/// Mode of a joint: contact at its ends, and tangential mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
-    /// Whether its ends are pressed, intrados and extrados.
+    /// Flags of contact at the intrados and the extrados end.
     pub pressed: [bool; 2],
-    /// Its state along itself.
+    /// Tangential mode.
     pub along: Along,
 }
 
 impl Mode {
-    /// Shut and sticking.
+    /// Mode of a closed joint that sticks.
     pub const WHOLE: Self = Self {
         pressed: [true; 2],
         along: Along::Stick,
     };
 
-    /// A joint without contact has no friction; one whose contact is new sticks first.
+    /// Returns a consistent mode: a joint without contact has no friction, and a new contact sticks at first.
     fn settled(mut self) -> Self {
         if self.pressed == [false; 2] {
             self.along = Along::Free;
@@ -78,32 +79,31 @@ impl Mode {
     }
 }
 
-/// Method by which a solution was found.
+/// Statistics of a solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Solution {
-    /// Systems solved.
+    /// Number of linear systems solved.
     pub passes: usize,
-    /// Whether a mode differs from that of the previous solution.
+    /// True if a mode differs from the last solution.
     pub changed: bool,
-    /// Largest error of a bound of friction, as a fraction of the largest bound; zero where Coulomb's law holds.
+    /// Largest error of a friction bound, relative to the largest bound; zero if Coulomb's law holds exactly.
     pub bound_error: f64,
-    /// Largest rate in m/s that the proximal term leaves.
+    /// Largest residual rate due to the proximal term, in m/s.
     pub drawn_m_s: f64,
 }
 
-/// One equation of a row of the system.
+/// Equation for one coordinate of a joint.
 #[derive(Clone, Copy, Debug)]
 enum Equation {
-    /// Its rate vanishes.
+    /// The rate is zero.
     Still,
-    /// Its impulse is given.
+    /// The impulse is given, in N s.
     Given(f64),
-    /// Its impulse is this many times the sum of those at both ends.
+    /// The impulse is this multiple of the sum of the impulses at both ends.
     Friction(f64),
 }
 
-/// The equations of a joint: the matrices of its own impulses, of those of the joint before and of the next one, and the
-/// right side.
+/// Equations of a joint: matrices for its own impulses, for those of the joint before and after it, and the right-hand side.
 struct Balance {
     matrix: Matrix3<f64>,
     coupling: Matrix3<f64>,
@@ -111,22 +111,22 @@ struct Balance {
     right: Vector3<f64>,
 }
 
-/// The program of a row, with all the memory that it needs, and the modes and impulses of the last solution.
+/// Contact problem of a row, with work space, and the modes and impulses of the last solution.
 #[derive(Clone, Debug)]
 pub struct Program {
     coefficient: f64,
-    /// Roots of mass and inertia of every block: velocities and gradients are scaled with them.
+    /// Square roots of mass and inertia of every block, the scale of velocities and gradients.
     roots: Vec<Vector3<f64>>,
-    /// Scaled gradients of the joints in the motions of their left and right blocks.
+    /// Scaled gradients of the joint coordinates by the velocities of the left and the right block.
     gradients: Vec<[Matrix3<f64>; 2]>,
-    /// Compliances within a joint, and with the next one.
+    /// Compliance matrices within a joint, and with the next joint.
     own: Vec<Matrix3<f64>>,
     next: Vec<Matrix3<f64>>,
     /// Rates without impulses.
     drive: Vec<Vector3<f64>>,
     /// Modes of the joints in the last solution.
     pub modes: Vec<Mode>,
-    /// Impulses in N s at the ends and along every joint, in the last solution.
+    /// Impulses in the last solution, in N s: at both ends of every joint, and along the joint.
     pub impulses: Vec<Vector3<f64>>,
     before: Vec<Vector3<f64>>,
     rates: Vec<Vector3<f64>>,
@@ -142,7 +142,7 @@ pub struct Program {
 }
 
 impl Program {
-    /// A program for a row with all joints shut, without impulses.
+    /// Returns a problem for a row with all joints closed and zero impulses.
     #[must_use]
     pub fn new(row: &Row, coefficient: f64) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
@@ -172,7 +172,7 @@ impl Program {
         }
     }
 
-    /// Starts the next solution with these corners pressed.
+    /// Starts the next solution with given contacts at the ends of every joint.
     pub fn touch(&mut self, touching: &[[bool; 2]]) {
         for (mode, pressed) in self.modes.iter_mut().zip(touching) {
             mode.pressed = *pressed;
@@ -180,19 +180,19 @@ impl Program {
         }
     }
 
-    /// Velocity (x, y) in m/s and rate of rotation in rad/s of a block, in the last solution.
+    /// Returns the velocity (x, y) in m/s and the rotation rate in rad/s of a block in the last solution.
     #[must_use]
     pub fn velocity(&self, block: usize) -> Vector3<f64> {
         self.velocities[block].component_div(&self.roots[block])
     }
 
-    /// Twice the kinetic energy in J, in the last solution.
+    /// Returns twice the kinetic energy of the last solution, in J.
     #[must_use]
     pub(crate) fn twice_kinetic_j(&self) -> f64 {
         self.velocities.iter().map(Vector3::norm_squared).sum()
     }
 
-    /// Starts the next solution from the modes and impulses of another program of the same row, the impulses scaled.
+    /// Starts the next solution from the modes and the scaled impulses of another problem of the same row.
     pub(crate) fn start_from(&mut self, other: &Self, scale: f64) {
         self.modes.copy_from_slice(&other.modes);
         for (own, theirs) in self.impulses.iter_mut().zip(&other.impulses) {
@@ -200,7 +200,7 @@ impl Program {
         }
     }
 
-    /// Takes the positions of the joints: gradients and compliances.
+    /// Sets the positions of the joints, and computes gradients and compliances.
     pub fn place(&mut self, faces: &[Faces], contacts: &[Contact], positions: &[Position]) {
         let blocks = positions.len();
         let centre = |block: Option<usize>| {
@@ -228,7 +228,7 @@ impl Program {
         }
     }
 
-    /// Rates of the coordinates of a joint for these scaled velocities of the blocks.
+    /// Returns the rates of the coordinates of a joint for scaled velocities of the blocks.
     fn rate(&self, joint: usize, velocities: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = Vector3::zeros();
         if let Some(left) = joint.checked_sub(1) {
@@ -240,21 +240,21 @@ impl Program {
         rate
     }
 
-    /// Rates of the coordinates of a joint in the last solution, in m/s.
+    /// Returns the rates of the coordinates of a joint in the last solution, in m/s.
     #[must_use]
     pub fn joint_rate(&self, joint: usize) -> Vector3<f64> {
         self.rate(joint, &self.velocities)
     }
 
-    /// Takes the motion that the blocks would have without each other: velocity (x, y) in m/s and rate in rad/s.
+    /// Sets the free velocities, without contact forces, of the blocks: (x, y) in m/s and rotation rate in rad/s.
     pub fn load(&mut self, motion: impl Fn(usize) -> Vector3<f64>) {
         for block in 0..self.free.len() {
             self.free[block] = motion(block).component_mul(&self.roots[block]);
         }
     }
 
-    /// Solves for the rates that the joints allow, with `lag` added to them: how far each coordinate is from zero, per time, in
-    /// m/s. Rates are judged to within `tolerance` m/s.
+    /// Solves for impulses and rates. `lag` returns the position error of every coordinate over the time step, in m/s; it is added to the rates.
+    /// Modes count as consistent if rates are within `tolerance`, in m/s.
     pub fn solve(&mut self, lag: impl Fn(usize) -> Vector3<f64>, tolerance: f64) -> Solution {
         for joint in 0..self.drive.len() {
             self.drive[joint] = self.rate(joint, &self.free) + lag(joint);
@@ -283,8 +283,7 @@ impl Program {
         }
     }
 
-    /// Newton's method on the modes; false when they do not confirm themselves. Changes all wrong modes at once, or the
-    /// worst one alone.
+    /// Runs Newton's method on the modes, and returns whether the modes converge. With `one`, a step only changes the worst mode.
     fn newton(&mut self, passes: usize, one: bool, tolerance: f64, count: &mut usize) -> bool {
         for _ in 0..passes {
             for (equations, mode) in self.equations.iter_mut().zip(&self.modes) {
@@ -310,7 +309,7 @@ impl Program {
         false
     }
 
-    /// Changes the modes that the impulses and rates contradict. True when there are none.
+    /// Changes the modes that contradict the impulses and rates. Returns true if there are none.
     fn mend(&mut self, one: bool, tolerance: f64) -> bool {
         let mut right = true;
         let mut worst = (0.0, 0, Mode::WHOLE);
@@ -320,7 +319,7 @@ impl Program {
             let mut mode = self.modes[joint];
             let mut by = 0.0_f64;
             for end in 0..2 {
-                // Impulses are compared by the rates that they cause.
+                // The rates that impulses cause are comparable with rates.
                 let press = impulse[end] * compliance[end];
                 let wrong = -if mode.pressed[end] { press } else { rate[end] };
                 if wrong > tolerance {
@@ -355,7 +354,7 @@ impl Program {
         right
     }
 
-    /// Solves the equations for the impulses `target`.
+    /// Solves the equations of the modes for the impulses `target`.
     fn balance(&mut self) {
         self.sweep(|program, joint| {
             let mut balance = Balance {
@@ -390,7 +389,7 @@ impl Program {
         });
     }
 
-    /// Solves the equations of all joints for `target`, by elimination from left to right.
+    /// Solves the equations of all joints for `target`, by block elimination from left to right.
     fn sweep(&mut self, system: impl Fn(&Self, usize) -> Balance) {
         let joints = self.own.len();
         let mut carried = Vector3::zeros();
@@ -411,18 +410,18 @@ impl Program {
         }
     }
 
-    /// Compliance of a joint with the one before.
+    /// Returns the compliance between a joint and the one before it.
     fn coupling(&self, joint: usize) -> Matrix3<f64> {
         let before = joint.checked_sub(1);
         before.map_or(Matrix3::zeros(), |before| self.next[before].transpose())
     }
 
-    /// The proximal addition to the compliance of a row of a joint.
+    /// Returns the proximal term that is added to the compliance of one coordinate of a joint.
     fn proximal(&self, joint: usize, row: usize) -> f64 {
         PROXIMAL * self.own[joint][(row, row)]
     }
 
-    /// Rates that the impulses leave, with the proximal term.
+    /// Computes the rates for the impulses, with the proximal term.
     fn find_rates(&mut self) {
         for joint in 0..self.rates.len() {
             let rate = self.drive[joint] + self.response(joint, &self.impulses);
@@ -430,7 +429,7 @@ impl Program {
         }
     }
 
-    /// Rates of a joint due to the impulses alone.
+    /// Returns the rates of a joint due to impulses alone.
     fn response(&self, joint: usize, impulses: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = self.own[joint] * impulses[joint];
         if let Some(before) = joint.checked_sub(1) {
@@ -442,14 +441,13 @@ impl Program {
         rate
     }
 
-    /// Rates of a joint due to the proximal term.
+    /// Returns the rates of a joint due to the proximal term.
     fn drawn(&self, joint: usize) -> Vector3<f64> {
         let drawn = self.impulses[joint] - self.before[joint];
         self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL
     }
 
-    /// Solves programs with given bounds until the modes confirm themselves, or the bounds agree with the impulses. Returns the error of the
-    /// bounds.
+    /// Solves problems with fixed bounds, until the modes converge or the bounds agree with the impulses. Returns the relative error of the bounds.
     fn bounded(&mut self, tolerance: f64, count: &mut usize) -> f64 {
         self.impulses.copy_from_slice(&self.before);
         for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
@@ -484,7 +482,7 @@ impl Program {
         error
     }
 
-    /// Largest difference of a bound from what the impulses allow, as a fraction of the largest bound.
+    /// Returns the largest error of a bound, relative to the largest bound.
     fn bound_error(&self) -> f64 {
         let (mut largest, mut error) = (f64::MIN_POSITIVE, 0.0_f64);
         for (bound, impulse) in self.bounds.iter().zip(&self.impulses) {
@@ -495,7 +493,7 @@ impl Program {
         error / largest
     }
 
-    /// Modes that belong to the impulses of a program with given bounds.
+    /// Sets the modes that correspond to the impulses of a problem with fixed bounds.
     fn read_modes(&mut self) {
         for (joint, mode) in self.modes.iter_mut().enumerate() {
             let (impulse, bound) = (&self.impulses[joint], self.bounds[joint]);
@@ -511,13 +509,13 @@ impl Program {
         }
     }
 
-    /// Least and largest impulse of every row of a joint while the bounds are given.
+    /// Returns the lower and upper limits of the impulses of a joint for fixed bounds.
     fn limits(&self, joint: usize) -> [(f64, f64); 3] {
         let (pressed, bound) = ((0.0, f64::INFINITY), self.bounds[joint]);
         [pressed, pressed, (-bound, bound)]
     }
 
-    /// Solves the program with given bounds: projected Newton steps with a search along them.
+    /// Solves the problem with fixed bounds by projected Newton steps with a line search.
     fn descend(&mut self, tolerance: f64, count: &mut usize) {
         for joint in 0..self.impulses.len() {
             for (row, (least, most)) in self.limits(joint).into_iter().enumerate() {
@@ -567,7 +565,7 @@ impl Program {
         }
     }
 
-    /// The function that the program with given bounds minimises, in J; sets the rates.
+    /// Returns the objective of the problem with fixed bounds, in J, and sets the rates.
     fn height(&mut self) -> f64 {
         self.find_rates();
         let mut twice = 0.0;
@@ -581,7 +579,7 @@ impl Program {
     }
 }
 
-/// Inverse by cofactors.
+/// Returns the inverse of a matrix by cofactors.
 fn inverse(m: &Matrix3<f64>) -> Matrix3<f64> {
     let cofactor = |a: f64, b: f64, c: f64, d: f64| a * d - b * c;
     let (c11, c12, c13) = (

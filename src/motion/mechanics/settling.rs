@@ -228,6 +228,7 @@ pub struct Follower<'a> {
 
 impl<'a> Follower<'a> {
     /// Returns a follower of the undeformed row.
+    ///
     /// # Errors
     /// If the row is a stack, or is not stable.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
@@ -271,6 +272,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Moves the supports from `movements(from)` to `movements(to)`, along a straight line.
+    ///
     /// # Errors
     /// If no equilibrium is found where the hinges become inadmissible.
     pub fn move_supports(
@@ -321,6 +323,7 @@ impl<'a> Follower<'a> {
 
     /// Returns the push to a side, in multiples of gravity, that starts a motion of the present state; `None` if no push does. The push is zero if
     /// ties hold the row on more than three hinges.
+    ///
     /// # Errors
     /// If the velocities of a trial mechanism are not found.
     pub fn first_motion_g(&self, sway: Sway) -> Result<Option<f64>, ContactError> {
@@ -337,6 +340,7 @@ impl<'a> Follower<'a> {
 
     /// Returns the push to a side, in multiples of gravity, at which the row falls; `None` if it does not fall below 100 times gravity. `first_g` is
     /// the push of the first motion. The row itself stays in its present state.
+    ///
     /// # Errors
     /// If no equilibrium is found where the hinges become inadmissible.
     pub fn capacity_g(&self, sway: Sway, first_g: f64) -> Result<Option<f64>, SettlingError> {

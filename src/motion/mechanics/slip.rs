@@ -1,15 +1,13 @@
-//! Positions of the blocks of a row whose joints may slip, and the coordinates of the joint between two blocks.
+//! Positions of the blocks of a row with sliding joints, and coordinates of the joint between two blocks.
 //!
-//! The faces of a joint have turned against each other by `phi` and slid along each other. Let `e` be the unit vector from intrados to
-//! extrados at the mean angle of the faces, `n = s k x e` the normal towards the right block (`s` the handedness of the row) and `d`
-//! the vector from the intrados corner of the left face to that of the right face. Then the offset is `d . e`, and the gap at the place
-//! `x` along the joint is `d . n + 2 s tan(phi/2) x`. Faces that are offset touch at the ends of their overlap. The gaps there and the
-//! offset are the three coordinates. Their gradients are exact, so a solution for their rates needs no correction other than for the
-//! curvature of the motion.
+//! The faces of a joint have rotated relative to each other by `phi`, and have slid. Let `e` be the unit vector from intrados to extrados in the mean
+//! direction of the faces, and `n = s k x e` the normal towards the right block (`s` is the handedness of the row). Let `d` be the vector from the
+//! intrados corner of the left face to that of the right face. Then the offset is `d . e`, and the gap at position `x` along the joint is `d . n + 2
+//! s tan(phi/2) x`. Offset faces touch at the ends of their overlap. The gaps at these two ends and the offset are the three coordinates of the
+//! joint. Their gradients are exact; a solution for their rates only needs a correction for the curvature of the motion.
 //!
-//! A support that extends beyond its joint, as the ground does, is a straight line without ends. There the corners that touch are those
-//! of the block's face, wherever it has slid. Gaps are measured normal to the line and the offset along it; the offset is that of the
-//! corner nearer to the line.
+//! A support that extends beyond its joint, as the ground does, is a straight line of infinite length. Contact is then at the corners of the block's
+//! face, at any offset. Gaps are measured normal to the line and the offset along it, at the corner nearer to the line.
 
 use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
@@ -18,28 +16,27 @@ use super::geometry::field::turned;
 use super::geometry::pose::{Pose, product, unit};
 use super::geometry::ring::Edge;
 
-/// The position of a block in the form that slipping joints need. It holds the centre, whose velocity the motion steps, and half the
-/// rotation: the halves of two blocks add up to the mean angle of their faces. It is not a [`Pose`]: turning by the half twice is
-/// not, to the last bit, turning once.
+/// Position of a block, for sliding joints: centre of gravity and half the rotation. The motion integrates the velocity of the centre. Half rotations
+/// of two blocks add up to the mean angle of their faces. A [`Pose`] stores the full rotation, which is not bitwise equal to twice the half rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Its centre of gravity in metres.
+    /// Centre of gravity, in metres.
     pub centre_m: Vector2<f64>,
-    /// Its rotation in radians, anticlockwise.
+    /// Rotation in radians, anticlockwise.
     pub rotation_rad: f64,
     /// Cosine and sine of half the rotation.
     half: Vector2<f64>,
 }
 
 impl Position {
-    /// The position of a support that stands where it was built: its faces are given in the undeformed row.
+    /// Position of a support that has not moved; its faces are given in the undeformed row.
     pub const HELD: Self = Self {
         centre_m: Vector2::new(0.0, 0.0),
         rotation_rad: 0.0,
         half: Vector2::new(1.0, 0.0),
     };
 
-    /// A block with the given centre and rotation.
+    /// Returns the position of a block with a given centre and rotation.
     #[must_use]
     pub fn new(centre_m: Vector2<f64>, rotation_rad: f64) -> Self {
         Self {
@@ -49,13 +46,13 @@ impl Position {
         }
     }
 
-    /// That of a support, which has its faces from the origin.
+    /// Returns the position of a support; its faces are given relative to the origin.
     #[must_use]
     pub fn of(support: &Pose) -> Self {
         Self::new(support.translation, support.rotation_rad())
     }
 
-    /// This position moved.
+    /// Returns this position after a displacement.
     #[must_use]
     pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self {
@@ -64,39 +61,39 @@ impl Position {
         }
     }
 
-    /// The pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
+    /// Returns the pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
     #[must_use]
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
         Pose::about(undeformed_m, self.centre_m, self.rotation_rad)
     }
 
-    /// Present position of the point that has this arm from the centre in the undeformed row.
+    /// Returns the current position of the point at `arm_m` from the centre in the undeformed row.
     #[must_use]
     pub(crate) fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + self.turned(arm_m)
     }
 
-    /// Present direction of a vector of the block in the undeformed row.
+    /// Returns the current direction of a vector of the block in the undeformed row.
     fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(product(self.half, self.half), vector)
     }
 }
 
-/// A joint, given relative to its two blocks.
+/// Geometry of a joint relative to its two blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Faces {
-    /// From the centres of the left and the right block to the intrados corner.
+    /// Vectors from the centres of the left and the right block to the intrados corner.
     arms_m: [Vector2<f64>; 2],
     along: Vector2<f64>,
     /// Length of the faces in metres.
     pub thickness_m: f64,
     handedness: f64,
-    /// Side of the block (left 0, right 1), if the support on the other side extends beyond the joint.
+    /// Side of the block (left 0, right 1) at a support that extends beyond the joint; `None` for other joints.
     on_support: Option<usize>,
 }
 
 impl Faces {
-    /// The joints of a row.
+    /// Returns the joints of a row.
     #[must_use]
     pub fn of_row(row: &Row) -> Vec<Self> {
         let centre = |block: Option<usize>| {
@@ -120,7 +117,7 @@ impl Faces {
         row.joints.iter().enumerate().map(faces).collect()
     }
 
-    /// The joint between two blocks at these positions.
+    /// Returns the joint between two blocks at given positions.
     #[must_use]
     pub fn contact(&self, left: &Position, right: &Position) -> Contact {
         if let Some(side) = self.on_support {
@@ -150,11 +147,11 @@ impl Faces {
         }
     }
 
-    /// The joint between a block, on the given side, and a support that extends beyond it.
+    /// Returns the joint between a block, on the given side, and a support that extends beyond the joint.
     fn contact_with_support(&self, block: &Position, support: &Position, side: usize) -> Contact {
         let along = support.turned(self.along);
         let normal = turned(along) * self.handedness;
-        // Coordinates are those of the right face; if the block is on the left, its face counts with the opposite sign.
+        // Coordinates are those of the right face; for a block on the left, the sign is opposite.
         let sign = if side == 1 { 1.0 } else { -1.0 };
         let intrados_m = block.of_arm(self.arms_m[side]);
         let face = block.turned(self.along) * self.thickness_m;
@@ -178,25 +175,25 @@ impl Faces {
     }
 }
 
-/// A joint in the present position of its blocks.
+/// Joint in the current position of its blocks.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
-    /// Midway between the intrados corners of the faces; on a support that extends beyond the joint, the corner nearer to it.
+    /// Midpoint between the intrados corners of the faces, in metres; on a support that extends beyond the joint, the corner nearer to the support.
     pub middle_m: Vector2<f64>,
-    /// Unit vector from intrados to extrados, at the mean angle of the faces; along the support if that extends beyond the joint.
+    /// Unit vector from intrados to extrados in the mean direction of the faces; along the support if that extends beyond the joint.
     pub along: Vector2<f64>,
     /// Unit normal towards the right block.
     pub normal: Vector2<f64>,
-    /// Cosine and sine of half the angle between the faces. Forces on offset faces lean by it.
+    /// Cosine and sine of half the angle between the faces; also the inclination of the forces on offset faces.
     half: Vector2<f64>,
-    /// The ends of the overlap of the faces, along the joint from `middle_m`, in metres.
+    /// Ends of the overlap of the faces along the joint, measured from `middle_m`, in metres.
     pub ends_m: [f64; 2],
-    /// Gaps at these ends and the offset of the right face towards the extrados, in metres.
+    /// Gaps at both ends of the overlap, and offset of the right face towards the extrados, in metres.
     pub coordinates_m: Vector3<f64>,
 }
 
 impl Contact {
-    /// The end of the overlap on the given edge.
+    /// Returns the end of the overlap at an edge.
     #[must_use]
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         let intrados_m = self.middle_m + self.along * self.ends_m[0];
@@ -206,7 +203,7 @@ impl Contact {
         }
     }
 
-    /// Inclination of the forces at the ends of the overlap along the joint: they are normal to the face that they press.
+    /// Returns the inclination along the joint of the forces at the ends of the overlap. These forces are normal to the face that they act on.
     fn lean(&self, faces: &Faces) -> f64 {
         let offset_m = self.coordinates_m.z;
         if offset_m == 0.0 {
@@ -216,15 +213,15 @@ impl Contact {
         }
     }
 
-    /// Rates of the three coordinates as the right block moves with this velocity and does not turn.
+    /// Returns the rates of the three coordinates for a translation of the right block.
     #[must_use]
     pub fn carried(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
         right * velocity_m_s.push(0.0)
     }
 
-    /// Gradients of the three coordinates, one row each, with respect to the velocity (x, y) and the rate of rotation of a
-    /// block: first of the left block, then of the right one. The centres of the blocks are given.
+    /// Returns the gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left block, then of the
+    /// right block. `left_m` and `right_m` are the centres of the blocks.
     #[must_use]
     pub fn gradients(
         &self,
@@ -262,7 +259,7 @@ mod tests {
     use super::*;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// Joints between two blocks, and between a block and a support on either side that extends beyond the joint.
+    /// Checks joints between two blocks, and between a block and an extended support on either side.
     #[test]
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();
@@ -273,7 +270,7 @@ mod tests {
         }
     }
 
-    /// Central differences of coordinates of order one over steps of 1e-6: errors of about 1e-10.
+    /// Central differences with steps of 1e-6 have errors of about 1e-10 here.
     fn check_gradients(row: &Row, joint: usize) {
         let faces = Faces::of_row(row)[joint];
         let block = |index: Option<usize>| index.and_then(|index| row.blocks.get(index));

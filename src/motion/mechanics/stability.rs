@@ -1,11 +1,9 @@
-//! Whether a row stands, and the push that starts it, by limit analysis with any number of hinges.
+//! Stability of a row under its own weight, and the push of its first motion, by limit analysis with any number of hinges.
 //!
-//! A row gives way under a load per unit mass if the velocities nearest to that load, among those that its
-//! joints allow, are not zero (`contact`). These velocities then form a mechanism, and the load at
-//! which it just does no work is an upper bound of the strength. Under that load the row either stands, and the
-//! bound is the strength, or another mechanism lowers the bound. There are finitely many mechanisms, and the
-//! bounds fall fast (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): it takes
-//! only a few programs.
+//! Under a load per unit mass, the admissible velocities nearest to that load are computed (`contact`). The row gives way if they are not zero. The
+//! velocities then form a mechanism. The load at which this mechanism does no work is an upper bound of the strength. If the row is stable under this
+//! load, the bound is the strength; otherwise the next mechanism gives a lower bound. The number of mechanisms is finite and convergence is
+//! superlinear (Dinkelbach, "On nonlinear fractional programming", Management Science 13, 1967): a few quadratic programs suffice.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use thiserror::Error;
@@ -22,42 +20,42 @@ use crate::mechanics::sway::Sway;
 /// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
 
-/// A joint that opens in a mechanism.
+/// Joint that opens in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Opening {
     /// Index of the joint.
     pub joint: usize,
-    /// The corner about which it opens; `None` where both edges open.
+    /// Corner about which the joint opens; `None` if it opens at both edges.
     pub hinge: Option<Edge>,
     /// Rates of the gaps at intrados and extrados, up to a common factor.
     pub rates: [f64; 2],
 }
 
-/// The push that starts a row.
+/// Push of the first motion of a row, with its mechanism.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowOnset {
     /// Ground acceleration, without its sign, in units of gravity.
     pub acceleration_g: f64,
-    /// The mechanism that starts, from left to right.
+    /// Opening joints of the mechanism, from left to right.
     pub openings: Vec<Opening>,
-    /// Velocities of its blocks from left to right, in metres and up to a common factor; their pole is the origin.
+    /// Velocities of the blocks from left to right, in metres up to a common factor, at the origin.
     pub velocities: Vec<Twist>,
-    /// Rates at which its ties lengthen, likewise.
+    /// Rates at which the ties lengthen, in metres up to the same factor.
     pub lengthening: Vec<f64>,
 }
 
-/// Why a row has no onset.
+/// Reason why a row has no push of first motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum StabilityError {
     /// The row does not carry its own weight.
     #[error("the row cannot carry its own weight")]
     CannotStand(Vec<Opening>),
-    /// The velocities of a trial were not found.
+    /// The velocities of a trial mechanism were not found.
     #[error(transparent)]
     Contact(#[from] ContactError),
 }
 
-/// The mechanism in which a row falls under its own weight; `None` when it stands.
+/// Returns the mechanism in which an undeformed row falls under its own weight; `None` if it is stable.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
@@ -65,7 +63,7 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
     falls_at(row, &Stance::undeformed(row))
 }
 
-/// The mechanism in which a row falls under its own weight from where it stands; `None` when it stays.
+/// Returns the mechanism in which a row falls under its own weight from a given state; `None` if it is in equilibrium.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
@@ -75,8 +73,8 @@ pub fn falls_at(row: &Row, stance: &Stance) -> Result<Option<Vec<Opening>>, Cont
     Ok(moves.map(|_| trial.openings()))
 }
 
-/// The least horizontal ground acceleration that starts the row swaying to a side, its ties pulling as they do at rest; `None` when no
-/// push moves it without sliding.
+/// Returns the least horizontal ground acceleration at which the undeformed row starts to sway to a side, with the tie forces at rest. `None` if no
+/// push moves the row without sliding.
 ///
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
@@ -84,8 +82,8 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     onset_at(row, &Stance::undeformed(row), sway)
 }
 
-/// The least horizontal ground acceleration that starts a row where it stands, on supports that may have moved. Open joints press at one corner, and may go on
-/// opening or shut again. Its ties pull as they do there.
+/// Returns the least horizontal ground acceleration at which a row in a given state starts to sway to a side, also on moved supports. Open joints are
+/// in contact at one corner, and may open further or close again. The tie forces are those of the given state.
 ///
 /// # Errors
 /// Those of [`onset`].
@@ -100,13 +98,13 @@ pub fn onset_at(
     }
     let mut load = Vector2::new(sway.sign(), 0.0);
     let mut found: Option<RowOnset> = None;
-    // A push beyond all bounds leaves no part to ties.
+    // The first trial is an infinite push, compared with which ties have no effect.
     while let Some(work) = trial.moves(load, found.is_some())? {
         let lengthening = trial.lengthening();
         let ties = lengthening.iter().zip(&trial.ties_kg);
         let resists: f64 = ties.map(|(rate, kg)| rate * kg).sum();
         let acceleration_g = (work.y + resists) / (sway.sign() * work.x);
-        // The bounds fall; below rounding they do not.
+        // The bounds decrease, except within rounding error.
         let falls = |found: &RowOnset| acceleration_g < found.acceleration_g * (1.0 - 1e-14);
         if !found.as_ref().is_none_or(falls) {
             break;
@@ -117,23 +115,23 @@ pub fn onset_at(
     Ok(found)
 }
 
-/// The limit of a row whose ties yield.
+/// Strength of a row with yielding ties.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TiedLimit {
-    /// The push and the mechanism that it starts, under these forces.
+    /// Push of the first motion under these tie forces, and its mechanism.
     pub onset: RowOnset,
-    /// Forces of the ties then, in N.
+    /// Tie forces at this push, in N.
     pub forces_n: Vec<f64>,
 }
 
-/// The largest horizontal ground acceleration that a row bears to a side whose ties pull with any force up to that at which they yield,
-/// whatever they pull with at rest, and the least of these forces; `None` when it bears any.
+/// Computes the largest horizontal ground acceleration that a row with ties carries to a side, for any tie forces between zero and yield, and the
+/// smallest tie forces at this push. The result does not depend on the forces at rest. `None` if the row carries any push.
 ///
-/// Every mechanism bounds push and forces by a plane. The planes met so far are a small linear programme for the push and the forces to
-/// try next, until nothing moves under these (Kelley, "The cutting-plane method for solving convex programs", J. SIAM 8, 1960).
+/// Every mechanism bounds push and tie forces by a plane. All planes found so far form a small linear program for the next push and tie forces to
+/// test. The iteration ends once these move nothing (Kelley, "The cutting-plane method for solving convex programs", J. SIAM 8, 1960).
 ///
 /// # Errors
-/// When the row does not stand with the forces at rest, or the velocities of a trial are not found.
+/// If the row is not stable with the forces at rest, or the velocities of a trial are not found.
 pub fn limit_with_yielding_ties(
     row: &Row,
     sway: Sway,
@@ -164,7 +162,7 @@ pub fn limit_with_yielding_ties(
         trial.ties_kg = ties_kg.collect();
         let mut lower_g = push_g;
         let known = highest.planes.len();
-        // With the same forces, down to the push that they bear.
+        // Reduce the push at the same tie forces, down to the one that is carried.
         while trial.moves(pushed(lower_g), true)?.is_some() {
             let plane = Plane::new(row, trial.work(), &trial.lengthening(), sway);
             let bound_g = plane.bound_g(&forces);
@@ -179,7 +177,7 @@ pub fn limit_with_yielding_ties(
             break;
         }
     }
-    // A push that only the bounds of the programme limit is unlimited.
+    // A push at the artificial limits of the linear program is unlimited.
     let mut strongest = row.ties.iter().zip(&forces);
     let unbounded = push_g >= 0.99 * LARGEST_PUSH
         || strongest
@@ -187,7 +185,7 @@ pub fn limit_with_yielding_ties(
     if unbounded {
         return Ok(None);
     }
-    // The mechanism is that of a push a little larger.
+    // A slightly larger push shows the mechanism.
     trial.moves(pushed(push_g * (1.0 + BEYOND)), true)?;
     let ties = row.ties.iter().zip(&forces);
     let forces_n = ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n));
@@ -195,32 +193,31 @@ pub fn limit_with_yielding_ties(
     Ok(Some(TiedLimit { onset, forces_n }))
 }
 
-/// By what part a push is larger than the one that is just borne, to see the mechanism.
+/// Relative increase of the push at the limit that shows its mechanism.
 const BEYOND: f64 = 1e-6;
-/// Pulls in units of the weight beyond which a tie that does not yield makes a push as large as anybody wants.
+/// Artificial limit of tie forces, in multiples of the weight.
 const STRONGEST: f64 = 1e3;
-/// A push, in units of gravity, that is as good as any.
+/// Artificial limit of the push, in multiples of gravity.
 const LARGEST_PUSH: f64 = 1e6;
-/// A push that is worth a force of the weight.
+/// Small cost of tie forces in the objective, which selects the smallest forces among equivalent ones.
 const LESS_FORCE: f64 = 1e-9;
-/// Exchanges of constraints, at most.
+/// Maximum number of simplex steps.
 const MOST_EXCHANGES: usize = 10_000;
-/// After so many exchanges the inverse of the basis is computed anew.
+/// Number of simplex steps between recomputations of the inverse of the basis.
 const EXACT_EXCHANGES: usize = 100;
-/// Part of its terms by which a constraint may be violated.
+/// Tolerance for violated constraints, relative to the sum of their terms.
 const ROUNDING: f64 = 1e-14;
-/// Forces that are tried, at most.
+/// Maximum number of tested tie forces.
 const MOST_TRIALS: usize = 200;
 
-/// A bound of the push and the forces of the ties, such as a mechanism leaves: their slopes times these are at most so much, in units of the
-/// weight.
+/// Linear bound of push and tie forces, as from a mechanism: `slopes` times (push, forces) is at most `most`, in units of the weight.
 struct Plane {
     slopes: DVector<f64>,
     most: f64,
 }
 
 impl Plane {
-    /// That of a mechanism, by the integral of its velocities over the masses.
+    /// Returns the bound of a mechanism. `work` is the integral of its velocities over the masses.
     fn new(row: &Row, work: Vector2<f64>, lengthening: &[f64], sway: Sway) -> Self {
         let work = work / row.mass_kg();
         let (push, weight) = (sway.sign() * work.x, work.y);
@@ -234,7 +231,7 @@ impl Plane {
         }
     }
 
-    /// The push that it leaves with these forces, if it bounds any.
+    /// Returns the largest push for given tie forces; `None` if the plane does not bound the push.
     fn bound_g(&self, forces: &[f64]) -> Option<f64> {
         let (push, pulls) = (self.slopes[0], self.slopes.iter().skip(1));
         let held: f64 = pulls.zip(forces).map(|(pull, force)| -pull * force).sum();
@@ -242,18 +239,18 @@ impl Plane {
     }
 }
 
-/// The largest push below all planes, and the forces of the ties there.
+/// Linear program for the largest push below all planes, with the tie forces.
 ///
-/// The dual simplex method: from the corner of the bounds on it exchanges one of the constraints that meet there for the one that is
-/// violated most. A further plane leaves that corner a start for the next search.
+/// It is solved by the dual simplex method, from the corner of the artificial limits. Each step replaces one active constraint by the one that is
+/// violated most. After a new plane is added, the last corner is the start of the next search.
 struct Highest {
-    /// Largest forces of the ties.
+    /// Largest tie forces.
     most: Vec<f64>,
-    /// Bounds.
+    /// Constraints.
     planes: Vec<Plane>,
-    /// Those that meet at the corner.
+    /// Indices of the active constraints.
     basis: Vec<usize>,
-    /// Inverse of the slopes of the basis, whose rows they are.
+    /// Inverse of the matrix with the slopes of the active constraints as rows.
     inverse: DMatrix<f64>,
     goal: DVector<f64>,
 }
@@ -269,10 +266,10 @@ impl Highest {
         let mut planes = vec![axis(0, 1.0, LARGEST_PUSH)];
         planes.extend((1..).zip(&most).map(|(tie, most)| axis(tie, 1.0, *most)));
         planes.extend((0..width).map(|index| axis(index, -1.0, 0.0)));
-        // Of forces that are as good, the least.
+        // Among equivalent forces, prefer the smallest.
         let mut goal = DVector::repeat(width, -LESS_FORCE);
         goal[0] = 1.0;
-        // The first corner has the largest push and no forces; its slopes are their own inverse.
+        // The first corner has the largest push and zero tie forces; its matrix is its own inverse.
         let mut inverse = -DMatrix::identity(width, width);
         inverse[(0, 0)] = 1.0;
         Self {
@@ -284,7 +281,7 @@ impl Highest {
         }
     }
 
-    /// The push and the forces; `None` if there are none.
+    /// Returns the push and the tie forces; `None` if there are none.
     fn find(&mut self) -> Option<(f64, Vec<f64>)> {
         for exchange in 1..=MOST_EXCHANGES {
             if exchange % EXACT_EXCHANGES == 0 {
@@ -305,19 +302,19 @@ impl Highest {
         None
     }
 
-    /// The point at which the constraints of the basis meet.
+    /// Returns the intersection of the active constraints.
     fn corner(&self) -> DVector<f64> {
         let basis = || self.basis.iter().map(|index| &self.planes[*index]);
         let width = self.basis.len();
         let bounds = DVector::from_iterator(width, basis().map(|plane| plane.most));
         let at = &self.inverse * bounds;
-        // The inverse has lost digits in exchanges.
+        // One step of iterative refinement, because updates of the inverse lose digits.
         let left = basis().map(|plane| plane.most - plane.slopes.dot(&at));
         let left = DVector::from_iterator(width, left);
         at + &self.inverse * left
     }
 
-    /// The constraint that a point violates most; `None` if there is none.
+    /// Returns the index of the constraint with the largest violation at a point; `None` if all are satisfied.
     fn most_violated(&self, at: &DVector<f64>) -> Option<usize> {
         let mut worst = (0.0, None);
         for (index, plane) in self.planes.iter().enumerate() {
@@ -334,7 +331,7 @@ impl Highest {
         worst.1
     }
 
-    /// Takes a constraint into the basis for one that leaves; `None` if none can.
+    /// Adds a constraint to the active ones in place of another; `None` if none can leave.
     fn exchange(&mut self, entering: usize) -> Option<()> {
         let multipliers = self.inverse.tr_mul(&self.goal);
         let shares = self.inverse.tr_mul(&self.planes[entering].slopes);
@@ -352,21 +349,21 @@ impl Highest {
     }
 }
 
-/// Integral of the velocities over the masses.
+/// Returns the integral of the velocities over the masses.
 fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> {
     let blocks = row.blocks.iter().zip(&placement.centres_m).zip(velocities);
     let each = blocks.map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg);
     each.sum()
 }
 
-/// A row under loads.
+/// Row under trial loads.
 struct Trial<'a> {
     row: &'a Row,
     placement: &'a Placement,
     program: Program,
     load: Load,
     lines: Vec<TieLine>,
-    /// Forces of the ties, over gravity.
+    /// Tie forces divided by gravity, in kg.
     ties_kg: Vec<f64>,
 }
 
@@ -386,7 +383,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// The mechanism of the last trial, as that of this push.
+    /// Returns the mechanism of the last trial, with a given push.
     fn onset(&self, acceleration_g: f64) -> RowOnset {
         RowOnset {
             acceleration_g,
@@ -396,7 +393,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Integral of the velocities over the masses, if the row moves under a load per unit mass.
+    /// Returns the integral of the velocities over the masses under a load per unit mass; `None` if the row does not move.
     fn moves(
         &mut self,
         load: Vector2<f64>,
@@ -409,12 +406,12 @@ impl<'a> Trial<'a> {
         Ok((fastest > STANDSTILL * load.norm()).then(|| self.work()))
     }
 
-    /// Integral of the velocities of the last trial over the masses.
+    /// Returns the integral of the velocities of the last trial over the masses.
     fn work(&self) -> Vector2<f64> {
         work(self.row, self.placement, &self.program.velocities)
     }
 
-    /// Rates at which the ties lengthen in the last trial.
+    /// Returns the rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
         let velocities = &self.program.velocities;
         let rates = self.lines.iter().map(|line| line.lengthening(velocities));

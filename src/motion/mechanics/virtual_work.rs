@@ -1,14 +1,14 @@
-//! Virtual work of a mechanism of rigid bodies: the load multiplier that starts it, and its participating mass.
+//! Virtual work of a mechanism of rigid bodies: load multiplier of the first motion, and participating mass.
 //!
-//! Each body, with what it carries, is lumped at its centre of gravity. Virtual displacements start from the
-//! undeformed position, up to a common factor, which nothing here depends on.
+//! The mass of each body, with what the body carries, is lumped at its centre of gravity. Virtual displacements are measured from the undeformed
+//! position, up to a common factor that does not affect the results.
 
 use nalgebra::Vector2;
 
-/// A rigid body of a mechanism, with its virtual displacement.
+/// Rigid body of a mechanism, with its virtual displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingBody {
-    /// Its mass and that of what it carries, in kg.
+    /// Mass of the body and of its load, in kg.
     pub mass_kg: f64,
     /// Its centre of gravity in the undeformed structure, in metres.
     pub centre_m: Vector2<f64>,
@@ -18,17 +18,17 @@ pub struct MovingBody {
     pub rotation: f64,
 }
 
-/// A tie of a mechanism.
+/// Tie of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingTie {
-    /// The force it pulls with over gravity, in kg.
+    /// Tie force over gravity, in kg.
     pub force_kg: f64,
-    /// Lengthening by the virtual displacement of the bodies.
+    /// Lengthening of the tie due to the virtual displacements of the bodies.
     pub lengthening: f64,
 }
 
-/// The load multiplier `alpha0`: the horizontal acceleration, in units of gravity, at which the work of the inertia of all
-/// bodies equals that against their weights and against ties, `(sum P delta_y + sum F delta_l) / sum P delta_x`.
+/// Returns the load multiplier `alpha0`: the horizontal acceleration, in multiples of gravity, at which the work of the inertia forces equals the
+/// work against weights and ties, `(sum P delta_y + sum F delta_l) / sum P delta_x`.
 #[must_use]
 pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie]) -> f64 {
     let work = |component: fn(&MovingBody) -> f64| -> f64 {
@@ -39,22 +39,22 @@ pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie]) -> f64 {
     (work(|body| body.displacement.y) + held.sum::<f64>()) / work(|body| body.displacement.x)
 }
 
-/// The masses that take part in a motion, given with their horizontal virtual displacements.
+/// Participation of masses in a motion with given horizontal virtual displacements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Participation {
-    /// All of the mass that moves, in kg.
+    /// Moving mass, in kg.
     pub moving_mass_kg: f64,
     /// Participating mass `M* = (sum m delta)^2 / sum m delta^2`, in kg.
     pub participating_mass_kg: f64,
-    /// `e*`: the participating mass as a fraction of the mass that moves.
+    /// Participating mass over moving mass, `e*`.
     pub mass_fraction: f64,
-    /// `sum m delta^2 / sum m delta`. Divided by the virtual displacement of the control point, it is the factor from
-    /// displacements of the control point to those of the oscillator.
+    /// `sum m delta^2 / sum m delta`. This value over the virtual displacement of the control point is the factor from displacements of the control
+    /// point to those of the equivalent oscillator.
     pub oscillator_displacement: f64,
 }
 
 impl Participation {
-    /// The participation of masses in kg, each with its horizontal virtual displacement. All of them move.
+    /// Computes the participation of moving masses in kg, each with its horizontal virtual displacement.
     #[must_use]
     pub fn of(masses: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
@@ -72,7 +72,7 @@ impl Participation {
         }
     }
 
-    /// The participation of rigid bodies.
+    /// Computes the participation of rigid bodies.
     #[must_use]
     pub fn of_bodies(bodies: &[MovingBody]) -> Self {
         let bodies = bodies.iter();
@@ -80,7 +80,7 @@ impl Participation {
     }
 }
 
-/// The factor on virtual displacements with which the centre of all masses moves by one.
+/// Returns the factor on virtual displacements for which the centre of all masses moves by one.
 #[must_use]
 pub fn per_displacement_of_centre(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();

@@ -76,9 +76,11 @@ impl Pulse {
 /// A pulse of any amplitude: its kind, its duration, and when it starts.
 ///
 /// ```
+///
 /// # use archrock_motion::dynamics::ground::{GroundError, Pulse};
 /// let ground = Pulse::OneSine.lasting_s(0.5).starting_at_s(1.0).horizontal_m_s2(-2.0)?;
 /// assert_eq!(ground.end_s(), 1.5);
+///
 /// # Ok::<(), GroundError>(())
 /// ```
 ///

@@ -17,9 +17,11 @@ impl GroundMotion {
     /// lines; zero after the last.
     ///
     /// ```
+    ///
     /// # use archrock_motion::dynamics::ground::{GroundError, GroundMotion};
     /// let ground = GroundMotion::from_samples(0.01, &[0.0, 0.8, -1.2, 0.3])?;
     /// assert_eq!(ground.peaks_m_s2(f64::INFINITY).x, 1.2);
+    ///
     /// # Ok::<(), GroundError>(())
     /// ```
     ///

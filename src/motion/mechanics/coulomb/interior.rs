@@ -1,54 +1,54 @@
-//! Coulomb's law at every joint by an interior-point method.
+//! Interior-point method for Coulomb's law at all joints.
 //!
-//! The unknowns of a joint are `N_I`, `N_E`, friction `T+` and `T-` to either side, and a speed `g`. They are complementary, in this
-//! order, to the rates of the two ends, `g + u_T` and `g - u_T`, and what is left of the bound, `mu (N_I + N_E) - T+ - T-`. All are
-//! kept positive. Newton's method brings their products down together, to a target that shrinks with the errors of the equations. Slip
-//! and speed are eliminated by hand, so that a step costs one elimination along the row. On the way the modes that the numbers point to
-//! are tried. Where they confirm themselves the law holds exactly, and rounding, which the equations magnify more and more, no longer
-//! matters.
+//! The unknowns of a joint are `N_I`, `N_E`, friction `T+` and `T-` in both directions, and a speed `g`. In this order they are complementary to the
+//! rates of the two ends, to `g + u_T` and `g - u_T`, and to the slack of the friction bound, `mu (N_I + N_E) - T+ - T-`. All variables stay
+//! positive. Newton's method reduces all complementary products to a common target, which decreases with the residuals. Friction and speed are
+//! eliminated analytically, so a step costs one elimination along the row. At intervals the modes suggested by the variables are tested by Newton's
+//! method on the modes. If they converge, Coulomb's law holds exactly, and the growing rounding errors of the interior-point method have no effect.
 //!
-//! The problem is not monotone, and convergence is not proved. The method solved what the bounds did not, in 20 to 40 steps.
+//! The problem is not monotone, so convergence is not guaranteed. The method has solved the problems in which the friction bounds did not converge,
+//! in 20 to 40 steps.
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
 use super::{Along, Balance, Mode, PASSES, Program};
 
 const STEPS: usize = 60;
-/// The modes are tried when the products have fallen to these fractions of the first ones.
+/// Mean products, relative to the first one, at which the modes are tested.
 const TRIED: [f64; 3] = [1e-4, 1e-7, 1e-10];
-/// Impulses to start from, over the expected ones, tried one after the other.
+/// Initial impulses relative to the expected ones, tried in turn.
 const STARTS: [f64; 3] = [1.0, 3.0, 10.0];
-/// Rates to start from, over the largest rate with the impulses unchanged.
+/// Initial rates relative to the largest rate for unchanged impulses.
 const START_RATE: f64 = 0.1;
-/// A step goes this fraction of the way to where the first number vanishes.
+/// Step length relative to the step at which the first variable becomes zero.
 const REACH: f64 = 0.99;
-/// Products do not shrink below this fraction of what the errors of the equations have shrunk to.
+/// Lower bound of the target of the products, relative to the reduction of the residuals.
 const FLOOR: f64 = 0.3;
-/// Products are zero below this fraction of tolerance times impulse, ...
+/// Tolerance for products, relative to tolerance times impulse.
 const ZERO_PRODUCT: f64 = 1e-2;
-/// ... and what is left of a bound agrees to within this fraction of the impulse.
+/// Tolerance for the slack of a friction bound, relative to the impulse.
 const SAME_BOUND: f64 = 1e-10;
 
-/// Numbers of a joint that stay positive, and their complements.
+/// Positive variables of a joint, and their complementary variables.
 #[derive(Clone, Copy)]
 struct Pairs {
     own: [f64; 5],
     other: [f64; 5],
 }
 
-/// A step of the unknowns of a joint from which slip and speed have been eliminated.
+/// Newton step of a joint with friction and speed eliminated.
 #[derive(Clone, Copy)]
 struct Eliminated {
-    /// Changes of the friction to either side, and of the speed, without a change of the rate and the pressure.
+    /// Changes of friction in both directions and of the speed, for constant rate and normal impulses.
     constant: [f64; 3],
-    /// Derivative of friction to either side by the slip.
+    /// Derivatives of friction in both directions by the slip.
     yielding: [f64; 2],
-    /// Derivative of the speed by the bound.
+    /// Derivative of the speed by the friction bound.
     following: f64,
 }
 
 impl Pairs {
-    /// Errors of the equations between them, at the given rates of the joint.
+    /// Returns the residuals of the equations between the variables, for given rates of the joint.
     fn errors(&self, rate: &Vector3<f64>, coefficient: f64) -> [f64; 5] {
         let ([intrados, extrados, plus, minus, speed], other) = (self.own, self.other);
         [
@@ -65,8 +65,8 @@ impl Pairs {
         pairs.map(|(own, other)| own * other)
     }
 
-    /// Newton's equations for the three impulses of the joint, to be added to its compliance: matrix, right side, and what
-    /// recovers the eliminated unknowns.
+    /// Returns the Newton equations for the three impulses of the joint, to be added to its compliance: matrix, right-hand side, and the data to
+    /// recover the eliminated unknowns.
     fn eliminated(
         &self,
         errors: &[f64; 5],
@@ -100,7 +100,7 @@ impl Pairs {
         (matrix, right, rest)
     }
 
-    /// The changes that belong to changes of the impulses and of the rate along the joint.
+    /// Returns the changes of all variables for given changes of the impulses and of the rate along the joint.
     fn changes(
         &self,
         rest: &Eliminated,
@@ -129,7 +129,7 @@ impl Pairs {
         }
     }
 
-    /// Largest part of a change before one of the numbers vanishes.
+    /// Returns the largest fraction of a change that keeps all variables positive.
     fn room(&self, change: &Self) -> f64 {
         let own = self.own.iter().zip(&change.own);
         let pairs = own.chain(self.other.iter().zip(&change.other));
@@ -149,7 +149,7 @@ impl Pairs {
         Vector3::new(self.own[0], self.own[1], self.own[2] - self.own[3])
     }
 
-    /// The mode of the joint; its compliance converts impulses to rates, to compare the two.
+    /// Returns the mode of the joint. The compliance converts impulses to rates for the comparison.
     fn mode(&self, compliance: &Vector3<f64>) -> Mode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
@@ -163,7 +163,7 @@ impl Pairs {
 }
 
 impl Program {
-    /// Modes and impulses by Coulomb's law; false where no start leads to them.
+    /// Finds modes and impulses by Coulomb's law. Returns false if no start converges.
     pub(super) fn interior(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         let mut starts = STARTS.iter();
         starts.any(|start| self.interior_from(*start, tolerance, passes))
@@ -188,7 +188,7 @@ impl Program {
         };
         let mut pairs = vec![pair; joints];
         let mut errors = vec![[0.0; 5]; joints];
-        // Mean of the products, and the errors, at the start.
+        // Mean product and residual at the start.
         let mut first: Option<[f64; 2]> = None;
         let mut centring = 0.5;
         let mut tried = TRIED.iter().peekable();
@@ -219,7 +219,7 @@ impl Program {
                 }
             }
             if found {
-                // Modes on the verge of others do not confirm themselves, but the impulses are right.
+                // Modes at a transition do not converge in Newton's method, but the impulses are right.
                 self.take_interior(&pairs);
                 self.impulses.copy_from_slice(&self.kept);
                 return true;
@@ -238,7 +238,7 @@ impl Program {
         false
     }
 
-    /// Takes the largest part of a Newton step that keeps all numbers positive, and returns that part.
+    /// Takes the largest fraction of a Newton step that keeps all variables positive, and returns this fraction.
     fn go_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
@@ -260,7 +260,7 @@ impl Program {
         });
         let changes = (0..pairs.len()).map(|joint| {
             let change = &self.target[joint];
-            // Computed from the changes themselves: the difference of two rates is only rounding in the end.
+            // Computed from the changes: a difference of two rates would have too large rounding errors near convergence.
             let slip = self.response(joint, &self.target).z + self.proximal(joint, 2) * change.z;
             let rest = &eliminated[joint].2;
             pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
@@ -275,7 +275,7 @@ impl Program {
         part
     }
 
-    /// Takes over the modes, and impulses that they allow.
+    /// Sets the modes, and impulses consistent with them.
     fn take_interior(&mut self, pairs: &[Pairs]) {
         for (joint, pairs) in pairs.iter().enumerate() {
             let mode = pairs.mode(&self.own[joint].diagonal());
@@ -303,7 +303,7 @@ mod tests {
     use crate::mechanics::geometry::ring::Ring;
     use crate::mechanics::slip::{Contact, Faces, Position};
 
-    /// The largest rate by which a solution breaks the law; impulses count as the rates that they cause.
+    /// Returns the largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
     fn breach(program: &Program) -> f64 {
         let joints = program
             .impulses
@@ -317,7 +317,7 @@ mod tests {
                 (-impulse).max(-rate[end]).max(impulse.min(rate[end]))
             };
             let left = program.coefficient * (impulse.x + impulse.y) - impulse.z.abs();
-            // Friction must not drive a slip, and may leave none that it could stop.
+            // Friction must not act along the slip, and must not allow a slip that it could prevent.
             let driven = (rate.z * impulse.z.signum()).min(impulse.z.abs() * scale.z);
             let slip = driven.max((left * scale.z).min(rate.z.abs()));
             end(0).max(end(1)).max(-left * scale.z).max(slip)
@@ -325,9 +325,9 @@ mod tests {
         breaches.fold(0.0, f64::max)
     }
 
-    /// An arch at rest is hit: its blocks get velocities of about 1 m/s that do not fit together. The solution obeys the law. Lemke's
-    /// method, an independent one, finds the same velocities, to within its rounding and the proximal term, 1e-6. The exception is where
-    /// the law has several solutions, as it may with friction, and each method finds one.
+    /// The blocks of an arch at rest get incompatible velocities of about 1 m/s. The solution satisfies Coulomb's law. Lemke's method, which is
+    /// independent, finds the same velocities within rounding error and the proximal term, 1e-6. With friction the law may have several solutions;
+    /// both methods may then find different ones.
     #[test]
     fn it_finds_what_lemkes_method_finds() {
         let mut state = 1_u64;

@@ -1,36 +1,35 @@
-//! Coulomb's law at every joint as a linear complementarity problem: the last resort.
+//! Coulomb's law at all joints as a linear complementarity problem, the last resort.
 
 use nalgebra::{DMatrix, Vector3};
 
 use super::{Along, Mode, PASSES, PROXIMAL, Program};
 use crate::mechanics::complementarity;
 
-/// Joints up to which Lemke's method, whose work grows with their cube, is the last resort.
+/// Maximum number of joints for Lemke's method; its effort grows with their cube.
 const COMPLEMENTED: usize = 80;
 
 impl Program {
-    /// Modes and impulses by Lemke's method; false where the row is too long for it, or it fails.
+    /// Finds modes and impulses by Lemke's method. Returns false if the row has too many joints, or if the method fails.
     pub(super) fn pivoted(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         if self.modes.len() > COMPLEMENTED || !self.complement() {
             return false;
         }
         let modes = self.modes.clone();
         if !self.newton(PASSES, false, tolerance, passes) {
-            // Modes on the verge of others do not confirm themselves, but the impulses are right.
+            // Modes at a transition do not converge in Newton's method, but the impulses are right.
             self.impulses.copy_from_slice(&self.kept);
             self.modes = modes;
         }
         true
     }
 
-    /// Finds the modes by Lemke's method: Coulomb's law as a complementarity problem. The normal impulse `N` is complementary to the
-    /// rates of the ends. Friction to either side is complementary to a speed `g` plus or minus the rate along the joint, and `g` to
-    /// the unused part of the bound. Returns false when the method fails.
+    /// Finds the modes by Lemke's method. Normal impulses are complementary to the rates of the ends. Friction in each direction is complementary to
+    /// a speed `g` plus or minus the rate along the joint, and `g` to the slack of the friction bound. Returns false if the method fails.
     pub(super) fn complement(&mut self) -> bool {
         const SIZE: usize = 5;
         let joints = self.own.len();
         let n = SIZE * joints;
-        // Row of the joint that an unknown belongs to, and its sign there; none for the speed.
+        // Coordinate of the joint that an unknown belongs to, and sign; `None` for the speed.
         let part = |unknown: usize| match unknown % SIZE {
             row @ 0..=2 => Some((row, 1.0)),
             3 => Some((2, -1.0)),

@@ -46,6 +46,7 @@ pub struct Held<'a> {
 
 impl<'a> Held<'a> {
     /// Follows the first mechanism of a row until the push becomes zero.
+    ///
     /// # Errors
     /// If the first motion is no mechanism of one degree of freedom, or the push never becomes zero.
     pub fn new(row: &'a Row, sway: Sway) -> Result<Self, HeldError> {
@@ -94,6 +95,7 @@ impl<'a> Held<'a> {
     }
 
     /// Returns the mechanism at a fraction `part` of its ultimate displacement.
+    ///
     /// # Panics
     /// Never: the bodies meet at all displacements of the mechanism.
     #[must_use]
@@ -211,6 +213,7 @@ impl<'a> Held<'a> {
 }
 
 /// Returns the hinges that a push opens.
+///
 /// # Errors
 /// If the hinges are no mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
