@@ -1,4 +1,4 @@
-//! The results that a command finds in its folder: those of its own last run, and those of other commands.
+//! Earlier results that a command finds in its folder: those of its own last run, and those of other commands.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use super::{peaks, run};
 use crate::output::print::PictureFormat;
 use crate::scenario::{self, Hinges, Scenario};
 
-/// A hidden file that names the scenario file to which the results beside it belong.
+/// Name of a hidden file in a folder of results. The file holds the name of the scenario file.
 pub const ORIGIN: &str = ".scenario";
 
 /// A command that writes a folder of results.
@@ -19,13 +19,14 @@ pub const ORIGIN: &str = ".scenario";
 pub struct Writer {
     /// The name of the command.
     pub name: &'static str,
-    /// All files that it may write beside one another, the seal last. The scenario is in the first that is JSON.
+    /// All files that the command may write in one folder, the seal last. The first JSON file contains the scenario.
     files: &'static [&'static str],
-    /// The study of the samples of `[uncertain]`, whose results are in a subfolder.
+    /// The study of the samples of `[uncertain]`. Its results are in a subfolder; `None` if the command has no such study.
     samples: Option<StudyKind>,
-    /// The file that shows that the results of several models are in subfolders; `None`: results of models are never apart.
+    /// The file whose presence shows that the results of several models of motion are in subfolders; `None` if the command has no such
+    /// subfolders.
     of_models: Option<&'static str>,
-    /// Whether the results of each record of the suite may be in a subfolder.
+    /// True if the results of each record of the suite may be in a subfolder.
     of_records: bool,
 }
 
@@ -55,11 +56,11 @@ const SUITE: Writer = Writer {
     ..Writer::of_study(catalogue::SUITE)
 };
 
-/// The commands with results in subfolders or with a name other than that of a study.
+/// The commands with results in subfolders, or with a name that is not the name of a study.
 const SPECIAL: [Writer; 5] = [RUN, THRESHOLD, ALONG, MAP, SUITE];
 const MERGE: &str = "merge";
 
-/// The folder that compares the results of several models of motion.
+/// Subfolder for the comparison of several models of motion.
 const MODELS: &str = "models";
 
 impl Writer {
@@ -77,13 +78,14 @@ impl Writer {
         Self::new(kind.name, kind.files)
     }
 
-    /// `merge` of a study. It replaces the results of that study only, because those of its samples are merged separately.
+    /// Returns the command `merge` for a study. It replaces the results of that study only; samples are merged separately.
     #[must_use]
     pub const fn merge(kind: StudyKind) -> Self {
         Self::new(MERGE, kind.files)
     }
 
-    /// The command that writes the results of a study. Only `merge` writes those of samples into a folder of their own.
+    /// Returns the command that writes the results of a study into a folder chosen by the user. For a study of samples that is `merge`: other
+    /// commands write samples into a subfolder.
     #[must_use]
     pub fn of(kind: StudyKind) -> Self {
         let has_samples = |writer: &Self| writer.samples == Some(kind);
@@ -94,25 +96,25 @@ impl Writer {
         }
     }
 
-    /// `run`, and the command of each study.
+    /// Returns `run`, and the command of each study.
     fn all() -> impl Iterator<Item = Self> {
         let studies = StudyKind::ALL.into_iter().map(Self::of);
         [RUN].into_iter().chain(studies)
     }
 
-    /// The command whose results have this seal; `None` if no command writes them.
+    /// Returns the command whose results end with this seal; `None` if no command writes it.
     #[must_use]
     pub fn of_seal(seal: &str) -> Option<Self> {
         Self::all().find(|writer| writer.files.last() == Some(&seal))
     }
 
-    /// The file that holds the scenario.
+    /// Returns the name of the file that contains the scenario.
     fn summary(&self) -> Option<&'static str> {
         let mut files = self.files.iter().copied();
         files.find(|file| file.ends_with(".json"))
     }
 
-    /// The scenario in the summary among files of results; `None` if there is none.
+    /// Reads the scenario from the summary among files of results; `None` if there is none.
     #[must_use]
     pub fn origin_in(&self, files: &[(String, Vec<u8>)]) -> Option<Origin> {
         let mut files = files.iter();
@@ -120,7 +122,8 @@ impl Writer {
         of_summary(&serde_json::from_slice(summary).ok()?)
     }
 
-    /// All paths that the last run of this command may have written in a folder, in the order of their removal: the seal first. Rows of an interrupted study are not among them.
+    /// Returns all paths that the last run of this command may have written in a folder, in the order of removal: the seal first. Rows of an
+    /// interrupted study are not included.
     #[must_use]
     pub fn last_run(&self, folder: &Path) -> Vec<PathBuf> {
         let mut seal_first = self.beside_one_another(folder, self.files).into_iter();
@@ -138,7 +141,8 @@ impl Writer {
         all
     }
 
-    /// The folder for the comparison of several models: another name if `models` belongs to another command.
+    /// Returns the name of the subfolder that compares several models of motion: `models`, or another name if that folder belongs to another
+    /// command.
     #[must_use]
     pub fn models(&self, folder: &Path) -> String {
         let has_models = |writer: &Self| {
@@ -159,7 +163,7 @@ impl Writer {
         }
     }
 
-    /// Warnings of results of other commands in a folder that come from another scenario.
+    /// Returns warnings about results of other commands in a folder that come from another scenario.
     #[must_use]
     pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
         let others = Self::all().filter(|other| other.files != self.files && other.name != MERGE);
@@ -179,7 +183,7 @@ impl Writer {
         all
     }
 
-    /// A warning about rows of an interrupted study of samples. This run has no samples and does not remove them.
+    /// Returns a warning about rows of an interrupted study of samples. This run has no samples and does not remove the rows.
     fn interrupted(&self, folder: &Path) -> Option<String> {
         let kind = self.samples?;
         let part = Self::part(folder, kind);
@@ -190,20 +194,20 @@ impl Writer {
         ))
     }
 
-    /// The file that keeps the rows of samples while they are computed.
+    /// Returns the path of the part file of a study of samples.
     fn part(folder: &Path, kind: StudyKind) -> PathBuf {
         folder
             .join(kind.name)
             .join(Shard::WHOLE.file_name(kind.name))
     }
 
-    /// Whether a folder holds complete results of this command.
+    /// Returns true if a folder contains complete results of this command.
     fn is_sealed(&self, folder: &Path) -> bool {
         let seal = self.files.last();
         seal.is_some_and(|seal| folder.join(seal).is_file())
     }
 
-    /// A folder of results, and its subfolders of several models.
+    /// Returns a folder of results and its subfolders of several models.
     fn places(&self, folder: &Path) -> Vec<PathBuf> {
         let mut places = vec![folder.to_owned()];
         if self.of_models.is_some() {
@@ -212,7 +216,7 @@ impl Writer {
         places
     }
 
-    /// The scenario of complete results in a folder.
+    /// Reads the scenario of complete results in a folder.
     fn origin(&self, folder: &Path) -> Option<Origin> {
         let summary = folder.join(self.summary()?);
         // Reading a pipe of that name would never end.
@@ -223,7 +227,7 @@ impl Writer {
         of_summary(&summary)
     }
 
-    /// Files of one folder, the seal first, and their pictures in other formats.
+    /// Returns the paths of files of one folder, the seal first, and of their pictures in other formats.
     fn beside_one_another(&self, folder: &Path, files: &[&str]) -> Vec<PathBuf> {
         if !folder.is_dir() {
             return Vec::new();
@@ -237,13 +241,13 @@ impl Writer {
         all
     }
 
-    /// Results in the subfolders of a results folder: samples, films and models.
+    /// Returns the paths of results in the subfolders of a results folder: samples, films and models.
     fn below(&self, folder: &Path) -> Vec<PathBuf> {
         let mut all = Vec::new();
         if let Some(kind) = self.samples {
             let samples = folder.join(kind.name);
             all.extend(self.beside_one_another(&samples, kind.files));
-            // A part without rows is no loss.
+            // A part file without rows may be removed.
             let part = Self::part(folder, kind);
             if rows_in(&part) == Some(0) {
                 all.push(part);
@@ -251,13 +255,13 @@ impl Writer {
         }
         if self.name == RUN.name {
             let film = folder.join(run::FILM);
-            // Of a killed run the folder may hold hidden files only.
+            // One path is enough: hidden files of a killed run are removed with the results beside them.
             all.extend(self.beside_one_another(&film, &["frame-0001.svg"]));
             all.extend(run::frames(&film));
         }
         if let Some(mark) = self.of_models {
             for below in Hinges::ALL.iter().map(|hinges| folder.join(hinges.name())) {
-                // A sealed folder may have been chosen with --out, and is then not of this folder's run.
+                // A sealed subfolder without the mark is the result of another run, which used it with --out.
                 let alone = self.is_sealed(&below) && !folder.join(mark).is_file();
                 if below.is_dir() && !alone {
                     all.extend(self.beside_one_another(&below, self.files));
@@ -272,7 +276,7 @@ impl Writer {
         all
     }
 
-    /// The subfolders with results of one record each: they have its name.
+    /// Returns the subfolders with results of one record each. They have the name of the record.
     fn record_folders(&self, folder: &Path) -> Vec<PathBuf> {
         let entries = fs::read_dir(folder).into_iter().flatten().flatten();
         let is_of_record = |path: &PathBuf| {
@@ -284,7 +288,7 @@ impl Writer {
                 let file = origin.scenario.pointer("/ground/record/file")?.as_str()?;
                 Some(Path::new(file).file_name()? == name)
             };
-            // The names of records have an extension.
+            // Names of records have an extension.
             let mut places = self.places(path).into_iter();
             name.contains('.') && places.any(|place| shaken_by(place) == Some(true))
         };
@@ -293,13 +297,13 @@ impl Writer {
     }
 }
 
-/// The scenario of a summary, which may have several models.
+/// Returns the scenario of a summary, which may be a summary of several models.
 fn of_summary(summary: &Value) -> Option<Origin> {
     let of_models = summary.pointer("/models/0");
     Origin::of_summary(of_models.unwrap_or(summary))
 }
 
-/// The scenario of some results.
+/// The scenario of results, with the checksums of its records.
 #[derive(Clone, Debug, Default)]
 pub struct Origin {
     scenario: Value,
@@ -307,11 +311,12 @@ pub struct Origin {
     records: Vec<String>,
 }
 
-/// Tables that may differ between results of several commands, apart from those of models: a title, and studies.
+/// Tables that may differ between results of several commands: the title, and tables of studies. Tables of models of motion are handled
+/// separately.
 const OF_SOME: [&str; 6] = ["title", "map", "suite", "demand", "verify", "uncertain"];
 
 impl Origin {
-    /// A scenario that is about to have results.
+    /// Returns the origin of results that this scenario will have.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
@@ -320,7 +325,7 @@ impl Origin {
         }
     }
 
-    /// The scenario in the summary of results; `None` if there is none.
+    /// Reads the scenario in a summary of results; `None` if there is none.
     #[must_use]
     pub fn of_summary(summary: &Value) -> Option<Self> {
         let records = summary["record_checksums"].as_array();
@@ -331,7 +336,7 @@ impl Origin {
         })
     }
 
-    /// The first difference from the scenario of other results; `None` if they agree.
+    /// Returns the first difference from the scenario of other results, in words; `None` if they agree.
     fn difference(&self, other: &Self) -> Option<String> {
         let (own, others) = (self.scenario.as_object()?, other.scenario.as_object()?);
         let tables = own.keys().chain(others.keys());

@@ -6,14 +6,14 @@
 //! of a case is a row, which stays a typed value from the computation to the last file.
 //!
 //! - [`run`]: one history, with all its reports;
-//! - [`map`]: which pulses overturn, over two quantities;
-//! - [`threshold`]: by which factors a ground motion overturns, in bands with safe gaps between them; and the first of them
-//!   [along](threshold::along) a range of values of one key;
-//! - [`suite`]: which records overturn, at several levels, and their [`fragility`](suite::fragility) curve;
-//! - [`survival`](threshold::survival): the strengths of a motion that a structure survives, in brief;
-//! - [`capacity`]: capacity curves, without a history;
-//! - [`spread`]: the movement of a springing at which the arch falls, without a history;
-//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with its own numbers, words and page.
+//! - [`map`]: overturning or survival under pulses, over two quantities;
+//! - [`threshold`]: the ranges of factors by which a ground motion overturns the structure, with the safe gaps between them, and the lowest
+//!   overturning factor [along](threshold::along) a range of values of one key;
+//! - [`suite`]: overturning under the records of a suite at several levels, and the [`fragility`](suite::fragility) curve;
+//! - [`survival`](threshold::survival): a brief report of the strengths of a motion that a structure survives;
+//! - [`capacity`]: static capacity curves, without a history;
+//! - [`spread`]: the movement of a springing at which the arch collapses, without a history;
+//! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with a printed page.
 
 pub mod capacity;
 pub mod catalogue;

@@ -1,10 +1,9 @@
-//! The part file of a running study: a header that identifies the study, and the rows so far.
+//! The part file of a running study: a header that identifies the study, and the rows computed until now.
 //!
-//! The first line is the header. Every other line holds a checksum, the index of a case
-//! and its row, separated by commas. Header and rows are JSON, whose numbers read back as the same `f64`. Lines
-//! are only ever appended, so the file of a killed program is valid up to its last complete line; the
-//! checksums reveal any other damage. A study that was computed in shards, on several machines, is merged from
-//! such files.
+//! The first line is the header. Every other line holds a checksum, the index of a case and the row of the case, separated by commas. Header and
+//! rows are JSON, whose numbers read back as the same `f64`. The program only appends lines, so the file of a killed program is valid up to its
+//! last complete line. The checksums detect other damage. `merge` joins the part files of a study that was computed in shards on several
+//! machines.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
@@ -17,12 +16,12 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
-/// Largest number of shards of a study: more than any cluster has nodes.
+/// Largest number of shards of a study; larger numbers are input errors.
 const MAX_SHARDS: usize = 100_000;
 
-/// A selection of the cases: the one whose number, counted from 1, is `index`, and every `count`-th after it.
+/// A part of the cases of a study: case number `index`, counted from 1, and every `count`-th case after it.
 ///
-/// Neighbouring cases cost about the same, so dealing them out in turn gives all shards equal work.
+/// Neighbouring cases cost about the same, so all shards of this kind take about the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Shard {
@@ -34,24 +33,24 @@ impl Shard {
     /// All cases.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// The indices of its cases, out of `all`.
+    /// Returns the indices of the cases of this shard, in a study of `all` cases.
     pub fn cases(self, all: usize) -> impl Iterator<Item = usize> {
         (self.index - 1..all).step_by(self.count)
     }
 
-    /// Whether the case of this index belongs to it.
+    /// Returns true if the case with this index belongs to the shard.
     #[must_use]
     pub const fn has(self, case: usize) -> bool {
         case % self.count == self.index - 1
     }
 
-    /// Whether it holds all cases.
+    /// Returns true if the shard contains all cases.
     #[must_use]
     pub const fn is_whole(self) -> bool {
         self.count == 1
     }
 
-    /// The name of its file: `map-2-of-4.part`.
+    /// Returns the name of the part file, such as `map-2-of-4.part`.
     #[must_use]
     pub fn file_name(self, study: &str) -> String {
         if self.is_whole() {
@@ -85,7 +84,7 @@ impl TryFrom<String> for Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// Reads `2/4`.
+    /// Parses text such as `2/4`.
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
@@ -103,12 +102,12 @@ impl FromStr for Shard {
     }
 }
 
-/// Identifies the study of the rows: headers of one study differ only in the shard.
+/// Identifies the study to which the rows of a file belong. The headers of the shards of one study differ only in the shard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
     pub(super) program: String,
-    /// Its version.
+    /// Version of the program.
     pub version: String,
     /// The study: [`NAME`](super::runner::Study::NAME).
     pub study: String,
@@ -121,7 +120,7 @@ pub struct Header {
     /// Options of the study: [`options`](super::runner::Study::options).
     #[serde(default, skip_serializing_if = "Value::is_null")]
     pub options: Value,
-    /// The other input of the cases: checksums of the files that the scenario names.
+    /// Other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
     /// Warnings about the scenario: [`warnings`](super::runner::Study::warnings).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -129,13 +128,13 @@ pub struct Header {
 }
 
 impl Header {
-    /// Number of cases of its shard.
+    /// Returns the number of cases of the shard.
     #[must_use]
     pub fn shard_cases(&self) -> usize {
         self.shard.cases(self.cases).count()
     }
 
-    /// The first difference of another header; `None` if both belong to the same part.
+    /// Returns the first difference from another header, in words; `None` if both belong to the same part.
     fn other(&self, other: &Self) -> Option<String> {
         self.difference(other).or_else(|| {
             let (here, there) = (self.shard, other.shard);
@@ -143,11 +142,11 @@ impl Header {
         })
     }
 
-    /// The first input that only one of the two headers has.
+    /// Returns the first input that only one of the two headers has, in words.
     fn other_input(&self, other: &Self) -> Option<String> {
         fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
-            // The checksum means nothing to the user.
+            // A checksum means nothing to the user.
             Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
         }
         match (only(self, other), only(other, self)) {
@@ -160,7 +159,7 @@ impl Header {
         }
     }
 
-    /// The first difference of the study of another header; `None` if they belong together.
+    /// Returns the first difference from another header apart from the shard, in words; `None` if both belong to the same study.
     #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let differ = |what: &str, here: &str, there: &str| {
@@ -208,7 +207,7 @@ fn from_line<R: DeserializeOwned>(line: &str) -> Option<(usize, R)> {
 /// Rows by the index of their case.
 pub type Rows<R> = BTreeMap<usize, R>;
 
-/// Why the file of a part cannot be used.
+/// Errors of part files.
 #[derive(Debug, Error)]
 pub enum PartError {
     /// The system reported an error.
@@ -221,7 +220,7 @@ pub enum PartError {
         /// The error of the system.
         source: io::Error,
     },
-    /// The file is not one of ours, or was damaged, or is in use.
+    /// The file is not a part file of this program, is damaged, or is in use.
     #[error("{}: {what}", path.display())]
     Unusable {
         /// The file.
@@ -242,7 +241,7 @@ pub enum PartError {
     Interrupted {
         /// The file.
         path: PathBuf,
-        /// Its number of cases.
+        /// Number of cases in the file.
         done: usize,
     },
     /// A shard to be merged lacks cases.
@@ -250,9 +249,9 @@ pub enum PartError {
     Incomplete {
         /// The file.
         path: PathBuf,
-        /// Its shard.
+        /// Shard of the file.
         shard: Shard,
-        /// Its number of cases.
+        /// Number of cases in the file.
         done: usize,
         /// The expected number of cases.
         all: usize,
@@ -266,7 +265,7 @@ fn unusable(path: &Path, what: impl Into<String>) -> PartError {
     }
 }
 
-/// Refuses a path that exists but is not a file: reading a pipe would never end.
+/// Returns an error for a path that exists but is not a file: reading a pipe would never end.
 fn check_file(path: &Path) -> Result<(), PartError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() => Err(unusable(path, "is not a file")),
@@ -274,7 +273,7 @@ fn check_file(path: &Path) -> Result<(), PartError> {
     }
 }
 
-/// The complete lines of a file.
+/// The complete lines of a part file.
 struct Lines<'p> {
     path: &'p Path,
     text: String,
@@ -293,7 +292,7 @@ impl<'p> Lines<'p> {
         Ok(Self { path, text })
     }
 
-    /// The header; `None` if the program was killed before it wrote the header.
+    /// Returns the header; `None` if the program was killed before it wrote the header.
     fn header(&self) -> Result<Option<Header>, PartError> {
         let first = self.text.lines().next();
         let header = first.map(|first| match serde_json::from_str::<Header>(first) {
@@ -303,18 +302,18 @@ impl<'p> Lines<'p> {
         header.transpose()
     }
 
-    /// The header of a file that must have one.
+    /// Returns the header, or an error if the file has none.
     fn known_header(&self) -> Result<Header, PartError> {
         self.header()?
             .ok_or_else(|| unusable(self.path, "is empty"))
     }
 
-    /// The number of lines after the header.
+    /// Returns the number of rows, damaged ones included.
     fn count(&self) -> usize {
         self.text.lines().skip(1).count()
     }
 
-    /// The rows of all lines after the header.
+    /// Reads all rows.
     fn rows<R: DeserializeOwned>(&self, header: &Header) -> Result<Rows<R>, PartError> {
         let mut rows = Rows::new();
         for (number, line) in (1..).zip(self.text.lines()).skip(1) {
@@ -336,7 +335,7 @@ impl<'p> Lines<'p> {
 
 const NO_PART: &str = "is not a part of a study (a .part file of archrock)";
 
-/// The header of a part file, complete or not.
+/// Reads the header of a part file. The rows may be incomplete.
 ///
 /// # Errors
 /// When the file cannot be read or is not a part.
@@ -344,7 +343,7 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
     Lines::of(path)?.known_header()
 }
 
-/// The number of complete rows in a file; `None` if it is not a part.
+/// Returns the number of complete rows in a file; `None` if the file is not a part file.
 #[must_use]
 pub fn rows_in(path: &Path) -> Option<usize> {
     if !path.is_file() {
@@ -355,7 +354,7 @@ pub fn rows_in(path: &Path) -> Option<usize> {
     Some(lines.count())
 }
 
-/// The file of a shard that is being computed. It stays locked as long as this value lives.
+/// The part file of a shard that is being computed. It stays locked while this value exists.
 #[derive(Debug)]
 pub struct PartFile {
     path: PathBuf,
@@ -363,20 +362,20 @@ pub struct PartFile {
 }
 
 impl Drop for PartFile {
-    /// Gives up the lock. To close the file is not enough: a process that another thread starts just now has it open too.
+    /// Releases the lock. Closing the file is not enough: a process that another thread has just started may also hold the file open.
     fn drop(&mut self) {
-        // A file that cannot be locked was never locked.
+        // Fails only if the file system has no locks.
         drop(self.file.unlock());
     }
 }
 
 impl PartFile {
-    /// Begins a part, or continues it; returns the rows that it already has. A complete part need not be computed
-    /// again. The folder must exist.
+    /// Creates a part file, or opens it to continue. Returns the file and the rows that are already in it. The folder must exist. The rows of a
+    /// complete part are reused.
     ///
     /// # Errors
-    /// When the system reports an error, another program is working on the file, a part to `resume` belongs to another
-    /// study, or an interrupted part would be lost.
+    /// When the system reports an error, another program uses the file, a part to `resume` belongs to another study, or rows of an interrupted
+    /// part would be lost because `resume` is false.
     pub fn open<R: DeserializeOwned>(
         path: &Path,
         header: &Header,
@@ -401,7 +400,7 @@ impl PartFile {
         let rows = match lines.header()? {
             None => Rows::new(),
             Some(found) => {
-                // Rows are never discarded without a request; a header without rows may be.
+                // Only a header without rows may be overwritten without `resume`.
                 let begun = resume || lines.count() > 0;
                 if begun && let Some(difference) = header.other(&found) {
                     let path = path.to_owned();
@@ -428,13 +427,13 @@ impl PartFile {
         Ok((part, rows))
     }
 
-    /// Its path.
+    /// Returns the path of the file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Appends rows. They are safe even if the program is killed afterwards.
+    /// Appends rows. They stay in the file even if the program is killed afterwards.
     ///
     /// # Errors
     /// When the system reports an error.
@@ -451,10 +450,10 @@ impl PartFile {
         written.map_err(self.cannot("write"))
     }
 
-    /// Removes the file, once the results are complete.
+    /// Removes the file, after the results are complete.
     ///
     /// # Errors
-    /// When the file exists and the system does not remove it.
+    /// When the file exists and the system cannot remove it.
     pub fn remove(self) -> Result<(), PartError> {
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -464,7 +463,7 @@ impl PartFile {
         }
     }
 
-    /// Checks that the file still exists; with `--shard` the file itself is the result.
+    /// Checks that the file still exists. For a shard the part file itself is the result.
     pub(super) fn check_there(&self) -> Result<(), PartError> {
         if self.path.exists() {
             return Ok(());
@@ -485,11 +484,10 @@ impl PartFile {
     }
 }
 
-/// Joins the parts of a study: the header of the whole, and all rows in the order of their cases.
+/// Joins the parts of a study. Returns the header of the whole study, and all rows in the order of the cases.
 ///
 /// # Errors
-/// When a file is not a part, the parts do not belong to one study or are incomplete, or their rows are not of
-/// this type.
+/// When a file is not a part file, the parts belong to different studies, a part is missing or incomplete, or the rows do not have type `R`.
 pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>), PartError> {
     let mut whole: Option<(Header, Rows<R>)> = None;
     let mut places: BTreeMap<usize, &Path> = BTreeMap::new();

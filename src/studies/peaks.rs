@@ -1,4 +1,4 @@
-//! The distributions of the largest rotations by several models of motion in the same cases.
+//! Comparison of models of motion by the distribution of their largest rotations in the same cases.
 //!
 //! After impacts no model predicts a single history, but a model may predict the distribution of many: rocking is validated
 //! statistically (Bachmann, Strand, Vassiliou, Broccardo and Stojadinovic, Earthquake Engineering and Structural Dynamics 47, 2018;
@@ -16,8 +16,7 @@ use crate::output::chart::{Chart, Mark};
 use crate::output::svg::CURVES;
 use crate::output::table::{column, csv};
 
-/// The largest rotation of a body in each case of a model, in radians, infinite if the case overturned; and the name of the model in
-/// words.
+/// The name of a model in words, and the largest rotation of a body in each case, in radians, infinite if the case overturned.
 pub type ModelPeaks<'a> = (&'a str, &'a [f64]);
 
 /// The distance between the distributions of two models.
@@ -25,15 +24,15 @@ pub type ModelPeaks<'a> = (&'a str, &'a [f64]);
 pub struct Distance {
     /// The two models.
     pub models: [String; 2],
-    /// The largest difference between the shares of cases up to some rotation: the statistic of Kolmogorov and Smirnov.
+    /// The Kolmogorov-Smirnov statistic: the largest difference between the shares of cases up to the same rotation.
     pub kolmogorov_distance: f64,
-    /// That rotation, in radians.
+    /// The rotation with the largest difference, in radians.
     pub at_rotation_rad: f64,
-    /// The shares of the two models there.
+    /// The shares of cases of both models up to that rotation.
     pub shares_there: [f64; 2],
 }
 
-/// The distance between two models; `None` if one of them has no case.
+/// Computes the distance between the distributions of two models; `None` if one of them has no case.
 #[must_use]
 pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> {
     let both = [one, other];
@@ -64,7 +63,7 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", "peaks.json"];
 
-/// The distributions of several models of the same cases, side by side: table, picture, numbers and words.
+/// Compares the distributions of several models of the same cases: table, picture, numbers and words.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -123,7 +122,7 @@ fn in_words(found: &Distance) -> String {
     )
 }
 
-/// A model, and its rotations with the shares of its cases up to each. Overturned cases are beyond all others.
+/// Name of a model, and its finite rotations with the share of cases up to each.
 type Distribution<'a> = (&'a str, Vec<(f64, f64)>);
 
 fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>]) -> String {

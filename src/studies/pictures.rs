@@ -22,11 +22,11 @@ use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::output::text::Text;
 use crate::scenario::DimensionSide;
 
-/// Fraction of the way to the limit position at which a mechanism is drawn, so that it is visibly open.
+/// Fraction of the limit rotation at which a mechanism is drawn, so that it is visibly open.
 const DRAWN_PART: f64 = 0.25;
-/// Number of parts of a ring between the points of a line of resultants; for a row of blocks the points are the joints.
+/// Number of parts into which a ring is divided for a line of resultants. Rows of blocks have a point at each joint.
 const LINE_PARTS: usize = 720;
-/// Room beside an arch for the letter of a hinge at its springing, in pixels.
+/// Space beside an arch for the letter of a hinge at its springing, in pixels.
 const LETTER_PX: f64 = 32.0;
 /// Space above an arch, for its hinges and a body that rises.
 const ABOVE_PX: f64 = 42.0;
@@ -49,7 +49,7 @@ struct Open<'a> {
 }
 
 impl Open<'_> {
-    /// Its rotations in words.
+    /// Returns the rotations in words.
     fn rotations(&self) -> String {
         let names = ["left", "middle", "right"].iter().zip(&self.poses);
         let all = names.map(|(name, pose)| format!("{name} {:+.3}", pose.rotation_rad()));
@@ -58,7 +58,7 @@ impl Open<'_> {
 }
 
 impl<'a> Subject<'a> {
-    /// The mechanism after this number of impacts.
+    /// Returns the mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
     fn open(&self, impacts: usize) -> Option<Open<'a>> {
         let link = self.model.chain_from(self.first).link(impacts)?;
         let sway = self.first.before(impacts);
@@ -75,25 +75,25 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The profile in the frame of a sway to this side.
+    /// Returns the profile in the frame of a sway to this side.
     fn profile(&self, sway: Sway) -> &'a dyn Profile {
         let chain = self.model.chain_from(self.first);
         chain.profile(usize::from(sway != self.first))
     }
 
-    /// A point in the frame of a sway to this side, which is mirrored for the left, in metres.
+    /// Converts a point from the frame of a sway, which is mirrored for the left side, to metres.
     fn metres(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
         Vector2::new(sway.sign() * point.x, point.y) * self.model.length_m()
     }
 
-    /// The height of the structure if it is as wide as that, and no higher than wide.
+    /// Returns the height at which the structure is drawn, in pixels, if its larger dimension is `width_px`.
     fn height_px(&self, width_px: f64) -> f64 {
         let [low_m, high_m] = self.scene.blocks_m();
         let size_m = high_m - low_m;
         width_px / size_m.amax() * size_m.y
     }
 
-    /// The structure around this middle of a part of the sheet.
+    /// Places the structure around `middle` in a part of the sheet.
     fn at(&self, middle: f64, part: Frame) -> Spot<'a> {
         let place = Place::over(self.scene.blocks_m(), middle, part);
         Spot { of: *self, place }
@@ -111,7 +111,7 @@ struct Spot<'a> {
 }
 
 impl Spot<'_> {
-    /// The place of a point in the frame of a sway to this side.
+    /// Converts a point in the frame of a sway to pixels.
     fn px(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
         self.place.px(self.of.metres(point, sway))
     }
@@ -132,7 +132,7 @@ impl Spot<'_> {
         view.draw_hinges(drawing);
     }
 
-    /// Draws the hinges with their letters, from the left. They are named `hinge A` and so on, with `mark` after the letter.
+    /// Draws the hinges with their letters, from left to right. The elements are named `hinge A` and so on, with `mark` after the letter.
     fn hinges(&self, drawing: &mut Drawing, open: &Open<'_>, mark: &str) {
         let profile = self.of.profile(Sway::Right);
         let hinges = open.link.mechanism.hinges_from_left(profile, open.sway);
@@ -145,7 +145,7 @@ impl Spot<'_> {
                 Edge::Extrados => 1.0,
             };
             let outward = profile.outward(section);
-            // On white, so that no line strikes it through.
+            // A white ground keeps other lines off the letter.
             let named = Text::from(format!("{letter}{mark}"));
             let half = Vector2::new(0.5 * named.px() + 2.0, 7.5);
             let middle = at + Vector2::new(outward.x, -outward.y) * (side * 17.0);
@@ -157,7 +157,7 @@ impl Spot<'_> {
         }
     }
 
-    /// Draws a line of resultants in the frame of a sway, cut off far outside the structure.
+    /// Draws a line of resultants in the frame of a sway. Points far outside the structure are moved to a limit.
     fn resultants(&self, drawing: &mut Drawing, name: &str, line: &ResultantLine, sway: Sway) {
         let profile = self.of.profile(sway);
         let points = profile.sections(LINE_PARTS).into_iter().map(|section| {
@@ -172,7 +172,7 @@ impl Spot<'_> {
 }
 
 fn shape(profile: &dyn Profile) -> String {
-    // Without rounding errors.
+    // Removes rounding errors.
     let rounded = |value: f64| (value * 1e6).round() / 1e6;
     match profile.joint(profile.end()) {
         Some(blocks) => format!("{blocks} blocks"),
@@ -184,8 +184,8 @@ fn shape(profile: &dyn Profile) -> String {
     }
 }
 
-/// Incipient rocking to one side: the thrust line at `A_L`, through its hinges, and the mechanism, to scale at finite rotations, at a
-/// quarter of the way to its limit position.
+/// Draws incipient rocking to one side: the thrust line at `A_L` through its hinges, and the mechanism. The mechanism is to scale, at a quarter
+/// of the rotations of its limit position.
 #[must_use]
 pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> String {
     let of = Subject {
@@ -248,8 +248,8 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
     sheet.finish()
 }
 
-/// An impact, as in Fig. 10 of the paper: the mechanisms before and after, the bodies into which both together cut the
-/// ring (Eq. (3)), and the impulse line. `None` if this impact or one before it stops the arch.
+/// Draws an impact as in Fig. 10 of the paper: the mechanisms before and after, the bodies into which both mechanisms divide the ring (Eq. (3)),
+/// and the impulse line. `None` if this impact or one before it stops the arch.
 #[must_use]
 pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<String> {
     let of = Subject {
@@ -318,10 +318,10 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
 }
 
 impl Spot<'_> {
-    /// Draws the bodies into which both mechanisms of an impact cut the structure, the impulse line, and the hinges of both.
+    /// Draws the bodies into which the mechanisms before and after an impact divide the structure, the impulse line, and the hinges of both.
     fn impact(&self, drawing: &mut Drawing, before: &Open<'_>, after: &Open<'_>) {
         let (sway, seen) = (after.sway, self.of.profile(Sway::Right));
-        // Both are in the frame of the new mechanism, which is mirrored if it sways left.
+        // Both mechanisms are in the frame of the new one, which is mirrored if it sways left.
         let profile = self.of.profile(sway);
         let closing = closing_field(&before.link.mechanism, profile);
         let field = after.link.mechanism.field();
@@ -359,8 +359,8 @@ impl Spot<'_> {
         }
     }
 
-    /// The place for the number of a body: for a ring outside the extrados. For a row inside the intrados, because buttresses stand
-    /// behind the extrados, and midway between the joints on either side.
+    /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
+    /// joints, because buttresses stand behind the extrados.
     fn beside(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
         let out = 30.0 / (self.place.scale * self.of.model.length_m());
         let at = |section: f64, edge: Edge, out: f64| {

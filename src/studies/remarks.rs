@@ -10,7 +10,7 @@ use super::ending::{Ending, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::scenario::{Hinges, Scenario};
 
-/// A case of a study that failed or is uncertain, as results list it.
+/// A failed or uncertain case, as results list it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Remark {
     /// The case, in words.
@@ -28,7 +28,7 @@ impl Remark {
     }
 }
 
-/// Remarks of a study on its cases in addition to their rows.
+/// Failed and uncertain cases of a study, and the steps of its histories.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Remarks {
     /// The cases that failed, with the reasons.
@@ -61,7 +61,7 @@ struct Extent {
 }
 
 impl Extent {
-    /// With one more value.
+    /// Returns the extent with one more value.
     fn with(extent: Option<Self>, value: f64) -> Option<Self> {
         let ends = extent.map_or((value, value), |Self { min, max }| {
             (min.min(value), max.max(value))
@@ -72,7 +72,7 @@ impl Extent {
 }
 
 impl Remarks {
-    /// Notes how a case ended.
+    /// Adds the ending of a case, or the reason of its failure.
     pub(crate) fn note(&mut self, case: impl Fn() -> String, ended: Result<&Ending, &str>) {
         let ending = match ended {
             Ok(ending) => ending,
@@ -84,7 +84,7 @@ impl Remarks {
         self.note_history(ending);
     }
 
-    /// Notes whether a history has a verdict, and the lengths of its steps.
+    /// Counts a history with or without a verdict, and adds the lengths of its steps.
     pub(crate) fn note_history(&mut self, ending: &Ending) {
         self.histories += 1;
         self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
@@ -101,24 +101,24 @@ impl fmt::Display for Remark {
     }
 }
 
-/// The limit of studies with four links, which do not compute the line of thrust. The program and the Python package issue it, so it
-/// names no options.
+/// Caveat of studies with four links: studies do not compute the thrust line. The text names no options, because the Python package prints it
+/// too.
 const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, unless the thrust line stays inside the arch, which is not \
                           checked here: check it in single runs, and compare with free hinges";
 
-/// The limit of the results of many cases; `None` if the model of motion is not four links of an arch.
+/// Returns the four-link caveat; `None` if the model of motion is not four links of an arch.
 pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
     let four = scenario.motion.hinges() == Hinges::Four && scenario.structure.thrusts();
     four.then_some(FOUR_LINKS)
 }
 
-/// The four-link caveat among the warnings of a study, if it applies.
+/// Returns the four-link caveat if it is among the warnings of a study.
 pub(crate) fn rough_guide_of(warnings: &[String]) -> Option<&'static str> {
     let given = warnings.iter().any(|warning| warning == FOUR_LINKS);
     given.then_some(FOUR_LINKS)
 }
 
-/// Warnings about the results of many cases: unlikely numbers of the scenario, and the limit of four links.
+/// Returns warnings about the results of many cases: unlikely numbers of the scenario, and the four-link caveat.
 #[must_use]
 pub fn warnings(scenario: &Scenario) -> Vec<String> {
     let mut warnings = scenario.unlikely();
@@ -142,7 +142,7 @@ pub(crate) struct CaseSummary<'a, D> {
 }
 
 impl<'a, D> CaseSummary<'a, D> {
-    /// The summary, with a warning of cases without a verdict, and with details of the study.
+    /// Makes the summary, with a warning about cases without a verdict and with details of the study.
     pub(crate) fn new(
         scenario: &Scenario,
         cases: usize,
@@ -163,25 +163,25 @@ impl<'a, D> CaseSummary<'a, D> {
     }
 }
 
-/// Number of cases that ended too early for a verdict, and what to do, in words; `None` if none did.
+/// Returns the number of cases that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
 pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<String> {
     let what_to_do = Ending::INCOMPLETE;
     (incomplete > 0).then(|| format!("no verdict from {incomplete} of {of} {cases}; {what_to_do}"))
 }
 
 impl Remarks {
-    /// Number of histories that ended too early for a verdict, and what to do, in words; `None` if none did.
+    /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
         no_verdict(self.incomplete, self.histories, "histories")
     }
 
-    /// Number of failed cases, the reason of the first, and the file that lists the others, in words; `None` if none failed.
+    /// Returns the number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
         let failures = first_of(&self.failures, file)?;
         Some(format!("failed: {}; {failures}", self.failures.len()))
     }
 
-    /// Number of uncertain cases and the file that lists them, in words; `None` if none is.
+    /// Returns the first uncertain case and the file that lists the others, in words; `None` if no case is uncertain.
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let cases = first_of(&self.uncertain, file)?;
         Some(format!(
@@ -190,7 +190,7 @@ impl Remarks {
     }
 }
 
-/// The first remark, and which file lists the others; `None` without remarks.
+/// Returns the first remark, and the file that lists the others, in words; `None` without remarks.
 fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
     let (first, others) = remarks.split_first()?;
     let listed = match others {
@@ -200,10 +200,10 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
     Some(format!("the first: {first}{listed}"))
 }
 
-/// Words for an outcome, and their position in the list of counts.
+/// Position of an outcome in the list of counts, and its name.
 pub(crate) type Words = (u8, &'static str);
 
-/// Outcome of a case, in words.
+/// Returns the outcome of a case in words.
 pub(crate) const fn in_words(ending: &Ending) -> Words {
     match (&ending.uncertain, ending.outcome) {
         (Some(_), _) => (5, "uncertain"),
@@ -216,7 +216,7 @@ pub(crate) const fn in_words(ending: &Ending) -> Words {
     }
 }
 
-/// The number of cases with each outcome, in words.
+/// Returns the number of cases with each outcome, in words.
 pub(crate) fn counts(cases: impl Iterator<Item = Words>) -> String {
     let mut counts = BTreeMap::new();
     for words in cases {

@@ -1,4 +1,4 @@
-//! The results of a study from all its rows: files and words, identical for the program, for merged parts and for Python.
+//! Files and words of a study from its rows, identical for the program, for merged parts and for Python.
 
 use std::fmt;
 
@@ -14,10 +14,10 @@ use crate::output::template::render;
 use crate::output::{Figure, Folder, OutputError, pretty};
 use crate::scenario::ScenarioErrors;
 
-/// Why a study has no results.
+/// Errors of studies.
 #[derive(Debug, Error)]
 pub enum StudyError {
-    /// The scenario or an option does not describe it.
+    /// The scenario or an option does not fit the study.
     #[error("{0}")]
     Scenario(String),
     /// It could not be computed.
@@ -38,23 +38,23 @@ pub enum StudyError {
 }
 
 impl StudyError {
-    /// A scenario that does not describe the study, for this reason.
+    /// Returns the error for a scenario that does not fit the study.
     pub(super) fn scenario(reason: impl fmt::Display) -> Self {
         Self::Scenario(reason.to_string())
     }
 
-    /// A computation that failed, for this reason.
+    /// Returns the error for a failed computation.
     pub(super) fn failed(reason: impl fmt::Display) -> Self {
         Self::Failed(reason.to_string())
     }
 }
 
-/// A study whose rows become results.
+/// A study that makes results of its rows.
 pub trait Reported: Study {
     /// The names of all files that its results may have, the seal last.
     const FILES: &'static [&'static str];
 
-    /// The files and words for all rows.
+    /// Makes files and words of all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -64,19 +64,19 @@ pub trait Reported: Study {
 /// The results of a study.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Results {
-    /// Files by their names; a folder that has the last of them is complete.
+    /// Names and contents of the files. A folder that contains the last file is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// The summary in words, line by line.
+    /// The summary in words.
     pub words: String,
-    /// The summary for programs, with all numbers.
+    /// The summary as JSON.
     pub summary: Value,
-    /// The largest rotation of each case of a suite or sample of a run, in radians, infinite if it overturned, to be
-    /// [compared](super::peaks) with other models of motion.
+    /// The largest rotation of each case of a suite or sample of a run, in radians, for the [comparison](super::peaks) of models of motion.
+    /// Infinite if the case overturned.
     pub peaks: Vec<f64>,
 }
 
 impl Results {
-    /// The results with these files: the summary, which is JSON, and the contents of the others, in the order of their names.
+    /// Makes results of a summary, which becomes the JSON file, and of the contents of the other files, in the order of `names`.
     ///
     /// # Errors
     /// When a number of the summary is not finite.
@@ -103,13 +103,13 @@ impl Results {
         })
     }
 
-    /// Names of the files, in their order.
+    /// Returns the names of the files, in their order.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         self.files.iter().map(|(name, _)| *name).collect()
     }
 
-    /// Writes the files into a folder that was opened for them; it is complete afterwards.
+    /// Writes the files into a folder and marks the folder as complete.
     ///
     /// # Errors
     /// When the system reports an error.
@@ -121,7 +121,7 @@ impl Results {
     }
 }
 
-/// An answer without files, for programs and for people.
+/// A result without files, as JSON and in words.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// All numbers.
@@ -131,7 +131,7 @@ pub struct Answer {
 }
 
 impl Answer {
-    /// The answer of a summary, whose words are a template.
+    /// Makes an answer of a summary, whose words are a template.
     pub(super) fn of(summary: &(impl Serialize + Template)) -> Result<Self, OutputError> {
         Ok(Self {
             json: summary_of(summary)?,
@@ -145,14 +145,14 @@ impl Answer {
 pub struct Style {
     /// Width of the pictures, and the size of their text.
     pub figure: Figure,
-    /// Whether surviving cells of a map are coloured by their largest rotation over the critical one, if that is known.
+    /// Colours surviving cells of a map by the ratio of the largest to the critical rotation, if the critical rotation is known.
     pub by_peak: bool,
     /// Factors that make the axes of a map, pulse duration and amplitude, dimensionless; `None`: the axes keep their units.
     pub factors: Option<[f64; 2]>,
 }
 
 impl Style {
-    /// A map coloured by outcome, with the units of its axes.
+    /// Returns the style of a map coloured by outcome, with units on its axes.
     #[must_use]
     pub const fn of(figure: Figure) -> Self {
         Self {

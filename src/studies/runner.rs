@@ -1,4 +1,4 @@
-//! Computes the cases of a study on all processors, and shows progress; the work can be cancelled and resumed.
+//! Computes the cases of a study on all processors and reports progress. The work can be cancelled and resumed.
 //!
 //! ```
 //! use std::ops::ControlFlow;
@@ -53,41 +53,41 @@ use thiserror::Error;
 use super::part::{Header, PartError, PartFile, Rows, Shard};
 use crate::scenario::Scenario;
 
-/// Many cases, each a function of its index alone. So they can be computed in any order, by any number of threads,
-/// on several machines, at any time.
+/// A study: many cases, each a function of its index alone. So the cases can be computed in any order, by any number of threads, on several
+/// machines.
 pub trait Study: Sync {
-    /// The result of a case. A case that fails has a row as well, with the reason.
+    /// The result of a case. A failed case also has a row; the row holds the reason.
     type Row: Serialize + DeserializeOwned + Send;
 
     /// Name of the study, in part files and in their names.
     const NAME: &'static str;
 
-    /// The scenario whose cases these are, if there is one.
+    /// Returns the scenario of the cases; `None` for a study without a scenario.
     fn base(&self) -> Option<&Scenario> {
         None
     }
 
-    /// The scenario, with every default filled in. The rows depend on it and on the inputs, and on nothing else.
+    /// Returns the scenario as TOML with every default filled in. Apart from options and inputs, the rows depend only on the scenario.
     fn scenario(&self) -> String {
         self.base().map_or(String::new(), Scenario::to_toml)
     }
 
-    /// Options of the study, if there are any. The rows depend on them.
+    /// Returns the options of the study, null without options. The rows depend on them.
     fn options(&self) -> Value {
         Value::Null
     }
 
-    /// Other things on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
+    /// Returns the other input on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
     fn inputs(&self) -> Vec<String> {
         self.base().map_or(Vec::new(), Scenario::record_checksums)
     }
 
-    /// Warnings about the scenario that a merged study could not find again, because its files may have moved.
+    /// Returns warnings about the scenario that `merge` cannot recompute, because the files of the scenario may have moved.
     fn warnings(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Number of cases.
+    /// Returns the number of cases.
     fn count(&self) -> usize;
 
     /// Computes the row of a case; `index` is below [`Study::count`]. A study implements this method or [`Study::rows`].
@@ -95,7 +95,7 @@ pub trait Study: Sync {
         self.rows(&[index]).remove(0)
     }
 
-    /// The family of a case: cases of one family are computed faster together. `None`: the case is computed alone.
+    /// Returns the family of a case; `None` if the case is computed alone. Cases of one family are computed faster together.
     fn family(&self, _index: usize) -> Option<usize> {
         None
     }
@@ -107,7 +107,7 @@ pub trait Study: Sync {
 }
 
 impl Header {
-    /// The header for a shard of a study, with this version of the program.
+    /// Returns the header for a shard of a study, with the version of this program.
     #[must_use]
     pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
         Self {
@@ -166,7 +166,7 @@ pub struct Task<'p> {
     pub resume: bool,
 }
 
-/// The rows of all cases, `None` for a shard; and the file that keeps them until there are results.
+/// The rows of all cases, `None` for a shard, and the part file. The part file is kept until the results are written.
 pub type RowsInFile<R> = (Option<Vec<R>>, PartFile);
 
 /// Computes the rows of studies.
@@ -176,21 +176,21 @@ pub struct Runner {
     pub threads: Option<NonZeroUsize>,
 }
 
-/// Number of cases of a family that are computed together: at least as many as fit side by side, but not so many that threads
-/// wait for one another.
+/// Number of cases of a family that are computed together: at least as many as the vectorized code takes side by side, and few enough that no
+/// thread runs out of work.
 const TOGETHER: RangeInclusive<usize> = 8..=64;
 
-/// How often rows are written and progress is reported.
+/// Interval at which rows are written and progress is reported.
 const TICK: Duration = Duration::from_millis(100);
 
 impl Runner {
-    /// The rows of all cases, in their order, in memory.
+    /// Computes the rows of all cases in memory. Returns them in the order of the cases.
     ///
-    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread. When it
-    /// breaks, cases under way are finished and no others begun.
+    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread. When `watch` returns `Break`, the
+    /// cases under way are finished and no others are started.
     ///
     /// # Errors
-    /// When `watch` breaks or threads cannot be started.
+    /// When `watch` returns `Break` or threads cannot be started.
     pub fn rows<S: Study>(
         &self,
         study: &S,
@@ -201,7 +201,7 @@ impl Runner {
         self.each_of_families(study.count(), family, rows_of, watch)
     }
 
-    /// Computes `row` for every index below `count`, on all threads, and returns the results in order: for work that is not a study.
+    /// Computes `row` for every index below `count` on all threads. Returns the results in order. For work that is not a study.
     ///
     /// # Errors
     /// As [`Runner::rows`].
@@ -231,13 +231,13 @@ impl Runner {
         Ok(rows.into_values().collect())
     }
 
-    /// The rows of the cases of a shard, which are saved in a part file as they are computed: see [`super::part`]. However
-    /// the program ends, the file can be resumed. Returns the rows, unless they are those of a part of the cases, and the file.
+    /// Computes the rows of a shard and saves them in a part file as they are computed (see [`super::part`]). The file can be resumed after the
+    /// program was killed. Returns the file, and the rows if the shard is the whole study.
     ///
-    /// `watch` is as in [`Runner::rows`]. Whenever it is called, all rows that it counts are in the file.
+    /// `watch` is as in [`Runner::rows`]. All rows that its progress counts are already in the file.
     ///
     /// # Errors
-    /// When `watch` breaks, threads cannot be started, or the file cannot be used.
+    /// When `watch` returns `Break`, threads cannot be started, or the file cannot be used.
     pub fn rows_in<S: Study>(
         &self,
         study: &S,
@@ -288,7 +288,7 @@ impl Runner {
         let cancelled = AtomicBool::new(false);
         let (sender, receiver) = mpsc::channel();
         let compute = || {
-            // Cases cost from microseconds to seconds, so each group is dealt out on its own.
+            // Cases cost from microseconds to seconds, so threads take groups one by one.
             let todo = todo.par_iter().with_max_len(1);
             todo.try_for_each_with(sender, |sender, indices| {
                 if cancelled.load(Ordering::Relaxed) {
@@ -319,7 +319,7 @@ impl Runner {
                 if over {
                     break;
                 }
-                // Rows that arrive in the meantime are written together; this thread need not wake for each.
+                // Writes the rows of an interval together, so this thread does not wake up for each row.
                 thread::park_timeout(TICK);
                 let mut new = Vec::new();
                 over = loop {
@@ -343,7 +343,7 @@ impl Runner {
     }
 }
 
-/// The cases in the groups in which they are computed: each alone, or with others of its family.
+/// Divides the cases into groups that are computed together. A group holds cases of one family, or a single case.
 fn in_groups(
     cases: Vec<usize>,
     family: impl Fn(usize) -> Option<usize>,

@@ -1,8 +1,8 @@
-//! Numbers about samples: shares with intervals, quantiles, and random numbers that are the same everywhere.
+//! Statistics of samples: shares with confidence intervals, quantiles, and random numbers that are the same on every machine.
 
 use serde::Serialize;
 
-/// Number of standard deviations on either side of the mean that enclose 95 % of a normal distribution.
+/// Number of standard deviations on each side of the mean that enclose 95 % of a normal distribution.
 const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
 /// Number of samples with a property, and the estimated share among all possible samples.
@@ -16,13 +16,13 @@ pub struct Share {
     pub share: f64,
     /// Lower end of the 95 % confidence interval.
     pub low: f64,
-    /// Upper end of that interval.
+    /// Upper end of the 95 % confidence interval.
     pub high: f64,
 }
 
 impl Share {
-    /// With the interval of Wilson (1927), which holds for independent samples. Samples of a low-discrepancy sequence are spread
-    /// more evenly, so the interval is on the safe side. `None` if there are no samples.
+    /// Computes the share and the interval of Wilson (1927), which holds for independent samples. Samples of a low-discrepancy sequence are more
+    /// even, so the interval is conservative. `None` without samples.
     #[must_use]
     pub fn of(count: usize, of: usize) -> Option<Self> {
         if of == 0 {
@@ -38,26 +38,26 @@ impl Share {
             count,
             of,
             share,
-            // The ends are exact if all or none have it.
+            // The ends are exactly 0 and 1 if no sample or every sample has the property.
             low: if count == 0 { 0.0 } else { low },
             high: if count == of { 1.0 } else { high },
         })
     }
 
-    /// The share and the ends of its interval.
+    /// Returns the share and both ends of its interval.
     pub(super) const fn numbers(&self) -> [f64; 3] {
         [self.share, self.low, self.high]
     }
 }
 
-/// These values, the smallest first.
+/// Sorts values in ascending order.
 pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.into_iter().collect();
     values.sort_by(f64::total_cmp);
     values
 }
 
-/// The finite values, ascending, each with the share of all values up to it.
+/// Returns the finite values in ascending order, each with the share of all values up to it.
 pub(super) fn shares_up_to(values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
     let values = ascending(values);
     let all = values.len() as f64;
@@ -66,15 +66,15 @@ pub(super) fn shares_up_to(values: impl IntoIterator<Item = f64>) -> Vec<(f64, f
     finite.zip(shares).collect()
 }
 
-/// Quantile of ascending values for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n` (Hazen);
-/// between neighbours it is interpolated linearly. It is infinite if a neighbour is infinite, and `None` without values.
+/// Computes a quantile of ascending values, for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n`
+/// (Hazen). Quantiles between neighbours are interpolated linearly. Infinite if a neighbour is infinite; `None` without values.
 #[must_use]
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
     between(ascending, part, |low, high, way| low + way * (high - low))
 }
 
-/// Fractile of ascending values of at least 0, as [`quantile`], but interpolated in the logarithm: strengths and peaks scatter by
-/// ratios. It is 0 if its lower neighbour is 0.
+/// Computes a fractile of ascending values of at least 0 as [`quantile`] does, but interpolates logarithms: strengths and peaks scatter by
+/// ratios. 0 if the lower neighbour is 0.
 #[must_use]
 pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
     between(ascending, part, |low, high, way| {
@@ -94,7 +94,7 @@ fn between(
 ) -> Option<f64> {
     let last = ascending.len().checked_sub(1)?;
     let place = (part * ascending.len() as f64 - 0.5).clamp(0.0, last as f64);
-    // A rounding error must not reach for the next value, which may be infinite.
+    // A rounding error must not include the next value, which may be infinite.
     let below = (place + 1e-9).floor();
     let index = below as usize;
     let (low, way) = (ascending[index], place - below);
@@ -112,7 +112,7 @@ fn between(
 /// The quantiles of bands: 5 %, the median and 95 %.
 pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// The ends and the median of the band, for values in any order, by [`quantile`] or [`fractile`].
+/// Computes the 5 % quantile, the median and the 95 % quantile of values in any order, by [`quantile`] or [`fractile`]. `None` without values.
 #[must_use]
 pub fn band(values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Option<[f64; 3]> {
     let values = ascending(values);
@@ -120,7 +120,7 @@ pub fn band(values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Optio
     Some([low?, median?, high?])
 }
 
-/// Ranks from 1; equal values share the mean of their ranks.
+/// Computes ranks, from 1. Equal values share the mean of their ranks.
 #[must_use]
 pub fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
@@ -137,7 +137,7 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
     ranks
 }
 
-/// Mean and variance.
+/// Computes mean and variance.
 #[must_use]
 pub fn moments(values: &[f64]) -> [f64; 2] {
     let n = values.len() as f64;
@@ -146,7 +146,7 @@ pub fn moments(values: &[f64]) -> [f64; 2] {
     [mean, squares.sum::<f64>() / n]
 }
 
-/// Pearson's correlation of two lists; `None` if one of them does not vary.
+/// Computes Pearson's correlation of two lists; `None` if one list does not vary.
 #[must_use]
 pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = pairs.clone().count() as f64;
@@ -164,7 +164,7 @@ pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f6
 /// Number of bootstrap replicates.
 pub const REPLICATES: usize = 300;
 
-/// Draws indices below `count` with replacement, `count` at a time, [`REPLICATES`] times; the same ones on every machine.
+/// Draws `count` indices below `count` with replacement, [`REPLICATES`] times. The indices are the same on every machine.
 pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
     let mut state = 0_u64;
     // SplitMix64 (Steele, Lea and Flood 2014).
@@ -179,7 +179,7 @@ pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..REPLICATES).map(move |_| (0..count).map(|_| index()).collect())
 }
 
-/// The ends of the 95 % interval of bootstrapped values.
+/// Computes the ends of the 95 % interval of bootstrapped values; `None` without values.
 #[must_use]
 pub fn interval(values: Vec<f64>) -> Option<[f64; 2]> {
     let values = ascending(values);

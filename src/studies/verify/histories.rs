@@ -1,8 +1,8 @@
 //! The dynamic route (C8.7.1.2.1.9): histories of the mechanism under records.
 //!
-//! Whichever mechanism moves after impacts, the displacement of the oscillator is that of the common centre of gravity: the sum
-//! of the masses times their horizontal displacements, divided by the participating mass `M*` of the mechanism that starts to that
-//! side. For that mechanism it is `d = d_C / e*`, with the common centre of its masses as control point.
+//! After impacts the mechanism changes. The displacement of the oscillator is always that of the common centre of gravity: the sum of masses
+//! times horizontal displacements, divided by the participating mass `M*` of the mechanism that starts to that side. For that mechanism it is `d
+//! = d_C / e*`, with the common centre of its masses as control point.
 
 use std::collections::BTreeMap;
 
@@ -22,44 +22,44 @@ use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::statistics::{bootstrap, interval};
 
-/// With this many records or more the mean counts, otherwise the largest (NTC 2018, § 7.3.5).
+/// Smallest number of records for which the mean of the peaks counts. With fewer records the largest peak counts (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;
-/// Allowed ratios of the mean spectrum of records to that of the code, the least and the largest (§ 3.2.3.6).
+/// Smallest and largest allowed ratio of the mean spectrum of records to that of the code (§ 3.2.3.6).
 pub const SPECTRUM_MARGIN: [f64; 2] = [0.9, 1.3];
 /// Shortest period at which spectra are compared, in seconds.
 const FROM_S: f64 = 0.15;
-/// Number of intervals between the periods at which they are compared.
+/// Number of intervals between the periods at which spectra are compared.
 const PERIODS: u32 = 60;
-/// Interval at which peaks are looked for, in seconds. The error of a peak is about half its acceleration, at most a few m/s2, times
-/// the square of half the interval.
+/// Output interval of the histories, in seconds. The error of a peak is about half its acceleration, at most a few m/s2, times the square of
+/// half the interval.
 const STEP_S: f64 = 0.002;
-/// Least time after a record, in seconds, that is followed.
+/// Shortest time after a record until which histories are computed, in seconds.
 const AFTER_S: f64 = 10.0;
 
-/// The largest displacement under a record to one side.
+/// The largest displacement to one side under a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Peak {
-    /// In metres; `None` if the structure overturns to that side, or a history ended too early.
+    /// The largest displacement, in metres; `None` if the structure overturns to that side, or a history ended too early.
     pub peak_m: Option<f64>,
-    /// Whether it overturned to that side.
+    /// True if the structure overturned to that side.
     pub overturned: bool,
-    /// Whether a history ended too early for a verdict: a later peak may be larger.
+    /// True if a history ended too early for a verdict: a later peak may be larger.
     pub incomplete: bool,
-    /// The largest displacement that was computed, in metres; meaningless if the structure overturns to that side.
+    /// The largest computed displacement, in metres; meaningless if the structure overturns to that side.
     #[serde(skip)]
     pub displacement_m: f64,
 }
 
-/// The peaks under a record that acts in either direction; the larger peak counts.
+/// The peaks under a record that acts in both directions in turn; the larger peak counts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordPeaks {
-    /// The file.
+    /// Name of the record file.
     pub file: String,
-    /// Checksum of its samples.
+    /// Checksum of the samples.
     pub crc32: String,
-    /// Peak acceleration, in g.
+    /// Peak acceleration of the record, in g.
     pub peak_g: f64,
-    /// To the right and to the left.
+    /// Peaks to the right and to the left.
     #[serde(flatten)]
     pub peaks: Sides<Peak>,
 }
@@ -67,65 +67,65 @@ pub struct RecordPeaks {
 /// The results of all records to one side.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HistorySide {
-    /// The restitution of the first impact after a sway to that side; `None` if it stops the structure.
+    /// Restitution of the first impact after a sway to that side; `None` if the impact stops the structure.
     pub restitution: Option<f64>,
-    /// Mean of the peaks, or the largest if there are few records; `None` if one overturns or has no verdict.
+    /// Mean of the peaks in metres, or the largest peak if there are few records; `None` if a record overturns the structure or has no verdict.
     pub demand_m: Option<f64>,
-    /// Ends of the 95 % interval of the mean, in metres, by bootstrap over the records: after impacts peaks scatter. `None` if the
-    /// largest peak counts, or there is no demand.
+    /// Ends of the 95 % interval of the mean, in metres, by bootstrap over the records. `None` if the largest peak counts, or there is no
+    /// demand.
     pub mean_interval_m: Option<[f64; 2]>,
-    /// Displacement that may be reached, in metres.
+    /// Allowed displacement, in metres.
     pub capacity_m: f64,
-    /// Capacity divided by the confidence factor FC, in metres.
+    /// Allowed displacement divided by the confidence factor FC, in metres.
     pub capacity_over_fc_m: f64,
-    /// Ultimate displacement, in metres, which no record may exceed.
+    /// Ultimate displacement, in metres. No record may exceed it.
     pub d0_m: f64,
-    /// The number of records that exceed it.
+    /// Number of records that exceed `d0_m`.
     pub records_beyond_d0: usize,
-    /// The number of records that exceed it divided by FC.
+    /// Number of records that exceed `d0_m` divided by FC.
     pub records_beyond_d0_over_fc: usize,
-    /// Whether the side passes; `None` if that depends on a history without a verdict.
+    /// True if the side passes; `None` if that depends on a history without a verdict.
     pub passed: Option<bool>,
-    /// Whether the side passes with capacities divided by FC.
+    /// True if the side passes with capacities divided by FC; `None` if that depends on a history without a verdict.
     pub passed_over_fc: Option<bool>,
-    /// Whether a record overturns the structure to that side.
+    /// True if a record overturns the structure to that side.
     #[serde(skip)]
     pub overturned: bool,
 }
 
 named! {
-    /// The peak that counts.
+    /// The peak that is compared with the capacity.
     pub enum Counted {
         /// The mean, of at least [`FOR_THE_MEAN`] records.
         Mean = "mean of the peaks",
-        /// The largest.
+        /// The largest peak.
         Largest = "largest peak",
     }
 }
 
-/// The mean 5 % spectrum of the records over the demanded one.
+/// The ratio of the mean 5 % spectrum of the records to the demanded spectrum.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeanSpectrum {
     /// The shortest period of the comparison, in seconds.
     pub from_s: f64,
     /// The longest period of the comparison, in seconds.
     pub to_s: f64,
-    /// The least ratio; `None` if the demanded spectrum is unknown at these periods.
+    /// The smallest ratio; `None` if the demanded spectrum is unknown at these periods.
     pub least_ratio: Option<f64>,
-    /// The largest ratio.
+    /// The largest ratio; `None` if the demanded spectrum is unknown at these periods.
     pub largest_ratio: Option<f64>,
-    /// Whether the ratios are within `SPECTRUM_MARGIN`.
+    /// True if the ratios are within `SPECTRUM_MARGIN`; `None` if they are unknown.
     pub fits: Option<bool>,
 }
 
 /// The histories of a limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histories {
-    /// The peak that counts.
+    /// The peak that is compared with the capacity.
     pub demand: Counted,
-    /// Whether all sides pass; `None` if that depends on a history without a verdict.
+    /// True if all sides pass; `None` if that depends on a history without a verdict.
     pub passed: Option<bool>,
-    /// Whether all sides pass with capacities divided by FC.
+    /// True if all sides pass with capacities divided by FC; `None` if that depends on a history without a verdict.
     pub passed_over_fc: Option<bool>,
     /// Number of records with a history that ended too early for a verdict.
     pub incomplete: usize,
@@ -138,7 +138,7 @@ pub struct Histories {
     pub sides: Sides<HistorySide>,
 }
 
-/// Whether both sides pass. A side without a verdict does not hide one that fails.
+/// Returns true if both sides pass. A failed side decides even if the other has no verdict.
 fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool>) -> Option<bool> {
     match [passed(&sides.right), passed(&sides.left)] {
         [Some(false), _] | [_, Some(false)] => Some(false),
@@ -147,7 +147,7 @@ fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool
 }
 
 impl HistorySide {
-    /// Whether histories pass without and with FC, in words.
+    /// Returns the verdict without and with FC, in words.
     #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.passed, self.passed_over_fc) {
@@ -160,7 +160,7 @@ impl HistorySide {
     }
 }
 
-/// The histories of a limit state, if it has records.
+/// Computes the histories of a limit state; `None` if it has no records.
 pub(super) fn histories(
     basis: &Basis<'_>,
     (state, rule, spectrum): (LimitState, &StateRule, &Spectrum),
@@ -183,7 +183,7 @@ pub(super) fn histories(
         )),
         error => failed(error.to_string()),
     })?;
-    // The reader refuses records where one side alone is checked.
+    // The reader rejects records if only one side is checked.
     let mechanisms = Sides::of(|sway| &mechanisms[&sway]);
     if let Some(why) = mechanisms.iter().find_map(|(_, one)| one.no_curve.clone()) {
         return Err(failed(why));
@@ -234,7 +234,7 @@ pub(super) fn histories(
     }))
 }
 
-/// The larger peaks to the right and to the left of a record that acts in either direction.
+/// Computes the larger peaks to the right and to the left of a record that acts in both directions in turn.
 fn record_peaks(
     basis: &Basis<'_>,
     model: &dyn MechanismModel,
@@ -297,7 +297,7 @@ fn history_side(
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
         let exceeded = peaks.iter().filter(exceeds).count();
         let passes = !overturned && exceeded == 0 && least_m <= capacity_m / divisor;
-        // Later peaks of an incomplete history can only make it worse.
+        // Later peaks of an incomplete history can only be larger, so a failure is final.
         (exceeded, (!passes || !incomplete).then_some(passes))
     });
     HistorySide {
@@ -315,7 +315,7 @@ fn history_side(
     }
 }
 
-/// The largest displacements of a history to the right and to the left.
+/// Computes the largest displacements of a history to the right and to the left.
 fn peaks(
     model: &dyn MechanismModel,
     ground: &GroundMotion,
@@ -323,7 +323,7 @@ fn peaks(
     participating_kg: Sides<f64>,
 ) -> Result<Sides<Peak>, SimulationError> {
     let history = model.history(ground, request)?;
-    // The chain of mechanisms is the one that begins with the side of the latest uplift.
+    // The chain of mechanisms starts with the side of the latest uplift.
     let mut first = Sway::Right;
     let links = history.events.iter().map(|event| {
         if event.kind == EventKind::Uplift {
@@ -357,7 +357,8 @@ fn peaks(
     Ok(peaks)
 }
 
-/// Least and largest ratio of the mean 5 % spectrum of records to another spectrum.
+/// Computes the smallest and the largest ratio of the mean 5 % spectrum of records to another spectrum; `None` if the other spectrum is unknown
+/// at a period.
 fn spectrum_ratios(
     records: &[Vec<(f64, f64)>],
     spectrum: &Spectrum,

@@ -1,4 +1,4 @@
-//! The mechanism to one side as a chain of rigid bodies: its onset, its masses, and its capacity curve if it has one.
+//! The mechanism to one side as a chain of rigid bodies: its onset, its masses, and its capacity curve if there is one.
 
 use std::collections::BTreeMap;
 
@@ -29,26 +29,26 @@ pub struct PlacedHinge {
     /// The hinge.
     #[serde(flatten)]
     pub hinge: Hinge,
-    /// Its position in the undeformed structure, in metres.
+    /// Horizontal position in the undeformed structure, in metres.
     pub x_m: f64,
-    /// Its position in the undeformed structure, in metres.
+    /// Vertical position in the undeformed structure, in metres.
     pub y_m: f64,
 }
 
-/// A rigid body of a mechanism, with its virtual displacement for one of the common centre.
+/// A rigid body of a mechanism, with its virtual displacement per unit displacement of the common centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Body {
-    /// Its mass, with the fill and loads that it carries, in kg.
+    /// Mass of the body, with the fill and loads that it carries, in kg.
     pub mass_kg: f64,
-    /// Its weight, in kN.
+    /// Weight of the body, in kN.
     pub weight_kn: f64,
-    /// Its centre of gravity in the undeformed structure, in metres.
+    /// Horizontal position of the centre of gravity in the undeformed structure, in metres.
     pub x_m: f64,
-    /// Its centre of gravity in the undeformed structure, in metres.
+    /// Vertical position of the centre of gravity in the undeformed structure, in metres.
     pub y_m: f64,
-    /// Virtual displacement of its centre in the direction of the sway.
+    /// Virtual displacement of the centre in the direction of the sway.
     pub delta_x: f64,
-    /// Virtual displacement of its centre upwards.
+    /// Virtual displacement of the centre upwards.
     pub delta_y: f64,
     /// Virtual rotation towards the side of the sway, per metre.
     pub rotation_per_m: f64,
@@ -57,22 +57,22 @@ pub struct Body {
 /// A tie of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HeldTie {
-    /// Its force at rest, in kN.
+    /// Prestress of the tie, in kN.
     pub force_kn: f64,
-    /// Its lengthening.
+    /// Elongation of the tie for the virtual displacement of the mechanism.
     pub delta_l: f64,
 }
 
 /// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mechanism {
-    /// Its hinges from left to right.
+    /// Hinges from left to right.
     pub hinges: Vec<PlacedHinge>,
-    /// Its rigid bodies from left to right; the virtual displacement of their common centre is one.
+    /// Rigid bodies from left to right; the virtual displacement of their common centre is one.
     pub bodies: Vec<Body>,
-    /// Its ties, with their lengthening for that displacement.
+    /// Ties, with their elongation for that displacement.
     pub ties: Vec<HeldTie>,
-    /// Sum of the forces of ties at rest times their lengthening, in kN.
+    /// Sum of the tie forces at rest times their elongation, in kN.
     pub sum_f_delta_l_kn: f64,
     /// Sum of the weights, in kN.
     pub sum_p_kn: f64,
@@ -84,9 +84,9 @@ pub struct Mechanism {
     pub sum_p_delta_y_kn: f64,
     /// Load multiplier [C8.7.1.1].
     pub alpha0: f64,
-    /// All of the mass that moves, in kg.
+    /// Moving mass, in kg.
     pub moving_mass_kg: f64,
-    /// Participating mass `M*` as a fraction of the mass that moves.
+    /// Participating mass `M*` as a fraction of the moving mass.
     pub e_star: f64,
     /// Participating mass `M*` [C8.7.1.5], in kg.
     pub m_star_kg: f64,
@@ -96,33 +96,34 @@ pub struct Mechanism {
     pub d_c0_m: Option<f64>,
     /// Displacement of the oscillator at the unstable equilibrium, in metres.
     pub d0_m: Option<f64>,
-    /// Displacement of the crown (or the top) at the unstable equilibrium, in metres; `None` also if it does not move to that side.
+    /// Displacement of the crown (or the top) at the unstable equilibrium, in metres; `None` without a curve, or if the crown does not move to
+    /// that side.
     pub d_c0_crown_m: Option<f64>,
     /// Displacement of the oscillator at the unstable equilibrium with the crown as control point, in metres.
     pub d0_crown_m: Option<f64>,
     /// Displacement at which the elastic branch meets the divided curve, in metres; `None` if walls hold the structure.
     pub d_y_m: Option<f64>,
-    /// Divided acceleration at that displacement, in g.
+    /// Divided acceleration at displacement `d_y_m`, in g; `None` if walls hold the structure.
     pub a_y_over_fc_g: Option<f64>,
-    /// The largest friction coefficient needed up to the furthest displacement that a limit state allows.
+    /// The largest friction coefficient needed up to the largest displacement that a limit state allows.
     pub friction: Option<f64>,
     /// Displacements in metres and accelerations in g of the oscillator.
     pub curve_m_g: Option<Vec<[f64; 2]>>,
     /// The reason why there is no capacity curve.
     pub no_curve: Option<String>,
-    /// The body to which each block of a row belongs; used if there is no curve.
+    /// The body to which each block of a row belongs; for pictures of a mechanism without a curve.
     #[serde(skip)]
     pub body_of_block: Vec<Option<usize>>,
-    /// Its motion up to the unstable equilibrium.
+    /// Motion of the mechanism up to the unstable equilibrium; `None` without a capacity curve.
     #[serde(skip)]
     pub way: Option<Way>,
-    /// The acceleration at which joints of the allowed friction coefficient slide first, in g, by the associated bound; `None` if they do
-    /// not, or if the motion is known.
+    /// The acceleration at which joints with the allowed friction coefficient first slide, in g, by the associated bound; `None` if they do not
+    /// slide, or if sliding is not checked.
     #[serde(skip)]
     pub slides_at_g: Option<f64>,
 }
 
-/// A mechanism before its virtual displacements have a scale.
+/// A mechanism with virtual displacements of arbitrary scale.
 struct Found {
     hinges: Vec<(Hinge, Vector2<f64>)>,
     bodies: Vec<MovingBody>,
@@ -131,17 +132,17 @@ struct Found {
     way: Result<Way, String>,
 }
 
-/// The motion of a mechanism up to its unstable equilibrium.
+/// The motion of a mechanism up to its unstable equilibrium, as capacity curves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Way {
-    /// With the common centre of its bodies as control point.
+    /// Capacity curve with the common centre of the bodies as control point.
     pub centre: Capacity,
-    /// With the crown (or the top) as control point; `None` if it does not move to that side.
+    /// Capacity curve with the crown (or the top) as control point; `None` if the crown does not move to that side.
     pub crown: Option<Capacity>,
 }
 
 impl Way {
-    /// The motion of bodies that are given by their positions at fractions of the way to the unstable equilibrium.
+    /// Computes the curves of bodies. `displaced` returns their positions at a fraction of the motion up to the unstable equilibrium.
     fn new(
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
@@ -162,7 +163,7 @@ impl Way {
         })
     }
 
-    /// The largest friction coefficient needed up to a fraction of the ultimate displacement.
+    /// Returns the largest friction coefficient needed up to a fraction of the ultimate displacement.
     #[must_use]
     pub fn friction_up_to(&self, part: f64) -> f64 {
         let end_m = part * self.centre.end().oscillator_displacement_m;
@@ -253,7 +254,7 @@ impl Mechanism {
 }
 
 impl Found {
-    /// The mechanism, to one side, of a model that moves as one mechanism.
+    /// Finds the mechanism to one side of a model that moves as one mechanism.
     fn of_model(
         structure: &Structure,
         model: &dyn MechanismModel,
@@ -278,7 +279,7 @@ impl Found {
         })
     }
 
-    /// The mechanism of a row at rest, from limit analysis, and its motion if the row has no ties.
+    /// Finds the mechanism of a row at rest by limit analysis, and its motion if the row has no ties.
     fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, gravity_m_s2: f64) -> Self {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
@@ -294,7 +295,7 @@ impl Found {
             if opens(block) {
                 current = None;
             }
-            // A block that no open joint separates from the supports stands still.
+            // A block between the supports and the first open joint stands still.
             if fastest(block) <= 1e-7 * most {
                 current = None;
                 continue;
@@ -350,8 +351,8 @@ impl Found {
     }
 }
 
-/// The acceleration in g at which the joints of a row slide to one side, by the associated bound, if they slide before any of them
-/// opens; zero if they slide under the weight of the row.
+/// Computes the acceleration in g at which the joints of a row slide to one side, by the associated bound. `None` if a joint opens first; zero
+/// if the joints slide under the weight of the row.
 fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
     match friction::onset(row, coefficient, sway) {
         Ok(Some(onset)) => onset.sliding_governs().then_some(onset.acceleration_g),
@@ -360,12 +361,12 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
     }
 }
 
-/// The mechanisms of a structure to these sides.
+/// Finds the mechanisms of a structure to the checked sides.
 ///
 /// # Errors
-/// When the structure does not stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario
-/// has a friction coefficient, or if there is no curve along which the required friction is known; a linkage that locks is then not
-/// refused, but has [`Mechanism::slides_at_g`].
+/// When the structure cannot stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario has a friction
+/// coefficient, or if there is no curve along which the required friction is known. A linkage that locks by friction is not an error without a
+/// coefficient; it has [`Mechanism::slides_at_g`].
 pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>, NoCheck> {
     let (structure, gravity_m_s2) = (&basis.scenario.structure, basis.gravity_m_s2);
     let coefficient = basis.allowed_friction;

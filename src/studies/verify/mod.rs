@@ -1,9 +1,8 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
-//! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and
-//! capacity curve are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and judgement;
-//! words, notes and the printed page are templates that read it. Where the text of the Circolare leaves a choice, the notes state
-//! the decision.
+//! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and capacity curve
+//! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and verdict; words, notes and the printed
+//! page are templates that read the summary. Where the text of the Circolare leaves a choice, the notes state the decision.
 
 mod histories;
 mod mechanism;
@@ -36,19 +35,19 @@ pub use spectrum::{FloorMode, Ground, Spectrum};
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
 
-/// Why a scenario cannot be checked.
+/// Errors of scenarios that cannot be checked.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCheck {
-    /// There is no demand to compare with.
+    /// There is no demand.
     #[error(
         "the scenario has no [demand]: give it a table, such as\n\n[demand]\nsoil = \"B\"\ntopography = \"T1\"\n\n\
          [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35"
     )]
     NoDemand,
-    /// There is no mechanism to one side.
+    /// There is no mechanism to one side, for this reason.
     #[error("there is no mechanism to check: {0}")]
     NoMechanism(String),
-    /// Sliding has a smaller multiplier than the mechanism without sliding.
+    /// Sliding has a smaller load multiplier than the mechanism without sliding.
     #[error(
         "no check is possible to the {}: with a friction coefficient of {coefficient} joints slide at {at_g:.4} g at most (associated \
          bound), before a mechanism without sliding forms at {alpha0:.4} g, and the least multiplier counts. Check the other \
@@ -65,7 +64,7 @@ pub enum NoCheck {
         /// Load multiplier of the mechanism without sliding.
         alpha0: f64,
     },
-    /// Without a capacity curve only the simplified check is possible.
+    /// There is no capacity curve, for this reason: only the simplified check is possible, and it was not requested.
     #[error(
         "no check is possible: {0}. Without a capacity curve there are the damage limit state and the simplified check of SLV \
          with q (C8.7.1.2.1.7), from the parameters of NTC 2018: give [demand.sld] and [demand.slv]"
@@ -79,12 +78,12 @@ pub enum NoCheck {
         /// The reason.
         why: String,
     },
-    /// A spectrum of points ends too early.
+    /// A spectrum of points ends at too small a period.
     #[error("[demand.{}] {beyond}", .state.name())]
     Beyond {
         /// The limit state.
         state: LimitState,
-        /// The period at which it is needed.
+        /// The period that is needed.
         beyond: Beyond,
     },
 }
@@ -94,11 +93,11 @@ pub enum NoCheck {
 pub struct Margin {
     /// The ground acceleration that the structure resists, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub ag_capacity_g: Option<f64>,
-    /// The ground acceleration demanded, in g.
+    /// The ground acceleration demanded, in g; `None` if a spectrum of points has no peak.
     pub ag_g: Option<f64>,
-    /// The capacity over the demand.
+    /// The ratio of capacity to demand.
     pub zeta_e: f64,
-    /// Whether the capacity reaches the demand.
+    /// True if the capacity reaches the demand.
     pub passed: bool,
 }
 
@@ -120,7 +119,7 @@ pub struct Activation {
     pub capacity_g: f64,
     /// Spectral acceleration demanded, in g.
     pub demand_g: f64,
-    /// The ratio of the two.
+    /// The ratio of capacity to demand.
     #[serde(flatten)]
     pub margin: Margin,
 }
@@ -128,11 +127,11 @@ pub struct Activation {
 /// The simplified check of SLV, by the behaviour factor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Simplified {
-    /// The activation acceleration that is multiplied, as `a_g`, in g.
+    /// The activation acceleration that is multiplied by q, as `a_g`, in g.
     pub activation_ag_g: f64,
     /// The behaviour factor.
     pub q: f64,
-    /// The result.
+    /// The ratio of capacity to demand.
     #[serde(flatten)]
     pub margin: Margin,
 }
@@ -140,36 +139,36 @@ pub struct Simplified {
 /// The check by displacements (SLV, SLC).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ByDisplacement {
-    /// The fraction of the ultimate displacement that belongs to the state, in metres.
+    /// The fraction of the ultimate displacement that the limit state allows, in metres.
     pub reached_m: f64,
-    /// `reached_m` after division: displacement of the oscillator that may be reached, in metres.
+    /// Displacement of the oscillator that is allowed, in metres: `reached_m`, divided.
     pub capacity_m: f64,
-    /// Acceleration at that displacement, after division, in g.
+    /// Acceleration at displacement `reached_m`, divided, in g.
     pub acceleration_g: f64,
-    /// Period at that displacement, in seconds.
+    /// Period at displacement `reached_m`, in seconds.
     pub period_s: f64,
     /// Displacement demand, in metres.
     pub demand_m: f64,
-    /// Lower bound of the demand, in metres, at periods beyond resonance with a building.
+    /// Lower bound of the demand, in metres; `None` unless the period exceeds that of resonance with a building.
     pub resonance_m: Option<f64>,
-    /// Spectral acceleration at that period, in g.
+    /// Spectral acceleration at `period_s`, in g.
     pub demand_acceleration_g: f64,
-    /// The ground acceleration that the structure resists by displacements, as `a_g`, in g.
+    /// The ground acceleration that the structure resists by displacements, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub by_displacement_ag_g: Option<f64>,
-    /// Whether motion starts only at a larger ground acceleration, which then counts.
+    /// True if motion starts only at a larger ground acceleration, which then governs.
     pub activation_governs: bool,
-    /// The capacity `a_g` if the shape of the spectrum varies with `a_g`, in g; `None` if the mechanism is not on the ground, or
+    /// The capacity `a_g` with a spectrum whose shape varies with `a_g`, in g; `None` if the mechanism is not on the ground, or the capacity is
     /// beyond the range of the code.
     pub ag_capacity_following_g: Option<f64>,
     /// `zeta_E` with the crown as control point; `None` if the crown does not move.
     pub zeta_e_crown: Option<f64>,
-    /// The result: the ratio of displacements, or the activation if motion starts only later.
+    /// The governing result: the ratio of displacements, or the activation if motion starts later.
     #[serde(flatten)]
     pub margin: Margin,
     /// The ratio of displacement capacity to demand.
     #[serde(skip)]
     pub by_displacement: Margin,
-    /// The activation acceleration, as `a_g` in g, if it governs.
+    /// The activation acceleration, as `a_g` in g; `None` unless it governs.
     #[serde(skip)]
     pub activation_ag_g: Option<f64>,
 }
@@ -200,7 +199,7 @@ named! {
 }
 
 impl Method {
-    /// Its name in words.
+    /// Returns the name in words.
     const fn words(self) -> &'static str {
         match self {
             Self::Simplified => "q times activation",
@@ -209,11 +208,11 @@ impl Method {
     }
 }
 
-/// A result of a method, with the capacity and the demand that it compares, in a unit.
+/// The result of a method, with capacity and demand in a unit.
 type Compared = (Method, Margin, Option<([f64; 2], &'static str)>);
 
 impl SideCheck {
-    /// The results, the one that governs first: by displacements, if there is a curve, or the activation if it is later.
+    /// Returns the results, the governing one first: by displacements if there is a curve, or the activation if it governs.
     fn results(&self) -> impl Iterator<Item = Compared> {
         let displacement = self.displacement.map(|one| {
             let start = one.activation_ag_g.zip(one.margin.ag_g);
@@ -236,7 +235,7 @@ impl SideCheck {
         [displacement, simplified, activation].into_iter().flatten()
     }
 
-    /// The check that governs.
+    /// Returns the governing method and result; `None` if the side cannot be checked.
     #[must_use]
     pub fn governing(&self) -> Option<(Method, Margin)> {
         let (method, margin, _) = self.results().next()?;
@@ -290,7 +289,7 @@ pub struct StateCheck {
     pub sides: BTreeMap<Sway, SideCheck>,
 }
 
-/// A decision where the text leaves a choice.
+/// A decision where the text of the Circolare leaves a choice.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Decision {
     /// Its name on the page.
@@ -305,7 +304,7 @@ pub struct Decision {
 pub struct Summary {
     /// Name of the program.
     pub program: &'static str,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
     /// Title of the scenario.
     pub title: Option<String>,
@@ -315,7 +314,7 @@ pub struct Summary {
     pub scenario_sha256: String,
     /// Files from which the scenario was read.
     pub files: Vec<InputFile>,
-    /// The least `zeta_E` of the limit states with a result.
+    /// The smallest `zeta_E` of the limit states with a result.
     pub zeta_e: f64,
     /// The verdict on each limit state of the demand.
     pub verdict: BTreeMap<LimitState, Verdict>,
@@ -325,7 +324,7 @@ pub struct Summary {
     pub behaviour_factor: f64,
     /// The sides that are checked.
     pub sides: CheckedSides,
-    /// Period of the elastic vibration before motion, in seconds; `None` if walls hold the structure all along.
+    /// Period of the elastic vibration before motion, in seconds; `None` if walls hold the structure up to the mechanism.
     pub t0_s: Option<f64>,
     /// Gravity, in m/s2.
     pub gravity_m_s2: f64,
@@ -348,7 +347,7 @@ pub struct Summary {
     /// The frame of reference and the place of each tie, in words; empty without ties.
     #[serde(skip)]
     pub tie_places: Vec<String>,
-    /// Whether the left side is the mirror image of the right one, with all their numbers.
+    /// True if the left side is the mirror image of the right one, including all numbers.
     #[serde(skip)]
     pub is_symmetric: bool,
     /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
@@ -356,7 +355,7 @@ pub struct Summary {
     pub top: &'static str,
 }
 
-/// Whether two numbers that describe mirrored sides differ by rounding only.
+/// Returns true if two numbers of mirrored sides differ by rounding errors only.
 fn alike(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }
@@ -371,10 +370,10 @@ struct Basis<'a> {
     allowed_friction: f64,
 }
 
-/// Checks a scenario.
+/// Checks the local mechanisms of a scenario.
 ///
 /// # Errors
-/// When there is no demand, no mechanism or no possible check, or a spectrum of points ends too early.
+/// When there is no demand, no mechanism or no possible check, or a spectrum of points ends at too small a period.
 pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
     let settings = scenario.verify.clone().unwrap_or_default();
@@ -438,7 +437,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
 }
 
 impl Basis<'_> {
-    /// The rule of a limit state; `None` for SLD.
+    /// Returns the rule of a limit state; `None` for SLD.
     fn rule(&self, state: LimitState) -> Option<StateRule> {
         match &self.demand {
             Demand::Points(points) => points.get(&state)?.state,
@@ -446,13 +445,13 @@ impl Basis<'_> {
         }
     }
 
-    /// The largest fraction of the ultimate displacement that any limit state allows.
+    /// Returns the largest fraction of the ultimate displacement that a limit state allows.
     fn furthest_part(&self) -> f64 {
         let rules = self.demand.states().filter_map(|state| self.rule(state));
         rules.map(|rule| rule.part_of_d0).fold(0.0, f64::max)
     }
 
-    /// The check of a limit state, given that of SLD if there is one.
+    /// Checks a limit state. `sld` is the check of SLD, if there is one.
     fn state(
         &self,
         state: LimitState,
@@ -510,7 +509,7 @@ impl Basis<'_> {
         })
     }
 
-    /// The check of C8.7.1.2.1.5: [C8.7.1.8] if walls hold the structure, [C8.7.1.9] if it is free to vibrate.
+    /// Checks the onset of motion by C8.7.1.2.1.5: with [C8.7.1.8] if walls hold the structure, with [C8.7.1.9] if it is free to vibrate.
     fn activation(&self, mechanism: &Mechanism, spectrum: &Spectrum) -> Result<Activation, Beyond> {
         let capacity_g = mechanism.a0_over_fc_g;
         let demand_g = match self.t0_s {
@@ -524,7 +523,7 @@ impl Basis<'_> {
         })
     }
 
-    /// The check of C8.7.1.2.1.7, from the activation and the demand as `a_g` in g.
+    /// Checks SLV by C8.7.1.2.1.7, from activation and demand as `a_g`, in g.
     fn simplified(&self, activation_ag_g: f64, ag_g: f64) -> Simplified {
         let q = self.settings.behaviour_factor;
         Simplified {
@@ -534,7 +533,7 @@ impl Basis<'_> {
         }
     }
 
-    /// The check of C8.7.1.2.1.8, with the activation as `a_g` in g.
+    /// Checks a limit state by C8.7.1.2.1.8, with the activation as `a_g`, in g.
     fn by_displacement(
         &self,
         way: &Way,
@@ -582,8 +581,8 @@ impl Basis<'_> {
         })
     }
 
-    /// The displacement that may be reached on a curve, in metres; the divided acceleration there, in g; the period, in s; and the
-    /// displacement demand, in metres.
+    /// Returns the allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
+    /// demand, in metres.
     fn reached(
         &self,
         curve: &Capacity,
@@ -600,8 +599,8 @@ impl Basis<'_> {
         Ok((capacity_m, acceleration_g, period_s, demand_m))
     }
 
-    /// The divided acceleration of the oscillator at a displacement, in g. If the structure is free to vibrate, the elastic branch comes
-    /// first [C8.7.1.6].
+    /// Returns the divided acceleration of the oscillator at a displacement, in g. The curve of a structure that is free to vibrate starts with
+    /// the elastic branch [C8.7.1.6].
     fn held_g(&self, curve: &Capacity, displacement_m: f64, divide_acceleration: f64) -> f64 {
         let part = displacement_m / curve.end().oscillator_displacement_m;
         let rigid_g = curve.oscillator_acceleration_g(part) / divide_acceleration;
@@ -609,13 +608,13 @@ impl Basis<'_> {
             .map_or(rigid_g, |elastic_g| elastic_g.min(rigid_g))
     }
 
-    /// Acceleration of the elastic branch, in g.
+    /// Returns the acceleration of the elastic branch, in g; `None` if walls hold the structure.
     fn elastic_g(&self, displacement_m: f64) -> Option<f64> {
         let circular = self.t0_s? / (2.0 * PI);
         Some(displacement_m / (circular * circular * self.gravity_m_s2))
     }
 
-    /// Where the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
+    /// Finds the point at which the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
     fn yielding(&self, way: &Way) -> Option<(f64, f64)> {
         let divided = self.settings.confidence_factor;
         let end_m = way.centre.end().oscillator_displacement_m;
@@ -629,7 +628,7 @@ impl Basis<'_> {
     }
 }
 
-/// The governing side, its method and its result; `None` if the state cannot be checked to every side.
+/// Returns the governing side, its method and its result; `None` if a side cannot be checked.
 fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, Method, Margin)> {
     let checked = sides.iter().map(|(sway, side)| {
         let (method, margin) = side.governing()?;
@@ -651,8 +650,8 @@ fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, Method
     Some((side, method, margin))
 }
 
-/// The least `a_g`, in g, whose spectrum reaches the capacity, while `S_S` and `T_D` vary with `a_g`; `None` beyond the range of the
-/// code.
+/// Finds the smallest `a_g`, in g, whose spectrum reaches the capacity, with `S_S` and `T_D` as functions of `a_g`; `None` beyond the range of
+/// the code.
 fn following_g(
     ground: &GroundSpectrum,
     reaches_capacity: impl Fn(&GroundSpectrum) -> bool,
@@ -668,7 +667,7 @@ fn following_g(
         };
         GroundSpectrum::new(hazard, site).is_ok_and(|ground| reaches_capacity(&ground))
     };
-    // On soil D the demand falls for a while as a_g rises; the first crossing counts.
+    // On soil D the demand falls over a range of rising a_g; the first crossing counts.
     let largest_g = (ground.t_e_s - 1.6) / 4.0;
     let steps = 400;
     let at = |step: i32| largest_g * f64::from(step) / f64::from(steps);

@@ -17,11 +17,11 @@ use crate::output::sheet::{Height, Key, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 use crate::scenario::{DimensionSide, Structure};
 
-/// Colour of the parts that stand still.
+/// Colour of parts that do not move.
 const STILL: &str = "#e9e9e9";
 
-/// The mechanism in the undeformed structure: its bodies with their centres, numbered from the left like its hinges, and their
-/// virtual displacements.
+/// Draws the mechanism in the undeformed structure: bodies with their centres, numbered from the left, hinges with letters, and virtual
+/// displacements.
 pub(super) fn mechanism(
     figure: Figure,
     structure: &Structure,
@@ -101,7 +101,7 @@ fn draw_mechanism(
     for (name, hinge) in ('A'..='Z').zip(&mechanism.hinges) {
         let at = px(Vector2::new(hinge.x_m, hinge.y_m));
         drawing.circle(&format!("hinge {name}"), at, 3.6, red);
-        // Away from the middle of the picture, so that the label is beside the masonry.
+        // Away from the middle of the picture, so that the label is outside the masonry.
         let away = at - middle;
         let side = if away.x < 0.0 { -13.0 } else { 13.0 };
         let label = at + Vector2::new(side, if away.y < 0.0 { -3.0 } else { 15.0 });
@@ -109,8 +109,8 @@ fn draw_mechanism(
     }
 }
 
-/// Acceleration against displacement of the oscillator: its divided curve, the spectra of the limit states at their damping, and the
-/// lines of their periods.
+/// Draws acceleration against displacement of the oscillator: the divided curve, the spectra of the limit states at their damping, and the lines
+/// of their periods. `None` without a curve.
 pub(super) fn capacity(
     figure: Figure,
     check: &Summary,

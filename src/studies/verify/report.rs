@@ -29,12 +29,12 @@ use crate::studies::results::Results;
 pub const FILES: [&str; 2] = ["verify.html", "verify.json"];
 /// Gravity of the codes, in m/s2.
 const GRAVITY_M_S2: f64 = 9.81;
-/// A smaller damping is probably a fraction instead of per cent.
+/// A smaller damping in per cent is probably given as a fraction.
 const LEAST_DAMPING_PERCENT: f64 = 1.0;
 /// Largest number of points of a spectrum on the page.
 const MOST_POINTS: usize = 40;
 
-/// Page, numbers and words of a check of a scenario.
+/// Makes page, numbers and words of a check.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -45,13 +45,13 @@ pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputErr
     Results::new(&FILES, check, words(check), [page.into_bytes()])
 }
 
-/// The verdict in a sentence, then the result for each limit state, with the governing side.
+/// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
 #[must_use]
 pub fn words(check: &Summary) -> String {
     render(check)
 }
 
-/// The page of a check of a scenario, with the date of the check.
+/// Makes the page of a check. `date` is the date of the check.
 #[must_use]
 pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
     let is_one = check.shown() == 1;
@@ -83,7 +83,7 @@ pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
 struct Page<'a> {
     check: &'a Summary,
     date: &'a str,
-    /// The sides that are printed: one if the left side is the mirror image of the right one.
+    /// The printed sides: one if the left side is the mirror image of the right one.
     drawn: Vec<Drawn<'a>>,
     is_one: bool,
     described: String,
@@ -91,12 +91,12 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// Hinges with their letters on the picture.
+    /// Returns the hinges with their letters on the picture.
     fn lettered<'a>(&self, one: &'a Mechanism) -> impl Iterator<Item = (char, &'a PlacedHinge)> {
         ('A'..='Z').zip(&one.hinges)
     }
 
-    /// The factor for the damping of a mechanism.
+    /// Returns the factor for the damping of a mechanism.
     fn eta(&self, rule: &StateRule) -> f64 {
         damping_factor(rule.damping_percent)
     }
@@ -121,13 +121,13 @@ struct Drawn<'a> {
 }
 
 impl StateCheck {
-    /// Whether the result of a method to a side is in bold.
+    /// Returns true if the result of this method to this side governs: the page prints it in bold.
     fn counts(&self, sway: &Sway, method: &Method) -> bool {
         let side = self.side.map_or("", super::GoverningSide::name);
         self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
     }
 
-    /// Dampings that are probably fractions instead of per cent, with their owners.
+    /// Returns dampings that are probably fractions instead of per cent, with their owners.
     fn small_dampings(&self) -> Vec<(&'static str, f64)> {
         let mut given: Vec<(&str, f64)> = match &self.demand {
             Spectrum::Ground(_) => Vec::new(),
@@ -149,7 +149,7 @@ impl StateCheck {
 }
 
 impl Summary {
-    /// Number of sides that are printed.
+    /// Returns the number of printed sides.
     fn shown(&self) -> usize {
         if self.is_symmetric {
             1
@@ -158,19 +158,19 @@ impl Summary {
         }
     }
 
-    /// The limit states with a verdict.
+    /// Returns the limit states with this verdict.
     pub(super) fn with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.verdict == verdict).collect()
     }
 
-    /// The limit states with a result.
+    /// Returns the limit states with a result.
     pub(super) fn checked(&self) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.zeta_e.is_some()).collect()
     }
 
-    /// The clause of a formula, if clauses are cited.
+    /// Returns the clause of a formula; empty if clauses are not cited.
     fn clause(&self, clause: &str) -> Safe<String> {
         let cited = format!(" <span class=\"clause\">[{clause}]</span>");
         Safe(self.formulas.map_or_else(String::new, |_| cited))
@@ -178,7 +178,7 @@ impl Summary {
 }
 
 impl PlacedHinge {
-    /// Its place in the structure.
+    /// Returns the position in the structure, in words.
     fn place(&self) -> String {
         match self.hinge {
             Hinge::Section { edge, .. } => edge.name().to_owned(),
@@ -190,7 +190,7 @@ impl PlacedHinge {
     }
 }
 
-/// The notes, one a line, in four paragraphs.
+/// The notes, one per line, in four paragraphs.
 #[derive(Template)]
 #[template(path = "studies/verify/notes.txt")]
 struct Notes<'a> {
@@ -199,7 +199,7 @@ struct Notes<'a> {
 }
 
 impl Notes<'_> {
-    /// The friction coefficient that is allowed, with its source.
+    /// Returns the allowed friction coefficient with its source, in words.
     fn allowed(&self) -> String {
         let allowed = self.check.allowed_friction;
         if allowed < FRICTION {
@@ -245,7 +245,7 @@ pub(super) fn add_notes(scenario: &Scenario, check: &mut Summary) {
     check.warnings = part();
 }
 
-/// Whether the left side is the mirror image of the right one, with all their numbers.
+/// Returns true if the left side is the mirror image of the right one, including all numbers.
 pub(super) fn are_mirrored(
     mechanisms: &BTreeMap<Sway, Mechanism>,
     states: &BTreeMap<LimitState, StateCheck>,
@@ -261,7 +261,7 @@ pub(super) fn are_mirrored(
     let bodies = mirrored.bodies.iter_mut().map(|body| &mut body.x_m);
     hinges.chain(bodies).for_each(|x_m| *x_m = -*x_m);
     let mut own = right.clone();
-    // The positions of hinges identify their joints or angles.
+    // Joints and angles of hinges differ between mirrored sides, so the comparison uses positions only.
     for hinge in own.hinges.iter_mut().chain(&mut mirrored.hinges) {
         hinge.hinge = Hinge::Toe(Sway::Right);
     }
@@ -273,7 +273,7 @@ pub(super) fn are_mirrored(
     states && are_alike(&own, &mirrored)
 }
 
-/// Whether two results have the same numbers, up to rounding; texts may name a side.
+/// Returns true if two results have the same numbers, up to rounding errors. Texts may differ: they may name a side.
 fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
     fn alike_values(a: &Value, b: &Value) -> bool {
         match (a, b) {
@@ -293,9 +293,9 @@ fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
     alike_values(&json!(a), &json!(b))
 }
 
-/// The date this many days after 1 January 1970, as in 2025-01-31.
+/// Returns the date a number of days after 1 January 1970, such as 2025-01-31.
 fn date_of(days: u64) -> String {
-    // Years that begin in March end with the leap day (Hinnant, Chrono-compatible low-level date algorithms).
+    // Years that begin in March end with the leap day (Hinnant, chrono-Compatible Low-Level Date Algorithms).
     let days = days + 719_468;
     let (era, day) = (days / 146_097, days % 146_097);
     let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;

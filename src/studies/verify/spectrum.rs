@@ -1,4 +1,4 @@
-//! The spectrum of a limit state at the place of the mechanism.
+//! The spectrum of a limit state on the ground, at a height in a building, or from points.
 
 use serde::Serialize;
 
@@ -11,9 +11,9 @@ use crate::scenario::{Demand, LimitState, StateRule};
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Spectrum {
-    /// By NTC 2018, on the ground.
+    /// Spectrum of the ground by NTC 2018.
     Ground(Ground),
-    /// By NTC 2018, at a height in a building.
+    /// Spectrum at a height in a building by NTC 2018.
     Floor {
         /// The spectrum of the ground.
         #[serde(flatten)]
@@ -26,9 +26,9 @@ pub enum Spectrum {
         #[serde(skip)]
         floor: FloorSpectrum,
     },
-    /// Given by points.
+    /// Spectrum given by points.
     Points {
-        /// Name of their file.
+        /// Name of the file of points.
         spectrum: String,
         /// Damping of the given spectrum, in per cent.
         damping_percent: f64,
@@ -54,7 +54,7 @@ pub struct FloorMode {
     /// The mode.
     #[serde(flatten)]
     pub mode: Mode,
-    /// Spectral acceleration of the ground at its period and damping, in g.
+    /// Spectral acceleration of the ground at period and damping of the mode, in g.
     pub acceleration_g: f64,
     /// Largest acceleration of the floor in this mode [C7.2.7], in g.
     pub a_z_g: f64,
@@ -63,7 +63,7 @@ pub struct FloorMode {
 }
 
 impl Spectrum {
-    /// The spectrum of a limit state; `None` if the demand does not include that state.
+    /// Makes the spectrum of a limit state; `None` if the demand does not include that state.
     pub(super) fn of(
         demand: &Demand,
         state: LimitState,
@@ -111,7 +111,7 @@ impl Spectrum {
         })
     }
 
-    /// The spectrum of the code on the ground.
+    /// Returns the spectrum of the ground; `None` for points.
     #[must_use]
     pub const fn ground(&self) -> Option<&Ground> {
         match self {
@@ -120,7 +120,7 @@ impl Spectrum {
         }
     }
 
-    /// Acceleration of the hazard, `a_g`; for points, their peak, if they begin at period zero. In g.
+    /// Returns the acceleration `a_g` of the hazard, in g. For points it is their peak; `None` if they do not begin at period zero.
     #[must_use]
     pub fn ag_g(&self) -> Option<f64> {
         match self {
@@ -129,10 +129,10 @@ impl Spectrum {
         }
     }
 
-    /// Peak acceleration of the ground, or of the floor that carries the mechanism, in g.
+    /// Returns the peak acceleration of the ground, or of the floor that carries the mechanism, in g.
     ///
     /// # Errors
-    /// When the points do not include it.
+    /// When the points do not begin at period zero.
     pub fn peak_g(&self) -> Result<f64, Beyond> {
         match self {
             Self::Ground(ground) => Ok(ground.spectrum.peak_g),
@@ -141,10 +141,10 @@ impl Spectrum {
         }
     }
 
-    /// Spectral acceleration at a period and a damping, in g.
+    /// Returns the spectral acceleration at a period and a damping, in g.
     ///
     /// # Errors
-    /// When the period is beyond the points.
+    /// When the period is outside the points.
     pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
         match self {
             Self::Ground(ground) => Ok(ground.spectrum.acceleration_g(period_s, damping_percent)),
@@ -153,11 +153,11 @@ impl Spectrum {
         }
     }
 
-    /// Displacement demand on a mechanism whose period has lengthened to `period_s`, in metres; for points, the largest from the period
-    /// `from_s` on.
+    /// Computes the displacement demand on a mechanism whose period has lengthened to `period_s`, in metres. For points it is the largest demand
+    /// between the periods `from_s` and `period_s`.
     ///
     /// # Errors
-    /// When a period is beyond the points.
+    /// When a period is outside the points.
     pub fn displacement_m(
         &self,
         period_s: f64,
