@@ -1,5 +1,5 @@
-//! A structure that rocks as four links: an arch with hinges at sections of its ring, or a row of blocks between two supports with
-//! hinges at its joints.
+//! Structures that rock as four links: an arch with hinges at sections of its ring, or a row of blocks between two supports with hinges at its
+//! joints.
 
 use std::sync::Arc;
 
@@ -23,14 +23,14 @@ use super::stability::falls;
 use super::sway::Sway;
 use crate::argument::{ArgumentError, within};
 
-/// A structure with its chains of four-link mechanisms under an impact law. Chains depend on neither size nor material, and clones
-/// share them.
+/// Structure with its sequences of four-link mechanisms under an impact law. The sequences depend on neither size nor material, and clones share
+/// them.
 #[derive(Clone, Debug)]
 pub struct FourLinks {
     size: Size,
-    /// Sections at which lines of thrust are reported.
+    /// Sections at which thrust lines are reported.
     sections: Vec<f64>,
-    /// By the first sway: one chain for a structure that is its own mirror image.
+    /// Sequence of mechanisms for a first sway to each side; both are the same for a symmetric structure.
     chains: Sides<Arc<Chain>>,
 }
 
@@ -53,7 +53,7 @@ impl Size {
     }
 }
 
-/// Why a structure does not rock as four links.
+/// Reason why a structure does not rock as four links.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FourLinkError {
     /// The structure does not start as four links.
@@ -74,12 +74,12 @@ pub enum FourLinkError {
          [elastic_joints], which take any mechanism", side = .sway.name()
     )]
     Row {
-        /// To which side.
+        /// Side of the sway.
         sway: Sway,
-        /// Why.
+        /// Reason for this side.
         error: LimitError,
     },
-    /// It could not be determined whether the row stands.
+    /// The stability of the row was not determined.
     #[error(transparent)]
     Contact(#[from] ContactError),
     /// The restitution coefficient is out of range.
@@ -88,7 +88,7 @@ pub enum FourLinkError {
 }
 
 impl FourLinks {
-    /// An arch.
+    /// Returns the four-link model of an arch.
     ///
     /// # Errors
     /// When the arch cannot stand or does not start as a four-link mechanism, or when a number of the law is not allowed.
@@ -106,11 +106,11 @@ impl FourLinks {
         })
     }
 
-    /// A row of blocks, 1 m deep.
+    /// Returns the four-link model of a row of blocks, with a depth of 1 m.
     ///
     /// # Errors
-    /// When it is a stack, has ties, falls under its own weight, starts as another mechanism to either side, or a number of the law is
-    /// not allowed.
+    /// If the row is a stack, has ties, falls under its own weight, starts as another mechanism to either side, or if a number of the law is not
+    /// allowed.
     pub fn of_row(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
@@ -153,7 +153,7 @@ impl FourLinks {
         })
     }
 
-    /// An arch of the same shape, which shares the chain.
+    /// Returns the model of an arch with this shape and another size, which shares the sequences of mechanisms.
     #[must_use]
     pub fn with_size_of(&self, arch: &Arch) -> Self {
         Self {
@@ -162,8 +162,8 @@ impl FourLinks {
         }
     }
 
-    /// A row of blocks with another depth out of plane, in metres. It affects only the impulses, which are given per metre of depth: the
-    /// blocks have their masses.
+    /// Returns the model with another depth out of plane, in metres. The depth affects only the impulses, which are per metre of depth; the masses of
+    /// the blocks are given.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -173,13 +173,13 @@ impl FourLinks {
         Ok(self)
     }
 
-    /// The chain of mechanisms after a first sway to the right; of a structure that is its own mirror image, after any.
+    /// Returns the sequence of mechanisms after a first sway to the right; for a symmetric structure, to either side.
     #[must_use]
     pub fn chain(&self) -> &Chain {
         self.chain_from(Sway::Right)
     }
 
-    /// The chain of mechanisms after a first sway to this side.
+    /// Returns the sequence of mechanisms after a first sway to this side.
     #[must_use]
     pub fn chain_from(&self, first: Sway) -> &Chain {
         self.chains.to(first)

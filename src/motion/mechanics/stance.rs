@@ -1,4 +1,4 @@
-//! A row where it stands: undeformed, or between supports that have moved.
+//! State of a row: undeformed, or displaced between moved supports.
 
 use super::blocks::Row;
 use super::joints::Placement;
@@ -6,17 +6,17 @@ use super::lanes::Lanes;
 use super::tie::{TieLine, TieMemory};
 use crate::mechanics::geometry::pose::Pose;
 
-/// Positions of the blocks of a row, and the memory of its ties.
+/// Positions of the blocks of a row, and states of its ties.
 #[derive(Clone, Debug)]
 pub struct Stance {
     /// Positions of its blocks.
     pub placement: Placement,
-    /// Memory of its ties.
+    /// States of the ties.
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
 impl Stance {
-    /// The undeformed row.
+    /// Returns the state of the undeformed row.
     #[must_use]
     pub fn undeformed(row: &Row) -> Self {
         Self {
@@ -25,18 +25,18 @@ impl Stance {
         }
     }
 
-    /// Lines of the ties of the row.
+    /// Returns the lines of action of the ties.
     pub fn lines(&self, row: &Row) -> impl Iterator<Item = TieLine> {
         let poses = &self.placement.poses;
         lines(row, &self.placement.support_poses, |block| poses[block])
     }
 
-    /// Forces of its ties, in N.
+    /// Returns the forces of the ties, in N.
     pub fn forces_n(&self) -> impl Iterator<Item = f64> {
         self.ties.iter().map(|tie| tie.force_n.0[0])
     }
 
-    /// The ties follow the blocks, slowly. Returns how they lie then.
+    /// Updates the ties for the current positions of the blocks, and returns their lines of action.
     pub(crate) fn stretch_ties(&mut self, row: &Row) -> Vec<TieLine> {
         let lines: Vec<TieLine> = self.lines(row).collect();
         for ((memory, tie), line) in self.ties.iter_mut().zip(&row.ties).zip(&lines) {
@@ -45,14 +45,14 @@ impl Stance {
         lines
     }
 
-    /// The first of its ties that has broken.
+    /// Returns the index of the first broken tie.
     #[must_use]
     pub fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
     }
 }
 
-/// Lines of the ties of a row between supports and blocks at these poses.
+/// Returns the lines of action of the ties for given poses of supports and blocks.
 pub fn lines(
     row: &Row,
     supports: &[Pose; 2],

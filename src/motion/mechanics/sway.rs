@@ -1,5 +1,4 @@
-//! The two directions in which a structure sways. Everything is computed in a frame in which the sway goes right;
-//! a sway to the left is the same seen in a mirror.
+//! Directions in which a structure sways. Everything is computed in a frame in which the sway goes right; a sway to the left is reflected.
 
 use crate::mechanics::geometry::profile::Profile;
 
@@ -25,7 +24,7 @@ impl Sway {
         }
     }
 
-    /// The side to which it swayed that many impacts earlier: every impact changes the side.
+    /// Returns the side of the sway `impacts` impacts earlier. Every impact changes the side.
     #[must_use]
     pub const fn before(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
@@ -35,7 +34,7 @@ impl Sway {
         }
     }
 
-    /// +1 to the right, -1 to the left: the sign of x in the frame in which this sway goes right.
+    /// Returns +1 to the right and -1 to the left: the sign of x in the frame in which this sway goes right.
     #[must_use]
     pub const fn sign(self) -> f64 {
         match self {
@@ -44,8 +43,8 @@ impl Sway {
         }
     }
 
-    /// Converts a section counted in the frame in which this sway goes right to one counted from the left
-    /// springing, or the other way round: an angle in radians, or a joint.
+    /// Converts a section from the frame in which this sway goes right to the frame of the ground, or back. A section is an angle in radians from the
+    /// left springing, or a joint.
     #[must_use]
     pub fn from_left(self, profile: &dyn Profile, section: f64) -> f64 {
         match self {

@@ -38,8 +38,8 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Joints that open: index, edge about which they open, and rotation rate. Rotations that are small
-    /// beside the largest are left out.
+    /// Returns the joints that open: index, edge about which the joint opens, and rotation rate. Rotations below 0.1 % of the largest one are
+    /// omitted.
     ///
     /// In a continuous ring whole zones open, where the impulse line follows an edge.
     pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
@@ -71,7 +71,7 @@ pub struct Joint {
     pub impulse: SectionResultant,
 }
 
-/// The projection could not be computed.
+/// Reason why the projection was not computed: the solver did not converge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "the motion of largest restitution was not found with {joints} joints ({reason}): try another number of joints"

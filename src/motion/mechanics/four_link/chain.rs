@@ -1,8 +1,8 @@
-//! The chain of mechanisms that an arch passes through, impact after impact.
+//! Sequence of mechanisms of an arch, from impact to impact.
 //!
-//! Which mechanism follows an impact depends on the one that closes, not on how fast it closes. So the
-//! whole sequence, from the mechanism that starts at the incipient acceleration, is a property of the arch.
-//! Links are computed on the first request and cached; threads may share a chain.
+//! The mechanism after an impact depends on the mechanism before it, not on the velocity. The sequence therefore follows from the mechanism that
+//! starts at the incipient acceleration, and is a property of the arch. Links are computed at the first request and cached. Threads may share a
+//! chain.
 
 use std::sync::{Arc, OnceLock};
 
@@ -14,12 +14,11 @@ use super::mechanism::{FourLink, HingeSites};
 use crate::mechanics::chain::{Link, critical_rad};
 use crate::mechanics::geometry::profile::Profile;
 
-/// A link whose hinges are this close to those of the link two before it closes the chain into a repeating
-/// pair. The effect on `r`, which is flat at a maximum, is far below what the search resolves.
+/// Tolerance, in radians, within which a link has the hinges of the link two before it, so that the last two links repeat. The effect on `r`, which
+/// is stationary at a maximum, is far below the accuracy of the search.
 const REPETITION_RAD: f64 = 1e-9;
 
-/// Chains converge to a pair within 20 to 120 links. One that has not by this length (none is known)
-/// repeats its last two.
+/// Maximum number of links. Chains converge to a repeating pair within 20 to 120 links; a longer one (none is known) repeats its last two links.
 const MAX_CHAIN_LENGTH: usize = 256;
 
 /// A mechanism of the chain: in the undeformed configuration, and in motion.
@@ -27,10 +26,10 @@ const MAX_CHAIN_LENGTH: usize = 256;
 pub struct ArchLink {
     /// The mechanism in the undeformed configuration.
     pub mechanism: FourLink,
-    /// The mechanism at finite rotations, and how the impact leads to it.
+    /// Mechanism at finite rotations, with the impact that starts it.
     pub link: Link<Linkage>,
-    /// Impulses of the impact that leads to it, per unit closing rate; `None` for the first link, and
-    /// where the restitution coefficient is prescribed.
+    /// Impulses of the impact that starts the mechanism, per unit closing rate. `None` for the first link, and for a prescribed restitution
+    /// coefficient.
     pub impulse_line: Option<ImpulseLine>,
 }
 
@@ -49,8 +48,7 @@ impl ArchLink {
     }
 }
 
-/// A profile with its chain of mechanisms: everything about an arch that does not depend on its size, its
-/// density or the ground motion.
+/// Profile with its sequence of mechanisms. These do not depend on size, density or ground motion.
 #[derive(Debug)]
 pub struct Chain {
     /// The profile in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
@@ -85,14 +83,13 @@ impl Chain {
         }
     }
 
-    /// The profile in the frame in which the mechanism after this many impacts sways right.
+    /// Returns the profile in the frame in which the mechanism after `impacts` impacts sways right.
     #[must_use]
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
     }
 
-    /// The mechanism after `index` impacts; `None` when an impact before it stops the ring, because
-    /// no admissible mechanism can follow.
+    /// Returns the mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.
     #[must_use]
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
         for known in 0..MAX_CHAIN_LENGTH {

@@ -10,10 +10,10 @@ use crate::argument::{ArgumentError, within};
 use crate::mechanics::geometry::field::{Field, Side, Twist};
 use crate::mechanics::geometry::profile::Profile;
 
-/// Rule for the mechanism after an impact.
+/// Rule that selects the mechanism after an impact.
 ///
-/// All assume that the four hinges close at the same instant, that the arch moves on with four hinges, and
-/// that nothing slides or bounces.
+/// All rules assume that the four hinges close simultaneously, that the arch continues with four hinges, and that no joint slides and nothing
+/// rebounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ImpactModel {
     /// The mechanism that keeps the most kinetic energy.
@@ -65,10 +65,9 @@ impl ImpactModel {
     }
 }
 
-/// An impact model, and a factor on its restitution.
+/// Impact model, with a factor on its restitution coefficient.
 ///
-/// Experiments lose more energy than the theorems say, or less: a factor brings the restitution coefficient to what
-/// was measured.
+/// Experiments lose more or less energy than the momentum theorems predict. The factor adjusts the restitution coefficient to measured values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ImpactLaw {
     /// The model.
@@ -93,7 +92,7 @@ impl ImpactLaw {
         within("restitution_factor", self.restitution_factor, 0.0..=100.0).map(|_| ())
     }
 
-    /// Rate and restitution coefficient of an impact by this law, from those of its model.
+    /// Returns rate and restitution coefficient of an impact by this law, from those of its model.
     pub(crate) fn measured(self, rate_ratio: f64, restitution: f64) -> (f64, f64) {
         if self.is_theory() || restitution <= 0.0 {
             return (rate_ratio, restitution);
@@ -102,16 +101,16 @@ impl ImpactLaw {
         (rate_ratio * (measured / restitution).sqrt(), measured)
     }
 
-    /// Whether impacts are those of the model, unchanged.
+    /// Returns whether the factor is one, so that the momentum theorems hold.
     pub fn is_theory(self) -> bool {
         self.restitution_factor == 1.0
     }
 }
 
-/// An impact: what follows when a mechanism closes at unit rate.
+/// Impact of a mechanism that closes at unit rate, with the mechanism that follows.
 ///
-/// The mechanism after the impact sways to the other side. It is given in the frame in which that side is
-/// the right: the mirror image of the frame of the mechanism before.
+/// The mechanism after the impact sways to the other side. It is given in the frame in which that side is the right: the mirror image of the frame of
+/// the mechanism before.
 #[derive(Clone, Debug)]
 pub struct Impact {
     /// The mechanism after the impact, in its own frame.

@@ -68,7 +68,7 @@ impl ImpulseLine {
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
         let angle_rad = sway.from_left(&*self.resultants.profile, angle_rad);
         let mut section = self.resultants.section(angle_rad);
-        // In a mirror the part before it is after it.
+        // A reflection exchanges the parts before and after the section.
         section.tangential *= sway.sign();
         section
     }

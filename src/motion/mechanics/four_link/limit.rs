@@ -24,34 +24,32 @@ pub struct Incipient {
     pub thrust_line: ResultantLine,
 }
 
-/// Why a ring does not start to rock as a four-link mechanism.
+/// Reason why a ring does not start to rock as a four-link mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum LimitError {
     /// The ring cannot carry its own weight.
     #[error("the arch cannot carry its own weight")]
     CannotStand,
-    /// The ring stands, but statics does not confirm the best four-link mechanism: its thrust line leaves the
-    /// ring, or two of its hinges merge into one section that would open at both edges.
+    /// The ring is stable, but the static theorem does not confirm the best four-link mechanism. Its thrust line leaves the ring, or two of its
+    /// hinges merge into one section that would open at both edges.
     #[error(
         "the arch stands, but does not start to rock as a four-link mechanism: the best one moves at \
          {acceleration_g:.4} g, and the thrust line does not confirm it; another mechanism governs, as in thick shallow arches"
     )]
     OtherMechanism {
-        /// Acceleration of the best four-link mechanism found, in units of gravity: not below the true
-        /// one.
+        /// Acceleration of the best four-link mechanism, in multiples of gravity; an upper bound of the true one.
         acceleration_g: f64,
     },
-    /// The ring stands, and no push moves it as a four-link mechanism.
+    /// The ring is stable, and no push moves it as a four-link mechanism.
     #[error("the arch stands, but no horizontal push moves it as a four-link mechanism")]
     NoPush,
 }
 
-/// The incipient acceleration, its mechanism and the thrust line that proves it.
+/// Computes the incipient acceleration, with its mechanism and the thrust line that proves it.
 ///
-/// Statics decides whether the ring stands ([`carries_its_weight`]). Kinematic theorem: `A_L` is the least of
-/// `int v_y / int v_x` over the admissible mechanisms that move the ring to the right. Static theorem: it is
-/// the true one when the thrust line under that push passes inside the ring at every section (at every
-/// joint, for voussoirs).
+/// The stability under self-weight follows from statics ([`carries_its_weight`]). Kinematic theorem: `A_L` is the minimum of `int v_y / int v_x` over
+/// the admissible mechanisms that move the ring to the right. Static theorem: the minimum is exact if the thrust line under that push stays inside
+/// the ring at every section (at every joint, for voussoirs).
 ///
 /// # Errors
 /// When the ring cannot stand, is too thick for a four-link mechanism to govern, or cannot be moved.
@@ -62,7 +60,7 @@ pub fn incipient(ring: &Ring, sites: HingeSites) -> Result<Incipient, LimitError
     incipient_of(ring, sites)
 }
 
-/// The incipient acceleration of any profile that carries its own weight, with its mechanism and thrust line.
+/// Computes the incipient acceleration of a profile that is stable under its own weight, with its mechanism and thrust line.
 ///
 /// # Errors
 /// When no four-link mechanism governs, or no push moves one.
@@ -83,11 +81,10 @@ pub(crate) fn incipient_of(
     })
 }
 
-/// The smallest thickness ratio at which a ring of this embrace angle carries its own weight; at most `accuracy`
-/// above the exact value.
+/// Returns the smallest thickness ratio at which a ring of this embrace angle is stable under its own weight. The result exceeds the exact value by
+/// at most `accuracy`.
 ///
-/// It is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Every thicker ring stands
-/// too.
+/// The result is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Thicker rings are stable too.
 ///
 /// # Errors
 /// When the angle is not in `(0, pi]`.
@@ -109,10 +106,10 @@ fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
 
-/// Minimum of `int v_y / int v_x` for a profile that stands, by the kinematic theorem.
+/// Minimises `int v_y / int v_x` for a stable profile, by the kinematic theorem. `None` if no push moves the profile.
 ///
-/// In such a profile a mechanism that sways to the right also rises. One that seems not to either does
-/// neither, apart from rounding, as where hinges merge, or sways to the left.
+/// In a stable profile a mechanism that sways to the right also rises. A mechanism that seems not to rise has zero velocity within rounding error, as
+/// with merged hinges, or sways to the left.
 fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
@@ -139,7 +136,7 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
     moving.map(|(value, mechanism)| (-value, mechanism))
 }
 
-/// Minus the acceleration at which a mechanism starts to move, if a push to the right moves it.
+/// Minus the acceleration at which a mechanism starts to move; minus infinity if no push to the right moves it.
 struct LeastAcceleration<'a> {
     profile: &'a dyn Profile,
 }
@@ -167,7 +164,7 @@ fn push_only() -> Field {
     Field::uniform(Twist::translation(Vector2::new(1.0, 0.0)))
 }
 
-/// The push, in units of gravity, at which `mechanism` starts to move.
+/// Returns the push, in multiples of gravity, at which `mechanism` starts to move.
 #[must_use]
 pub fn acceleration_g(mechanism: &FourLink, profile: &dyn Profile) -> f64 {
     let (field, up) = (

@@ -14,8 +14,7 @@ use crate::mechanics::geometry::field::{Field, Momentum, Twist};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 
-/// A line may leave the ring by this much of the thickness, on account of rounding: hinges are placed to
-/// about 1e-8 rad, and the line touches the edges there.
+/// Tolerance for lines outside the ring, over the thickness: hinges are accurate to about 1e-8 rad, and the line touches the edges there.
 pub const EDGE_TOLERANCE: f64 = 1e-6;
 
 /// The resultants over all sections of a ring under a load per unit mass.
@@ -149,8 +148,7 @@ impl ResultantLine {
         }
     }
 
-    /// The largest value of a quantity. Where the load is rigid the quantity is smooth: it is sampled, and
-    /// every maximum is then refined.
+    /// Returns the largest value of a quantity. The quantity is smooth where the load is rigid: it is sampled, then every maximum is refined.
     fn largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
         let at = |angle_rad: f64| Extremum {
             value: of(&self.section(angle_rad)),
@@ -190,11 +188,11 @@ impl ResultantLine {
             - along_edge.perp(&self.at(angle_rad).linear)
     }
 
-    /// Derivative of the power of the load on `mechanism` (at `q' = 1`) with respect to the sections
-    /// of its hinges, the rotations following so that the mechanism stays closed.
+    /// Returns the derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the
+    /// mechanism stays closed.
     ///
-    /// A moved hinge changes the rotations at all four, but the line has no moment at any of them: only
-    /// the moment that the moved point itself picks up counts. `local` is the load at each hinge.
+    /// A moved hinge changes the rotations at all four hinges, but the line has no moment there. Only the moment about the moved point itself
+    /// contributes. `local` is the load at each hinge.
     pub(crate) fn power_gradient(&self, mechanism: &FourLink, local: [Twist; 4]) -> [f64; 4] {
         let (hinges, openings) = (mechanism.hinges_rad, mechanism.openings);
         std::array::from_fn(|i| {
@@ -206,10 +204,10 @@ impl ResultantLine {
 /// Samples of a line over a continuous ring: fine enough to separate its maxima.
 const SAMPLES: usize = 720;
 
-/// Accuracy of the section of a maximum, in radians: the value is off by about the square of this.
+/// Accuracy of the section of a maximum, in radians; the error of the value is of the order of its square.
 const TOP_ACCURACY_RAD: f64 = 1e-9;
 
-/// The largest.
+/// Returns the largest value.
 fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
     let largest = values.max_by(|a, b| a.value.total_cmp(&b.value));
     largest.expect("a ring has sections")

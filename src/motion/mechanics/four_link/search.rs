@@ -1,10 +1,8 @@
-//! Search for the best of all four-link mechanisms.
+//! Global search for the best four-link mechanism.
 //!
-//! Both questions of the mechanics - which mechanism moves first, which one follows an impact - ask for
-//! the largest value of a function of four ordered angles, with several local maxima, often on the
-//! bounds. The search is deterministic: every quadruple of a lattice of sections is scored, then each
-//! local maximum of the lattice is followed to its maximum, by Newton's method where hinges sit anywhere
-//! and by neighbour steps where only joints are allowed.
+//! Two problems have the same form: which mechanism moves first, and which mechanism follows an impact. Both maximise a function of four ordered
+//! angles with several local maxima, often on the bounds. The search is deterministic. It scores every quadruple of a lattice of sections and refines
+//! each local maximum of the lattice: by Newton's method if hinges may be anywhere, by steps to neighbouring joints otherwise.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -16,26 +14,26 @@ use crate::mechanics::geometry::ring::Edge;
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.
 const LATTICE_INTERVALS: usize = 20;
 
-/// One more lattice section this fraction of an interval inside each springing, for maxima close to them.
+/// Position of an additional lattice section near each springing, as a fraction of an interval, for maxima close to the springings.
 const NEAR_SPRINGING: f64 = 0.002;
 
-/// Up to this number of voussoirs the lattice holds every joint, so that the search is exhaustive.
+/// Largest number of voussoirs for which the lattice contains every joint, so that the search is exhaustive.
 const EXHAUSTIVE_VOUSSOIRS: usize = 48;
 
-/// Sections of a lattice, and a table of what a score needs at both edges of each.
+/// Sections of a lattice, with their points on both edges.
 pub(crate) struct Lattice {
     /// Sections in radians, ascending, springings included.
     pub sections_rad: Vec<f64>,
     /// Edge points: `points[section][edge]`, in the order of their definition.
     points: Vec<[Vector2<f64>; 2]>,
-    /// Neighbouring lattice sections are this many joints apart (1: all joints).
+    /// Number of joints between neighbouring lattice sections; 1 if the lattice contains all joints.
     stride: usize,
 }
 
 /// Lattice indices of the hinges A, B, C, D.
 pub(crate) type Quadruple = [usize; 4];
 
-/// The value of a mechanism of a lattice, by its opening rotations and its indices; minus infinity where it does not count.
+/// Score of a mechanism of a lattice, from its opening rotations and its indices; minus infinity for mechanisms to ignore.
 pub(crate) trait Score: Fn(&[f64; 4], &Quadruple) -> f64 {}
 impl<F: Fn(&[f64; 4], &Quadruple) -> f64> Score for F {}
 
@@ -87,7 +85,7 @@ impl Lattice {
             .map_or(f64::NEG_INFINITY, |rotations| score(&rotations, quadruple))
     }
 
-    /// For each pair (B, C) the best A and D; of these the pairs that no neighbouring pair beats.
+    /// Finds the best A and D for each pair (B, C). Returns the pairs that are better than all neighbouring pairs.
     fn best_by_inner_pair(&self, sections: &[usize], score: &impl Score) -> Vec<(f64, Quadruple)> {
         let count = sections.len();
         let inner = (1..count - 2).flat_map(|b| (b + 1..count - 1).map(move |c| [b, c]));
@@ -114,7 +112,7 @@ impl Lattice {
         maxima.collect()
     }
 
-    /// Steps of `stride` joints, then ever shorter ones, to a quadruple that no neighbour beats.
+    /// Steps by `stride` joints, then by ever fewer, to a quadruple that is better than all neighbours.
     fn climb(&self, value: &mut f64, quadruple: &mut Quadruple, score: &impl Score) {
         let last = self.points.len() - 1;
         let mut step = self.stride;
@@ -141,19 +139,19 @@ impl Lattice {
     }
 }
 
-/// A function of a mechanism that is to be made as large as possible.
+/// Function of a mechanism, to be maximised.
 pub(crate) trait Objective {
     /// Sections where the gradient may jump, in radians.
     fn kinks_rad(&self) -> &[f64] {
         &[]
     }
-    /// The value, and its derivatives with respect to the sections of the hinges. Where the derivatives
-    /// to either side differ, `above` chooses for each hinge that towards larger angles.
+    /// Returns the value and its derivatives by the sections of the hinges. If left and right derivatives differ, `above` selects for each hinge the
+    /// derivative towards larger angles.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]);
 }
 
-/// The mechanism with the largest value of `objective`, which `score` gives for the mechanisms of
-/// `lattice`; `None` when no mechanism counts.
+/// Returns the mechanism with the largest value of `objective`. `score` gives the value of the mechanisms of `lattice`. `None` if there is no
+/// mechanism.
 pub(crate) fn best_mechanism(
     profile: &dyn Profile,
     sites: HingeSites,
@@ -177,11 +175,10 @@ pub(crate) fn best_mechanism(
 /// Relative differences of values below this are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Newton's method from `start` to a local maximum of `objective` over ordered sections of `profile`.
+/// Runs Newton's method from `start` to a local maximum of `objective` over ordered sections of `profile`.
 ///
-/// Bounds and kinks, the `ends`, cut the range of every hinge into cells in which the objective is smooth.
-/// A hinge that runs into the end of its cell stays there if the slope beyond sends it back, and goes on
-/// otherwise.
+/// The `ends` (bounds and kinks) divide the range of every hinge into cells in which the objective is smooth. A hinge at the end of its cell stays
+/// there if the slope beyond points back, and crosses otherwise.
 fn ascend(
     profile: &dyn Profile,
     ends: &[f64],
@@ -204,9 +201,8 @@ fn ascend(
     Some((climber.evaluate(&mechanism).0, mechanism))
 }
 
-/// Like [`ascend`], and then from the maximum found to its twins. Where the slope jumps up at a kink there is
-/// a maximum on either side of it, often within one interval of the lattice. The lattice then starts from
-/// only one of them.
+/// Runs [`ascend`], then searches from the reflections of the maximum at nearby kinks. If the slope jumps up at a kink, there is a maximum on both
+/// sides, often within one lattice interval. The lattice then gives only one of them as a start.
 fn ascend_all_sides(
     profile: &dyn Profile,
     ends: &[f64],
@@ -261,7 +257,7 @@ impl Cell {
         Self::new(ends, after.clamp(1, ends.len() - 1) - 1)
     }
 
-    /// Whether a hinge at `angle` that wants to move along `slope` is stopped by an end.
+    /// Returns whether an end of the cell stops a hinge at `angle` that moves along `slope`.
     fn stops(&self, angle: f64, slope: f64) -> bool {
         (angle <= self.low && slope < 0.0) || (angle >= self.high && slope > 0.0)
     }
@@ -276,13 +272,13 @@ struct Climber<'a, O> {
 impl<O: Objective> Climber<'_, O> {
     fn evaluate(&self, mechanism: &FourLink) -> (f64, [f64; 4]) {
         let angles = mechanism.hinges_rad;
-        // At the lower end of its cell a hinge sees the slope above, and the other way round.
+        // At the lower end of its cell a hinge uses the derivative above, at the upper end the one below.
         let above =
             std::array::from_fn(|i| angles[i] < 0.5 * (self.cells[i].low + self.cells[i].high));
         self.objective.evaluate(mechanism, above)
     }
 
-    /// The interval in which a hinge may move while the others stay: in its cell, and on its side of its neighbours.
+    /// Returns the interval in which a hinge may move while the others stay: within its cell, and between its neighbours.
     fn range(&self, angles: &[f64; 4], i: usize) -> (f64, f64) {
         let (cell, before, after) = (self.cells[i], i.checked_sub(1), angles.get(i + 1));
         let low = before.map_or(cell.low, |before| angles[before] + MIN_BODY_RAD);
@@ -290,14 +286,13 @@ impl<O: Objective> Climber<'_, O> {
         (cell.low.max(low), cell.high.min(high))
     }
 
-    /// Whether a hinge that wants to move along `slope` is stopped by an end of its cell, or by a neighbour
-    /// with which it merges.
+    /// Returns whether a hinge that moves along `slope` is stopped by an end of its cell, or by merging with a neighbour.
     fn is_stopped(&self, angles: &[f64; 4], i: usize, slope: f64) -> bool {
         let (low, high) = self.range(angles, i);
         (angles[i] <= low && slope < 0.0) || (angles[i] >= high && slope > 0.0)
     }
 
-    /// One Newton step of the hinges that are free to move; `None` when nothing improves.
+    /// Returns the mechanism after a Newton step of the free hinges; `None` if no step improves the objective.
     fn step(&self, mechanism: &FourLink) -> Option<FourLink> {
         let angles = mechanism.hinges_rad;
         let (value, gradient) = self.evaluate(mechanism);
@@ -309,7 +304,7 @@ impl<O: Objective> Climber<'_, O> {
         }
         let curvature = self.curvature(mechanism, &free)?;
         let gradient = DVector::from_iterator(free.len(), free.iter().map(|i| gradient[*i]));
-        // Damped until the quadratic model has a maximum: far from one it may have none.
+        // Add damping until the quadratic model has a maximum; far from a maximum it may have none.
         let scale = curvature.amax().max(f64::MIN_POSITIVE);
         let mut damping = 0.0;
         let mut step = loop {
@@ -319,7 +314,7 @@ impl<O: Objective> Climber<'_, O> {
             }
             damping = (4.0 * damping).max(1e-3 * scale);
             if !damping.is_finite() {
-                // Second derivatives are lost in rounding, as in rings of hardly any thickness.
+                // Rounding errors dominate the second derivatives, as in extremely thin rings.
                 return None;
             }
         };
@@ -334,7 +329,7 @@ impl<O: Objective> Climber<'_, O> {
                 let goes = |i: &&usize| !self.is_stopped(&moved, **i, trial_gradient[**i]);
                 let slopes = free.iter().filter(goes).map(|i| trial_gradient[*i].abs());
                 let trial_slope = slopes.fold(0.0, f64::max);
-                // Near the maximum the value is flat to rounding, and the slope decides.
+                // Near the maximum the value is constant within rounding error, so compare slopes.
                 let level = trial >= value - ROUNDING * value.abs();
                 if trial > value + ROUNDING * value.abs() || (level && trial_slope < 0.5 * slope) {
                     return Some(candidate);
@@ -345,7 +340,7 @@ impl<O: Objective> Climber<'_, O> {
         None
     }
 
-    /// Second derivatives for the free hinges, by differences of the exact gradient inside the cells.
+    /// Returns the second derivatives for the free hinges, by differences of the exact gradient inside the cells.
     fn curvature(&self, mechanism: &FourLink, free: &[usize]) -> Option<DMatrix<f64>> {
         let angles = mechanism.hinges_rad;
         let mut matrix = DMatrix::zeros(free.len(), free.len());
@@ -366,7 +361,7 @@ impl<O: Objective> Climber<'_, O> {
         Some((&matrix + matrix.transpose()) * 0.5)
     }
 
-    /// Lets every hinge that presses against a kink pass, if the slope beyond still rises in its direction.
+    /// Lets hinges at a kink cross it if the slope beyond has the same sign. Returns whether any hinge crosses.
     fn cross_kinks(&mut self, mechanism: &FourLink, ends: &[f64]) -> bool {
         let angles = mechanism.hinges_rad;
         let gradient = self.evaluate(mechanism).1;

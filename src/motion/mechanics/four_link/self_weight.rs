@@ -26,7 +26,7 @@ use super::mechanism::HingeSites;
 use crate::bisection::{Width, bisect};
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
-/// Whether the ring stands under its own weight.
+/// Returns whether the ring is stable under its own weight.
 #[must_use]
 pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
     let margin = SymmetricLines::new(ring, sites).largest_margin();
@@ -68,7 +68,7 @@ impl SymmetricLines {
         }
     }
 
-    /// The `k` with which the line of thrust `h` meets the edge at a section.
+    /// Returns the `k` for which the thrust line with thrust `h` meets an edge at a section.
     fn touching(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
         let (sin, cos) = angle_rad.sin_cos();
         // 1 - cos phi without cancellation in shallow rings.
@@ -80,7 +80,7 @@ impl SymmetricLines {
         }
     }
 
-    /// The smallest `k` of a line of thrust `h` that is nowhere below the intrados.
+    /// Returns the smallest `k` of a thrust line with thrust `h` that is nowhere below the intrados.
     fn least(&self, h: f64) -> Bound {
         let inside = match self.sites {
             HingeSites::Anywhere => Some(self.haunch_rad(h)),
@@ -117,8 +117,8 @@ impl SymmetricLines {
         last(0.0, 0.5 * self.ring.embrace_rad, rises)
     }
 
-    /// The largest room for `k` at any thrust: positive if the ring stands; `None` if it is unbounded, since a
-    /// straight line fits into the ring.
+    /// Returns the largest interval of `k` over all thrusts: positive if the ring is stable. `None` if it is unbounded, because a straight line fits
+    /// into the ring.
     fn largest_margin(&self) -> Option<f64> {
         let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad);
         let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
@@ -135,7 +135,7 @@ impl SymmetricLines {
     }
 }
 
-/// The last number between two, to rounding, at which a condition holds that holds for all smaller ones.
+/// Returns the last number, within rounding error, at which a condition holds that also holds for all smaller numbers.
 fn last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     bisect(low, high, Width::Rounding, |at| !holds(at)).0
 }

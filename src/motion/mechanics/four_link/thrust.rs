@@ -1,13 +1,12 @@
-//! The thrust line in motion: its excess beyond the ring, and the friction that it needs.
+//! Thrust line in motion: its excess beyond the ring, and the friction demand.
 //!
-//! Between impacts gravity, the ground's acceleration and the bodies' own inertia are in equilibrium with
-//! the forces at the hinges. In the frame of its material a moving body looks undeformed, and its
-//! load per unit mass there is `c + alpha k x r + kappa r` with constants `c`, `alpha` and `kappa`
-//! (centrifugal): on a sector this integrates to its mass, first and polar moment. So the thrust line
-//! of the displaced ring is found section by section in the undeformed one.
+//! Between impacts gravity, ground acceleration and inertia forces are in equilibrium with the forces at the hinges. In the frame of its material a
+//! moving body is undeformed, with the load per unit mass `c + alpha k x r + kappa r` and constants `c`, `alpha` and `kappa` (centrifugal). On a
+//! sector the load integrates to its mass, first and polar moment. The thrust line of the displaced ring is therefore computed section by section in
+//! the undeformed ring.
 //!
-//! Where the line leaves the ring, four hinges are not enough: the joint there would open, the hinges
-//! would travel, and the four-link motion is no longer that of rigid blocks without tension.
+//! If the thrust line leaves the ring, four hinges are not enough: the joint there would open and the hinges would move. The four-link motion is then
+//! no motion of rigid blocks without tension.
 
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -29,17 +28,15 @@ const SAMPLES: f64 = 90.0;
 /// Accuracy of a maximum between samples, in radians: the excess is off by about 1e-10 of the thickness.
 const TOP_ACCURACY_RAD: f64 = 1e-6;
 
-/// Excess below which the line is inside: it touches the edge at the hinges, to rounding.
+/// Tolerance of the excess: the line touches the edge at the hinges, within rounding error.
 const ROUNDING: f64 = 1e-9;
 
 impl Demand {
-    /// Measures resultants against their sections; `weight` is that of the whole
-    /// structure, in the unit of the resultants.
+    /// Returns the demand of resultants at their sections; `weight` is that of the whole structure, in the unit of the resultants.
     ///
-    /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, for the moment `M` about the axis and the
-    /// components `N` and `V`. Where `N < 0.01 weight` ([`LEAST_LOAD`]) a line is hardly ever inside: there the
-    /// excess is `(|M| - N t / 2) / (0.01 weight t)`, which continues the other, is always finite and keeps growing with the
-    /// tension; no friction is needed there.
+    /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For `N < 0.01
+    /// weight` ([`LEAST_LOAD`]) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a continuous
+    /// extension, finite, and increases with the tension. The friction demand is then zero.
     #[must_use]
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::default(), |demand, section| {
@@ -47,7 +44,7 @@ impl Demand {
         })
     }
 
-    /// The demand of a resultant on its section; a negative excess is the distance inside.
+    /// Returns the demand of one section; a negative excess is the distance inside.
     fn of_section(section: &SectionResultant, weight: f64) -> Self {
         let thickness = section.thickness;
         let least = LEAST_LOAD * weight;
@@ -61,7 +58,7 @@ impl Demand {
         }
     }
 
-    /// The larger of both demands, an excess only where it is more than rounding.
+    /// Returns the larger value of both demands; excesses within rounding error do not count.
     fn max(self, other: Self) -> Self {
         let mut larger = self;
         larger.friction = self.friction.max(other.friction);
@@ -117,13 +114,13 @@ impl Load {
     }
 }
 
-/// A rigid part of the ring, in the frame of its material.
+/// Rigid part of the ring, in the frame of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
     /// Its last section.
     pub end_rad: f64,
     load: Load,
-    /// The resultant at the left springing if the part extended that far.
+    /// Resultant at the left springing if the part extended to it.
     start: Momentum,
 }
 
@@ -151,10 +148,9 @@ impl Part {
     }
 }
 
-/// The resultants over all sections of a ring that moves as rigid parts, or stands.
+/// Resultants over all sections of a ring that moves as rigid parts, or rests.
 ///
-/// Forces are in weights of `rho d R^2`. Each is in the frame of the part's material: components and
-/// positions refer to the section where it is.
+/// Forces are in weights of `rho d R^2`. Each force is in the frame of its part's material: components and positions refer to the displaced section.
 #[derive(Clone, Debug)]
 pub struct ThrustLine {
     profile: Arc<dyn Profile>,
@@ -163,7 +159,7 @@ pub struct ThrustLine {
 }
 
 impl ThrustLine {
-    /// The line over consecutive parts, from the left springing to the right.
+    /// Returns the line over consecutive parts, from the left springing to the right one.
     pub(crate) fn new(profile: &dyn Profile, parts: Vec<Part>) -> Self {
         Self {
             profile: profile.shared(),
@@ -171,12 +167,12 @@ impl ThrustLine {
         }
     }
 
-    /// A line of the structure at rest under a force per unit mass in g.
+    /// Returns an admissible thrust line of the structure at rest under a force per unit mass, in multiples of gravity.
     ///
-    /// At rest it is statically indeterminate, and one admissible line proves that it can stay at rest. This is the
-    /// mean of the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways
-    /// right), weighted so that their loads add up to the load. Moments and normal forces are linear in the load, so
-    /// the line is inside wherever both are. It grows into that of the mechanism that starts.
+    /// The structure at rest is statically indeterminate, and one admissible line proves that it can stay at rest. This line is the weighted mean of
+    /// the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways right). The weights are such that the
+    /// loads add up to the given load. Moments and normal forces are linear in the load, so the mean is inside if both limit lines are. At the onset
+    /// of rocking it equals the line of the mechanism.
     #[must_use]
     pub fn at_rest(
         to_right: &Incipient,
@@ -186,7 +182,7 @@ impl ThrustLine {
     ) -> Self {
         let right = to_right.thrust_line.at(0.0);
         let mut left = to_left.thrust_line.at(profile.end());
-        // In the mirror the parts before and after the section change places, and with them the sign.
+        // A reflection exchanges the parts before and after the section, which changes the sign.
         left.linear.y = -left.linear.y;
         let both_g = to_right.acceleration_g + to_left.acceleration_g;
         let (weight, push) = (-body_force_g.y, body_force_g.x / both_g);
@@ -197,7 +193,7 @@ impl ThrustLine {
         Self::new(profile, vec![part])
     }
 
-    /// The resultant at a section; where two parts meet, as the first of them sees it.
+    /// Returns the resultant at a section; at the end of a part, that of the part before.
     #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
@@ -210,8 +206,8 @@ impl ThrustLine {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
-    /// Crossings of the line with these sections, outwards from the axis over the thickness: within -0.5 to 0.5 inside the
-    /// ring; `None` where a section is not pressed.
+    /// Returns the crossings of the line with these sections, outwards from the axis over the thickness: -0.5 to 0.5 inside the ring. `None` for a
+    /// section without compression.
     #[must_use]
     pub fn eccentricity_ratios(&self, sections_rad: &[f64]) -> Vec<Option<f64>> {
         let sections = sections_rad
@@ -250,8 +246,7 @@ impl ThrustLine {
     }
 }
 
-/// The largest of `known` and the demands `at` all sections of a rigid part of the ring, over which they are
-/// smooth except for a few kinks.
+/// Returns the largest of `known` and of the demands at all sections of a rigid part, over which they are smooth except for a few kinks.
 fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Demand) -> Demand {
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()
@@ -276,7 +271,7 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
     demand
 }
 
-/// The friction at the section between two samples where the load becomes too small to count; zero if both count, or neither.
+/// Returns the friction at the section between two samples where the normal force reaches [`LEAST_LOAD`]; zero if both samples count, or neither.
 fn load_edge(
     (from_rad, from): &(f64, Demand),
     (to_rad, to): &(f64, Demand),
@@ -291,7 +286,7 @@ fn load_edge(
     at(if counts { before } else { after }).friction
 }
 
-/// The maximum of a quantity between the neighbours of a sample, if it may be above `floor`.
+/// Returns the maximum of a quantity between the neighbours of a sample; `None` if it cannot exceed `floor`.
 fn top_near(
     i: usize,
     samples: &[(f64, Demand)],
