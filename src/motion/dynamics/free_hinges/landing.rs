@@ -1,18 +1,16 @@
-//! The motion of a row with free hinges, in steps that end at landings.
+//! Motion of a row with free hinges, in steps that end at landings.
 //!
-//! Steps are those of the leapfrog: a kick by gravity and the ground, after which the velocities are the nearest ones that the
-//! joints allow ([`crate::mechanics::contact`]), and a drift of the gaps. A step ends exactly where a corner lands, however
-//! short that makes it. There the velocity is completed with the old mechanism and then projected onto what the shut corners
-//! allow, the perfectly inelastic impact of Moreau.
+//! A leapfrog step is a kick by gravity and ground, the solution for the nearest admissible velocities ([`crate::mechanics::contact`]), and a drift
+//! of the gaps. A step ends exactly where a corner lands, at any step length. There the velocity is completed with the old mechanism, then projected
+//! onto the velocities that the closed corners allow. This is the perfectly inelastic impact of Moreau.
 //!
-//! An impact shuts more than the corner that was aimed at. Four open corners of an arch have one degree of freedom, so all four
-//! land at one instant; in numbers, rounding of the closure leaves the others open. They belong to the impact, and so does
-//! every corner open by less than a billionth of the thickness: one projection after the other is not the projection onto all,
-//! and the difference does not fall with the step. Landings are merged by time only where impacts crowd without end, or in a
-//! repetition.
+//! An impact closes more than the expected corner. Four open corners of an arch have one degree of freedom, so all four land simultaneously;
+//! numerically, rounding errors of the closure leave the others open. These corners belong to the impact, as does every corner open by less than a
+//! billionth of the thickness. Successive projections differ from the projection onto all constraints, and this difference does not decrease with the
+//! step length. Landings are merged in time only after too many impacts within the shortest step, or in a repetition.
 //!
-//! Pins move on arcs. How far the straight drift of two bodies would part them over the coming step is taken from their last
-//! motion, never from the trial one, and given to the program as a jump of the velocity at the joint.
+//! Pins move on arcs. A linear drift of two bodies would part them. This gap over the next step is computed from the last motion, never from the
+//! trial one, and compensated by a prescribed relative velocity at the joint.
 
 mod observation;
 mod search;
@@ -40,17 +38,17 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::stance::Stance;
 
-/// An arch whose ends miss each other by more than this fraction of the thickness of a joint is in error.
+/// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
-/// Corners that are open by less than this fraction of the thickness belong to an impact.
+/// Largest gap, over the thickness, of corners that belong to an impact.
 const LANDED_RATIO: f64 = 1e-9;
-/// The last three open corners of an arch belong to an impact when all are open by less than this fraction of the thickness:
-/// they must meet three equations of closure, which only shut joints do.
+/// Largest gap, over the thickness, at which the last three open corners of an arch belong to an impact. They must satisfy three closure equations,
+/// which only closed joints do.
 const LAST_THREE_RATIO: f64 = 1e-6;
-/// A row has overturned when it is lower than at rest by this fraction of weight times size.
+/// Decrease of potential energy below that at rest, over weight times size, at which a row has overturned.
 const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 
-/// Blocks that moved as one in the last drift.
+/// Blocks that moved as one body in the last drift.
 #[derive(Clone, Copy, Debug, Default)]
 struct Piece {
     first: usize,
@@ -69,27 +67,27 @@ impl Piece {
         }
     }
 
-    /// Deviation of the arc of a point from its tangent over a step, per time.
+    /// Returns the deviation of the arc of a point from its tangent in a step, over the step length.
     fn bend(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
         let (arm, turn) = (point - self.centre, step_s * self.rate);
         arm * (-0.5 * turn * self.rate) - turned(arm) * (turn * turn * self.rate / 6.0)
     }
 }
 
-/// A step that was solved.
+/// Solved step.
 #[derive(Clone, Copy, Debug)]
 struct Step {
-    /// The length that it was expected to have: the impulses are those up to its middle.
+    /// Expected step length: the impulses act up to its middle.
     expected_s: f64,
     length_s: f64,
-    /// Whether corners land within it, not at its end.
+    /// True if corners land within the step and not at its end.
     merged: bool,
 }
 
 /// Impacts that follow each other within the shortest step.
 #[derive(Clone, Copy, Debug, Default)]
 struct Crowd {
-    /// When the first of them was.
+    /// Time of the first impact, in seconds.
     first_s: f64,
     impacts: usize,
 }
@@ -102,43 +100,46 @@ pub struct LandingStepper<'a> {
     rest: Rest<'a>,
     right: RightSupport<'a>,
     course: Course<'a>,
-    /// The time up to which gravity and ground have acted on the velocities.
+    /// Time up to which gravity and ground have been applied to the velocities.
     kicked_s: f64,
     pub placement: Placement,
     program: Program,
-    /// For solutions that must not change the active set.
+    /// Copy for solutions that must not change the active set.
     auxiliary: Program,
     closer: Closer,
     ties: Ties<'a>,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
-    /// Corner about which each joint turned in the last drift.
+    /// Corner about which each joint turned in the last drift; `None` for closed joints.
     turning: Vec<Option<Edge>>,
     load: Load,
-    /// Rates of the gaps in the solution before the last.
+    /// Rates of the gaps in the solution before the last one.
     earlier_rates: Vec<[f64; 2]>,
-    /// Rates of the gaps that bring landing corners to zero within the step.
+    /// Rates that close the gaps of landing corners within the step.
     landing: Vec<[f64; 2]>,
     /// Corners that land in a merged step: joint and edge.
     landed: Vec<(usize, usize)>,
     change: Vec<[f64; 2]>,
     shares: Vec<[f64; 2]>,
-    /// Corners that touched at the beginning of the step.
+    /// Corners in contact at the beginning of the step.
     closed: Vec<Corners>,
-    /// True while it stays at its initial position.
+    /// True while the row is in its initial position.
     stands: bool,
-    /// Corners that were pressed in the step that ended at an impact.
+    /// Corners in contact in the step that ended at an impact.
     pressed: Vec<Corners>,
     start_energy: f64,
     friction_demand: f64,
     step_iterations: u64,
     crowd: Crowd,
-    /// Time since which it lies at its initial position without motion, in seconds; `None` while it moves.
+    /// Time, in seconds, since which the row rests in its initial position; `None` while it moves.
     lies_since_s: Option<f64>,
 }
 
 impl<'a> LandingStepper<'a> {
-    /// A stepper that starts at the stance of the row, or released at rest with the initial rotations.
+    /// Returns a stepper that starts from a state of the row in equilibrium, or released at rest with initial rotations.
+    ///
+    /// # Errors
+    /// If the initial rotations leave a closure error.
     pub fn new(
         task: Task<'a>,
         standing: &Stance,
@@ -198,7 +199,10 @@ impl<'a> LandingStepper<'a> {
         Ok(stepper)
     }
 
-    /// Takes up the initial rotations, at rest.
+    /// Sets the initial rotations, at rest.
+    ///
+    /// # Errors
+    /// If they leave a closure error.
     fn release(&mut self, rotations_rad: &[f64]) -> Result<(), RowMotionError> {
         self.placement.turn(rotations_rad);
         let error_m = self.placement.closure_error();
@@ -212,7 +216,7 @@ impl<'a> LandingStepper<'a> {
         let active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
         let is_open = |corners: &&Corners| **corners != [true; 2];
         let open = active.iter().filter(is_open).count();
-        // Fewer than three hinges do not hold an arch: then the initial active set stays.
+        // With fewer than three hinges an arch does not move, so keep the initial active set.
         if self.row.supports == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
@@ -228,30 +232,30 @@ impl<'a> LandingStepper<'a> {
         Ok(())
     }
 
-    /// Whether the last step ended at an impact, after so many within the shortest step that the next ones are merged.
+    /// Returns whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
     fn is_crowded(&self) -> bool {
         self.has_just_landed() && self.crowd.impacts > self.course.task.settings.merged_after
     }
 
-    /// Whether the step before ended at an impact.
+    /// Returns whether the last step ended at an impact.
     fn has_just_landed(&self) -> bool {
         self.kicked_s == self.course.time && self.course.impacts > 0
     }
 
-    /// Marks the corners that touch: they may not close.
+    /// Constrains the corners in contact.
     fn touch_shut(&mut self) {
         for (touching, gaps) in self.load.touching.iter_mut().zip(&self.placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
     }
 
-    /// The blocks of a piece.
+    /// Returns the blocks of a piece.
     fn blocks_of(&self, piece: usize) -> Range<usize> {
         let next = self.pieces.get(piece + 1);
         self.pieces[piece].first..next.map_or(self.load.free.len(), |next| next.first)
     }
 
-    /// Motions of the blocks after a kick of this duration, before contact.
+    /// Computes the free velocities of the blocks after a kick of this duration.
     fn kick(&mut self, kick: Vector2<f64>, lasts_s: f64) {
         for index in 0..self.pieces.len() {
             let twist = self.pieces[index].twist(kick);
@@ -266,15 +270,15 @@ impl<'a> LandingStepper<'a> {
         self.ties.pull(centres_m, lasts_s, gain);
     }
 
-    /// Change of velocity by gravity and ground, and that of the ground alone, over an interval.
+    /// Returns the change of velocity by gravity and ground over an interval, and the part of the ground alone.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         let ground = self.velocity.at(to_s) - self.velocity.at(from_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - from_s));
         (-ground - fall, ground)
     }
 
-    /// Applies the rest of the last kick, up to the instant of the positions, with the corners that touch there. Returns the
-    /// impulse of the ground in it.
+    /// Applies the rest of the last kick, up to the time of the positions, with the contacts at that time. Returns the change of velocity by the
+    /// ground.
     fn half_kick(&mut self) -> Vector2<f64> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
@@ -287,7 +291,7 @@ impl<'a> LandingStepper<'a> {
         ground
     }
 
-    /// The interval of the kick of a step.
+    /// Returns the interval of the kick of a step.
     fn kicked(&self, step: f64) -> (f64, f64) {
         (self.kicked_s, self.course.time + 0.5 * step)
     }
@@ -314,7 +318,7 @@ impl<'a> LandingStepper<'a> {
         Ok(())
     }
 
-    /// Jumps of the velocity at the joints: what arcs need over the coming step, and what closes landing corners.
+    /// Computes the prescribed relative velocities at the joints: corrections for arcs over the next step, and rates that close landing corners.
     fn jump(&mut self, step: f64) {
         self.load.jumps.fill(Twist::ZERO);
         let count = self.pieces.len();
@@ -351,7 +355,7 @@ impl<'a> LandingStepper<'a> {
         self.jump_to_right_support();
     }
 
-    /// The right support moves: beside one that is still, its joint jumps the other way.
+    /// Adds the motion of the right support: its joint gets the opposite relative velocity, as if the support were at rest.
     fn jump_to_right_support(&mut self) {
         if self.right.moves()
             && let Some(last) = self.load.jumps.last_mut()
@@ -360,7 +364,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Work of the right support by the impulses of the last solution, and of ties that pulled for this duration.
+    /// Returns the work of the right support by the impulses of the last solution, and by tie forces during `lasts_s`.
     fn work_of_right_support(&mut self, lasts_s: f64) -> f64 {
         let (true, Some(frame)) = (self.right.moves(), self.placement.frames.last()) else {
             return 0.0;
@@ -372,14 +376,14 @@ impl<'a> LandingStepper<'a> {
         -impulse.dot(&self.right.mean_m_s())
     }
 
-    /// Adds that work to the energy balance, and returns it.
+    /// Adds the work of the right support to the energy balance, and returns the work.
     fn note_right_support(&mut self, lasts_s: f64) -> f64 {
         let work = self.work_of_right_support(lasts_s);
         self.course.of_row.right_foot_j += work;
         work
     }
 
-    /// Starts the next program with these corners pressed.
+    /// Starts the next solution with selected corners active.
     fn press(&mut self, presses: impl Fn(&Self, usize, usize) -> bool) {
         for joint in 0..self.load.touching.len() {
             for edge in 0..2 {
@@ -395,7 +399,7 @@ impl<'a> LandingStepper<'a> {
         kinetic(&self.next_pieces)
     }
 
-    /// The pieces that move as one in the last solution.
+    /// Computes the pieces that move as one body in the last solution.
     fn form_pieces(&mut self) {
         self.next_pieces.clear();
         let (blocks, mut first) = (self.load.free.len(), 0);
@@ -421,7 +425,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Records the work of the ground and the forces of a step that was solved, and forms its pieces.
+    /// Records the work of the ground and the forces of a solved step, and computes its pieces.
     fn account(&mut self, step: &Step) {
         let before = self.momentum();
         let (from_s, to_s) = self.kicked(step.expected_s);
@@ -429,7 +433,7 @@ impl<'a> LandingStepper<'a> {
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.course.of_row.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
         self.note_right_support(to_s - from_s);
-        // In a shorter time the rounding of the velocities exceeds the effect of the forces.
+        // In a shorter time the rounding errors of the velocities exceed the effect of the forces.
         if step.merged || to_s - from_s < self.course.task.settings.shortest_step_s {
             return;
         }
@@ -438,7 +442,10 @@ impl<'a> LandingStepper<'a> {
         self.friction_demand = self.course.note_forces(impulses, to_s - from_s);
     }
 
-    /// Moves the row over a step that was solved.
+    /// Moves the row over a solved step.
+    ///
+    /// # Errors
+    /// If the closure error of the arch is too large.
     fn drift(&mut self, step: &Step) -> Result<(), RowMotionError> {
         self.kicked_s = self.kicked(step.expected_s).1;
         for (change, rates) in self.change.iter_mut().zip(&self.landing) {
@@ -459,7 +466,7 @@ impl<'a> LandingStepper<'a> {
         let error_m = self.placement.closure_error();
         let of_row = &mut self.course.of_row;
         of_row.closure_error_m = of_row.closure_error_m.max(error_m);
-        // NaN is an error, too.
+        // NaN is also an error.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
             self.weigh_pieces();
             Ok(())
@@ -472,7 +479,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Changes the gaps, with the right support at its position at this time.
+    /// Changes the gaps, with the right support at its position at `time_s`.
     fn open_gaps(&mut self, time_s: f64) {
         let change = &self.change;
         if !self.right.moves() {
@@ -491,7 +498,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Makes the pieces of the solution those of the motion, and notes about which corners they turn.
+    /// Replaces the pieces of the motion by those of the solution, and stores the corners about which joints turn.
     fn take_pieces(&mut self) {
         self.right.velocity_m_s = self.right.next_m_s;
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
@@ -504,7 +511,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Centres of the pieces in the present position.
+    /// Computes the centres of the pieces in the current position.
     fn weigh_pieces(&mut self) {
         for index in 0..self.pieces.len() {
             let (mut first, mut mass) = (Vector2::zeros(), 0.0);
@@ -518,12 +525,12 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Whether this corner touches, and did not at the beginning of the step.
+    /// Returns whether a corner is in contact that was open at the beginning of the step.
     fn has_landed(&self, joint: usize, edge: usize) -> bool {
         self.placement.gaps_m[joint][edge] == 0.0 && !self.closed[joint][edge]
     }
 
-    /// Completes the velocity at a landing with the old mechanism, then projects it.
+    /// Completes the velocity at a landing with the old mechanism, then projects it onto the admissible velocities.
     fn impact(&mut self) -> Result<(), RowMotionError> {
         self.shut_what_landed();
         self.pressed.copy_from_slice(&self.program.active);
@@ -534,7 +541,7 @@ impl<'a> LandingStepper<'a> {
         self.load.free.copy_from_slice(&self.program.velocities);
         self.touch_shut();
         self.program.start_from(&self.pressed);
-        // Most of the corners that land press.
+        // Most landing corners get a compressive impulse.
         self.press(Self::has_landed);
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
@@ -552,7 +559,7 @@ impl<'a> LandingStepper<'a> {
         Ok(())
     }
 
-    /// Shuts the corners that belong to an impact besides those that the closure shut.
+    /// Closes the corners that belong to an impact, besides those closed by the removal of the closure error.
     fn shut_what_landed(&mut self) {
         loop {
             // On moved supports three joints stay open.
@@ -573,7 +580,7 @@ impl<'a> LandingStepper<'a> {
         self.weigh_pieces();
     }
 
-    /// Solves for the velocities at the instant of the positions, with the corners that touched at the beginning of the step.
+    /// Solves for the velocities at the time of the positions, with the contacts of the beginning of the step.
     fn complete_kick(&mut self) -> Result<(), RowMotionError> {
         let before = self.momentum();
         let ground = self.half_kick();
@@ -603,8 +610,8 @@ mod tests {
     use crate::dynamics::row::clock::Settings;
     use crate::mechanics::geometry::ring::Ring;
 
-    /// The program of a step as three rows per joint in the velocities of the blocks, for an interior-point solver. The unknowns
-    /// are per block the velocity of its centre and its rate times the radius of gyration, all times the root of its mass.
+    /// Solves the quadratic program of a step with an interior-point solver, with up to three rows per joint. The unknowns of a block are the
+    /// velocity of its centre and its rotation rate times the radius of gyration, all times the root of its mass.
     fn judged(stepper: &LandingStepper) -> Option<Vec<Twist>> {
         let blocks = &stepper.row.blocks;
         let centres = &stepper.placement.centres_m;
@@ -713,7 +720,7 @@ mod tests {
                 stepper.touch_shut();
                 stepper.landing.fill([0.0; 2]);
                 stepper.solve_step(settings.longest_step_s).unwrap();
-                // The solver cannot decide near rest, where the impulses are not unique.
+                // The solver fails near rest, where the impulses are not unique.
                 let judge = judged(&stepper);
                 compared += usize::from(judge.is_some());
                 let velocities = &stepper.program.velocities;
@@ -727,8 +734,7 @@ mod tests {
                 stepper.step(60.0).unwrap();
             }
             assert!(fastest > 0.05 && stepper.course.impacts > 3, "{fastest}");
-            // The solver stops where its objective is known to 1e-14, which leaves errors of some 1e-7 in velocities of a metre a
-            // second.
+            // The solver stops when its objective is accurate to 1e-14, so the errors are some 1e-7 for velocities of 1 m/s.
             assert!(worst < 2e-8 && compared > 250, "{worst} {compared}");
         }
     }

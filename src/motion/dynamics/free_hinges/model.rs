@@ -1,4 +1,4 @@
-//! A row of blocks with free hinges as a model of motion.
+//! Row of blocks with free hinges as a model of motion.
 
 use std::ops::RangeInclusive;
 
@@ -21,40 +21,43 @@ use crate::mechanics::column::Column;
 use crate::mechanics::settling::Movements;
 use crate::mechanics::sway::Sway;
 
-/// Rigid blocks in a row, an arch or a stack, whose joints open about either edge, and shut again, at any time.
+/// Row of rigid blocks, as an arch or a stack, whose joints open about either edge and close again at any time.
 ///
-/// Joints carry no tension and do not slide; impacts are perfectly inelastic. Hinges and restitution follow from the
-/// blocks alone.
+/// Joints carry no tension and do not slide, unless a friction coefficient is given. Impacts are perfectly inelastic. Hinges and restitution are
+/// results, not input.
 #[derive(Clone, Debug)]
 pub struct FreeHinges {
     rigid: RigidRow,
     options: RowOptions,
-    /// True for a study of many cases: its default steps are longer.
+    /// True in a study of many cases, with longer default steps.
     many_cases: bool,
-    /// Factor on the steps, for a repetition.
+    /// Factor on the step lengths, for a repetition.
     steps_times: f64,
-    /// Whether landings that follow an impact are merged, for a repetition.
+    /// True if landings shortly after an impact are merged, for a repetition.
     merges_landings: bool,
 }
 
 /// Options of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct RowOptions {
-    /// The longest step, in seconds (1e-9 to 1); if `None`, it follows the size of the row.
+    /// Longest step, in seconds (1e-9 to 1); `None` selects it by the size of the row.
     pub longest_step_s: Option<f64>,
-    /// Landings that crowd within this time, in seconds, are taken as one; if `None`, a thirtieth of the longest step.
+    /// Shortest step, in seconds: landings within this time are merged if impacts are too frequent. `None` selects a thirtieth of the longest step.
     pub shortest_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint, in 0.001 to 1000; if `None`, joints do not slip.
+    /// Coulomb's coefficient of friction at all joints, from 0.001 to 1000; `None` prevents slip.
     pub friction_coefficient: Option<f64>,
 }
 
 impl RowOptions {
-    /// With shorter steps a run takes forever; longer ones miss the motion.
+    /// Range of step lengths in seconds. Shorter steps need too much time; longer ones are not accurate.
     pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
-    /// Joints of stone have 0.5 to 0.8. Beyond the upper end nothing slips, and below the lower one nothing stands.
+    /// Range of friction coefficients; stone joints have 0.5 to 0.8. Above the range nothing slips, below it nothing is stable.
     pub const FRICTION_COEFFICIENT: RangeInclusive<f64> = 1e-3..=1e3;
 
-    /// Refuses steps and coefficients that are not valid.
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// If a step or the coefficient is out of range, or if the steps contradict each other.
     pub fn checked(self) -> Result<Self, ArgumentError> {
         let friction = self.friction_coefficient;
         for (argument, value, range) in [
@@ -82,13 +85,13 @@ impl RowOptions {
     }
 }
 
-/// The step that an error of the energy balance proposes, over the longest step.
+/// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.2;
-/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is mentioned.
+/// Error of the energy balance, relative to the largest energy of the motion, above which it is reported.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
 
 impl FreeHinges {
-    /// A model of any row that stands.
+    /// Returns the model of a stable row.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
@@ -102,7 +105,7 @@ impl FreeHinges {
         })
     }
 
-    /// The voussoirs of an arch.
+    /// Returns the model of an arch of voussoirs.
     ///
     /// # Errors
     /// When the arch has no voussoirs, or cannot carry its own weight.
@@ -110,7 +113,7 @@ impl FreeHinges {
         Self::new(arch.row()?)
     }
 
-    /// The drums of a column.
+    /// Returns the model of a column of drums.
     ///
     /// # Errors
     /// When the drums do not make a row, or the column cannot carry its own weight.
@@ -118,11 +121,11 @@ impl FreeHinges {
         Self::new(column.row()?)
     }
 
-    /// This model on supports that moved slowly before time zero, from where they were built. It starts on the hinges that this
-    /// movement opened; displacements and rotations count from there.
+    /// Returns this model on supports that moved slowly before time zero. The motion starts on the hinges that this movement opened; displacements
+    /// and rotations are relative to that position.
     ///
     /// # Errors
-    /// When it falls or a tie breaks on the way, or it slides there.
+    /// If the row falls, a tie breaks or a joint slides during the movement.
     pub fn on_supports(self, movements: &Movements) -> Result<Self, RowModelError> {
         if movements.is_none() {
             return Ok(self);
@@ -132,7 +135,7 @@ impl FreeHinges {
         Ok(Self { rigid, ..self })
     }
 
-    /// This model with other options.
+    /// Returns this model with other options.
     ///
     /// # Errors
     /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
@@ -147,39 +150,38 @@ impl FreeHinges {
         })
     }
 
-    /// This model for a study of many cases. Without slip its default steps are longer. Few answers change, and where one does,
-    /// repetitions disagree.
+    /// Returns this model for a study of many cases: without slip, default steps are longer. Few results change, and those that do differ between
+    /// repetitions.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
         self
     }
 
-    /// Coulomb's coefficient of friction; `None` if joints do not slip.
+    /// Returns Coulomb's coefficient of friction; `None` if joints do not slip.
     #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         self.options.friction_coefficient
     }
 
-    /// The blocks.
+    /// Returns the row of blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
 
-    /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
-    /// not known.
+    /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }
 
-    /// The longest step that a history takes, in seconds.
+    /// Returns the longest step of a history, in seconds.
     pub fn longest_step_s(&self, request: &Request) -> f64 {
         self.settings(request).longest_step_s
     }
 
-    /// Settings of the computation of a motion.
+    /// Returns the numerical settings of a motion.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {

@@ -1,4 +1,4 @@
-//! One motion of a row with rigid joints.
+//! Simulation of one motion of a row with rigid joints.
 
 use super::landing::LandingStepper;
 use super::sliding::SlidingStepper;
@@ -12,14 +12,13 @@ use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::stance::Stance;
 
-/// The most steps that a motion may have: a month of computing. Much shorter ones are lost in the rounding of the time.
+/// Maximum number of steps of a motion, about a month of computing. Many more steps would be shorter than the rounding error of time.
 const MOST_STEPS: f64 = 1e12;
 
-/// Computes the motion of a row on moving ground, from rest or released from given rotations of its blocks
-/// (radians; hinges only).
+/// Computes the motion of a row on moving ground, from rest or released at given rotations of its blocks (in radians; without slip only).
 ///
 /// # Errors
-/// When the initial rotations do not fit, or a step fails.
+/// If the initial rotations do not close the arch, or a step fails.
 pub fn simulate(
     row: &Row,
     ground: &GroundMotion,
@@ -32,7 +31,7 @@ pub fn simulate(
     motion(task, &Stance::undeformed(row), initial_rad, recorder)
 }
 
-/// Computes a motion of a row from any stance.
+/// Computes the motion of a row from any state in equilibrium.
 pub fn motion(
     task: Task<'_>,
     standing: &Stance,
@@ -41,7 +40,7 @@ pub fn motion(
 ) -> Result<Summary, RowMotionError> {
     let remedy = "give a longer `longest_step_s` in [free_hinges]";
     task.settings.within(MOST_STEPS, remedy)?;
-    // A recorder of any lifetime serves for as long as the task.
+    // The cast shortens the lifetime of the recorder to that of the task.
     let recorder = recorder.map(|recorder| recorder as _);
     let released = |recorder| LandingStepper::new(task, standing, initial_rad, recorder);
     let Some(coefficient) = task.settings.friction_coefficient else {

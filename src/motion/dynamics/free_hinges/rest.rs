@@ -1,5 +1,5 @@
-//! The position of a row with rigid joints before it moves: undeformed, or on the hinges of supports that have moved. Displacements and
-//! rotations count from there.
+//! Initial position of a row with rigid joints: undeformed, or on the hinges of moved supports. Displacements and rotations are relative to this
+//! position.
 
 use nalgebra::Vector2;
 
@@ -9,12 +9,12 @@ use crate::mechanics::contact::Corners;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::joints::Placement;
 
-/// The initial position of a row.
+/// Initial position of a row.
 #[derive(Clone, Debug)]
 pub(super) struct Rest<'a> {
     row: &'a Row,
     pub placement: Placement,
-    /// Corners that touch in this position.
+    /// Corners in contact in this position.
     pub touching: Vec<Corners>,
 }
 
@@ -27,23 +27,23 @@ impl<'a> Rest<'a> {
         }
     }
 
-    /// Whether joints are open.
+    /// Returns whether joints are open in this position.
     pub fn is_on_hinges(&self) -> bool {
         self.placement.open_corners() > 0
     }
 
-    /// True if a row with these gaps lies in this position: three hinges determine it.
+    /// Returns whether a row with these gaps is in this position, by its contacts: three hinges determine the position.
     pub fn has(&self, gaps_m: &[[f64; 2]]) -> bool {
         touching(gaps_m).eq(self.touching.iter().copied())
     }
 
-    /// Rotations of the blocks from this position.
+    /// Returns the rotations of the blocks relative to this position.
     pub fn turned_rad(&self, poses: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
         let stood = self.placement.poses.iter().map(Pose::rotation_rad);
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
-    /// Displacements of blocks with these centres, times their masses.
+    /// Returns the sum of displacements of the blocks from this position times their masses, in kg m, for given centres.
     pub fn moved_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
         let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
@@ -51,8 +51,8 @@ impl<'a> Rest<'a> {
         moved.sum()
     }
 
-    /// True if a block with this centre and rotation has turned too far, or moved too far from its positions relative to both feet, which
-    /// have moved so far.
+    /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet. `feet_m` are the displacements of
+    /// the feet.
     pub fn is_left_by(
         &self,
         blocks: impl Iterator<Item = (Vector2<f64>, f64)>,
@@ -70,7 +70,7 @@ impl<'a> Rest<'a> {
     }
 }
 
-/// Corners that touch, of joints with these gaps.
+/// Returns the corners in contact, for given gaps of the joints.
 pub(super) fn touching(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
     gaps_m.iter().map(|gaps| gaps.map(|gap| gap == 0.0))
 }

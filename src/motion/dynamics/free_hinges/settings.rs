@@ -1,25 +1,25 @@
-//! Steps of a motion with rigid joints.
+//! Step lengths of a motion with rigid joints.
 
 use crate::dynamics::row::clock::Settings;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::tie::square_frequency;
 
-/// Default of the shortest step over the longest one.
+/// Default ratio of the shortest step to the longest one.
 const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
-/// Steps of studies of many cases over those of a run. With them, second peaks of 8 of 73 random arches differ by more than 1 % from
-/// those with the shortest steps; with the steps of a run, those of 5 arches do.
+/// Ratio of the steps in studies of many cases to those of a single run. With these steps, the second peaks of 8 of 73 random arches differ by more
+/// than 1 % from those with the shortest steps; with the steps of a single run, those of 5 arches differ.
 pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
-/// Impacts within the shortest step after which the next landings are merged: an endless series would stop time.
+/// Number of impacts within the shortest step after which the next landings are merged; an infinite series of impacts would stop time.
 const CROWDED_IMPACTS: usize = 50;
-/// The time after an impact in which a repetition merges landings, over the shortest step.
+/// Time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
-/// Step over the longest stable one of a single block between ties. Shut joints combine blocks to heavier bodies, whose stable steps
-/// are longer.
+/// Ratio of the step to the longest stable step of a single block between ties. Closed joints combine blocks to heavier bodies with longer stable
+/// steps.
 const TIE_STEP_RATIO: f64 = 0.2;
 
 impl Settings {
-    /// Steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes they follow the square root of size
-    /// over gravity. The shortest step is a thirtieth of the longest.
+    /// Returns settings for steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes the step is proportional to the
+    /// square root of size over gravity. The shortest step is a thirtieth of the longest.
     #[must_use]
     pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let longest_step_s = 3.4e-4 * (row.size_m / gravity_m_s2).sqrt();
@@ -32,7 +32,7 @@ impl Settings {
         }
     }
 
-    /// Equal steps, for joints that slip: 0.1 ms for a size of 10 m.
+    /// Returns settings for equal steps, for joints that slip: 0.1 ms for a size of 10 m.
     #[must_use]
     pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let step_s = 1e-4 * (row.size_m / gravity_m_s2).sqrt();
@@ -43,7 +43,7 @@ impl Settings {
         }
     }
 
-    /// These settings with steps short enough for the vibration of blocks on the ties of the row.
+    /// Returns these settings with steps short enough for the vibration of blocks on the ties of the row.
     pub(super) fn for_ties(self, row: &Row) -> Self {
         let square = square_frequency(&row.ties, &row.blocks);
         if square == 0.0 {
@@ -53,7 +53,7 @@ impl Settings {
         self.times((longest_s / self.longest_step_s).min(1.0))
     }
 
-    /// These settings with all steps multiplied.
+    /// Returns these settings with all steps multiplied by a factor.
     #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         Self {
@@ -63,8 +63,8 @@ impl Settings {
         }
     }
 
-    /// These settings with the actual steps multiplied. Steps also end at output times: if these limit the steps, the output step is
-    /// multiplied as well.
+    /// Returns these settings with the actual steps multiplied by a factor. Steps also end at output times; if output times limit the steps, the
+    /// output step is multiplied as well.
     pub(super) fn with_steps_times(&self, factor: f64) -> Self {
         let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
         let part = |step_s: f64| if limits(step_s) { factor } else { 1.0 };
@@ -75,8 +75,8 @@ impl Settings {
         }
     }
 
-    /// These settings with the landings that follow an impact within four shortest steps merged. Real impacts take time, and the order
-    /// of landings within that time is unknown.
+    /// Returns these settings with landings merged within four shortest steps after an impact. Real impacts take time, and the order of landings in
+    /// that time is unknown.
     pub(super) fn with_landings_merged(&self) -> Self {
         Self {
             shortest_step_s: (MERGED_RATIO * self.shortest_step_s).min(self.longest_step_s),

@@ -1,13 +1,12 @@
-//! The motion of a row whose joints open and slip, in equal steps.
+//! Motion of a row whose joints open and slip, in equal steps.
 //!
-//! The state is the position of every block, its velocity half a step before, and the offset at which every joint stuck last. A step
-//! is that of the leapfrog: a kick by gravity and ground, the velocities that the joints allow ([`crate::mechanics::coulomb`]), and a
-//! drift. The next step makes up for what gaps and offsets are off zero by, and for the curvature of the motion, known from the
-//! velocity before. No other correction is needed to keep the row together.
+//! The state consists of the position of every block, its velocity half a step before, and the offset at which every joint stuck last. A leapfrog
+//! step is a kick by gravity and ground, the solution for admissible velocities ([`crate::mechanics::coulomb`]), and a drift. The next step corrects
+//! the position errors of gaps and offsets, and includes the curvature of the motion, known from the last velocity. No other correction is needed to
+//! keep the row together.
 //!
-//! Steps do not end at landings: the time of an impact is known to within a step. The step in which a corner lands leaves it the rate
-//! that closes the rest of its gap; the next step takes that rate as well. So an impact is reported one step later, with the energy of
-//! both steps.
+//! Steps do not end at landings: the time of an impact is accurate to a step. In the step of its landing a corner keeps the rate that closes the rest
+//! of its gap; the next step removes this rate. An impact is therefore reported one step later, with the energy of both steps.
 
 mod impact;
 
@@ -34,15 +33,15 @@ use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
 use crate::mechanics::stance::Stance;
 
-/// Rates are found to within this fraction of the fastest motion, and of what gravity does in a step.
+/// Tolerance of rates, relative to the fastest motion plus the effect of gravity in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
-/// Impulses that jump are solved for again if the proximal term leaves rates above this fraction of the fastest motion.
+/// Largest residual rate due to the proximal term, relative to the fastest motion; above it the impulses are solved for again.
 const DRAWN: f64 = 1e-6;
-/// Corners land if they were farther apart than this fraction of the thickness of their joint.
+/// Least gap before a landing, over the thickness of the joint.
 const APART_RATIO: f64 = 1e-9;
-/// Bounds of friction that are wrong by less than this fraction of the largest one have converged.
+/// Relative error of friction bounds below which these have converged.
 const CONVERGED: f64 = 1e-9;
-/// Bounds of friction that are wrong by more than this fraction of the largest one are an error.
+/// Relative error of friction bounds above which the computation fails.
 const LARGEST_BOUND_ERROR: f64 = 0.05;
 
 pub struct SlidingStepper<'a> {
@@ -51,7 +50,7 @@ pub struct SlidingStepper<'a> {
     gravity: f64,
     rest: Rest<'a>,
     right: RightSupport<'a>,
-    /// Gaps and offsets of the joints at the initial position.
+    /// Gaps and offsets of the joints in the initial position.
     stood_m: Vec<Vector3<f64>>,
     course: Course<'a>,
     faces: Vec<Faces>,
@@ -62,35 +61,35 @@ pub struct SlidingStepper<'a> {
     velocities: Vec<Vector3<f64>>,
     contacts: Vec<Contact>,
     ties: Ties<'a>,
-    /// Contributions of ties to the velocities of the blocks in a kick.
+    /// Changes of the velocities of the blocks by ties in a kick.
     pulled: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
-    /// Distance from zero of the coordinates of every joint at the end of the step, per time, without the effect of their rates.
+    /// Position error of the joint coordinates at the end of the step without their rates, over the step length.
     lags: Vec<Vector3<f64>>,
-    /// Rates of the coordinates in the motion before the step.
+    /// Rates of the joint coordinates before the step.
     rates_before: Vec<Vector3<f64>>,
-    /// Time up to which the kicks have acted.
+    /// Time up to which the kicks have been applied.
     kicked_s: f64,
     last_step: f64,
     program: Program,
-    /// For solutions that must not change the modes.
+    /// Copy for solutions that must not change the modes.
     auxiliary: Program,
     modes_before: Vec<Mode>,
     /// True while no joint is open.
     stands: bool,
-    /// Energy that friction took outside impacts.
+    /// Energy dissipated by friction outside impacts.
     held_back: f64,
-    /// The impact of the last step, if there was one.
+    /// Impact of the last step; `None` if there was none.
     landing: Option<Landing>,
-    /// The least energy so far, without the work of the ground.
+    /// Least energy up to now, without the work of the ground.
     least_energy: f64,
     friction_demand: f64,
     centres: Vec<Vector2<f64>>,
 }
 
 impl<'a> SlidingStepper<'a> {
-    /// A stepper for a row that starts at this stance, or is released at rest at a placement.
+    /// Returns a stepper for a row that starts from a state in equilibrium, or is released at rest at a placement.
     pub fn new(
         standing: &Stance,
         placement: &Placement,
@@ -123,7 +122,7 @@ impl<'a> SlidingStepper<'a> {
         course.note_ties(ties.memories());
         course.note_return();
         let start_energy = gravity * rest.moved_kg_m(&placement.centres_m).y;
-        // Heights include the energy that friction dissipated: friction may hold the row up to its highest position.
+        // Heights include the energy dissipated by friction: friction may hold the row up to its highest position.
         course.summit = Summit::new(start_energy, ground.start_s());
         let stands = rest.has(&placement.gaps_m);
         if !stands {
@@ -165,14 +164,14 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Change of velocity by gravity and ground from the last kick until a time, and that of the ground alone.
+    /// Returns the change of velocity by gravity and ground from the last kick to a time, and the part of the ground alone.
     fn kick(&self, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         let ground = self.velocity.at(to_s) - self.velocity.at(self.kicked_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - self.kicked_s));
         (-ground - fall, ground)
     }
 
-    /// Loads the program with the velocities after this kick, which lasts up to a time, and after the pull of ties for as long.
+    /// Sets the free velocities after a kick up to `to_s`, with the tie forces during this time.
     fn load(&mut self, kick: Vector2<f64>, to_s: f64) {
         let lasts_s = to_s - self.kicked_s;
         self.pulled.fill(Vector3::zeros());
@@ -190,8 +189,8 @@ impl<'a> SlidingStepper<'a> {
         0.5 * self.program.twice_kinetic_j()
     }
 
-    /// Distance from zero of the coordinates at the end of a step, per time, if the joints moved as in the last solution. It omits the
-    /// effect of their rates: the present coordinates and the curvature of the motion remain.
+    /// Computes the position errors of the coordinates at the end of a step over the step length, for the velocities of the last solution. They
+    /// contain the current coordinates and the curvature of the motion, without the effect of the rates.
     fn lag(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
@@ -201,12 +200,12 @@ impl<'a> SlidingStepper<'a> {
             let v = self.program.velocity(block) * step;
             Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z)
         };
-        // Position of the block before, where it was needed.
+        // Position of the block before, if it has been computed.
         let mut left = Some(self.supports[0]);
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
             let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
-            // A joint whose blocks move as one has no curvature; straight lines would show some.
+            // A joint between blocks that move as one has no curvature; linear motion would produce some.
             let mut right = None;
             if self.program.modes[joint] != Mode::WHOLE {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
@@ -220,7 +219,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Rates of the coordinates of a joint as the right support moves with this velocity.
+    /// Returns the rates of the coordinates of a joint due to a velocity of the right support.
     fn carried(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         if self.right.moves() && joint + 1 == self.faces.len() {
             self.contacts[joint].carried(&self.faces[joint], velocity_m_s)
@@ -229,7 +228,10 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Counts a step whose bounds of friction did not converge.
+    /// Counts a step in which the friction bounds did not converge.
+    ///
+    /// # Errors
+    /// If their relative error is above 5 %.
     fn judge(&mut self, error: f64) -> Result<(), RowMotionError> {
         if error <= CONVERGED {
             return Ok(());
@@ -247,7 +249,7 @@ impl<'a> SlidingStepper<'a> {
         )))
     }
 
-    /// Solves for the velocities after the kick of a step, which lasts until a time.
+    /// Solves for the velocities after the kick of a step; the kick lasts up to `to_s`.
     fn solve(&mut self, step: f64, to_s: f64, kick: Vector2<f64>) -> Result<(), RowMotionError> {
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
@@ -286,7 +288,7 @@ impl<'a> SlidingStepper<'a> {
         self.friction_demand = self.course.note_forces(impulses, time_s);
     }
 
-    /// Moves the blocks for a step; returns the events of ties in it.
+    /// Moves the blocks for a step, and returns the events of ties in it.
     fn drift(&mut self, step: f64) -> Vec<(usize, EventKind)> {
         for ((position, velocity), centre) in self
             .positions
@@ -344,27 +346,27 @@ impl<'a> SlidingStepper<'a> {
         happened
     }
 
-    /// The slip so far.
+    /// Returns the record of slip.
     fn sliding(&mut self) -> &mut Sliding {
         let sliding = self.course.of_row.sliding.as_mut();
         sliding.expect("joints may slip")
     }
 
-    /// Slides of the row along its supports, left and right.
+    /// Returns the slip of the row along the left and the right support, in metres.
     fn slides(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
             let along = support.turned(self.row.joints[joint].along());
             along * (sign * self.contacts[joint].coordinates_m.z)
         };
-        // At the right support the block is the left one.
+        // At the right support the block is on the left of the joint.
         match self.row.supports {
             Supports::Left => [slide(0, 1.0); 2],
             Supports::Both => [slide(0, 1.0), slide(self.contacts.len() - 1, -1.0)],
         }
     }
 
-    /// True if a block has turned too far, or moved too far from its positions relative to both feet.
+    /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.slides();
         let blocks = self.positions.iter();
@@ -373,17 +375,16 @@ impl<'a> SlidingStepper<'a> {
         self.rest.is_left_by(blocks, feet_m)
     }
 
-    /// Compares the energy in the middle of a step, less the work of the ground, with the least so far: growth beyond that was
-    /// created by the computation. In mid-step the leapfrog knows velocities and heights, and their sum stays constant in equal steps
-    /// without impulses at the joints.
+    /// Compares the energy in the middle of a step, without the work of the ground, with the least value up to now; an increase is a numerical error.
+    /// In the middle of a step, velocities and heights are known, and their energy is constant in equal steps without impulses at the joints.
     fn audit(&mut self, energy: f64) {
         let left = energy - self.course.of_row.ground_j - self.course.of_row.right_foot_j;
         self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
 
-    /// Solves for the velocities at the instant of the positions, from those half a step before, in the auxiliary program.
-    /// Returns the kinetic energy there.
+    /// Solves for the velocities at the time of the positions, in the auxiliary program, from the velocities half a step before. Returns the kinetic
+    /// energy in J.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
         self.right.stop_at(self.course.time);
@@ -405,7 +406,7 @@ impl<'a> SlidingStepper<'a> {
         0.5 * self.auxiliary.twice_kinetic_j()
     }
 
-    /// Reports the joints that opened in a step that began at this time, with this energy, these rotations and rates, and with no joint open.
+    /// Reports the joints that open in a step from the closed row. The step begins at `from_s`, with this energy, and with these rotations and rates.
     fn note_uplift(&mut self, from_s: f64, energy_j: f64, turns: Vec<(f64, f64)>) {
         let opened = &mut self.course.opened;
         opened.clear();
@@ -425,25 +426,25 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// True if the corners press that pressed at the initial position.
+    /// Returns whether the contacts are those of the initial position.
     fn touches_as_it_stood(&self) -> bool {
         let mut modes = self.program.modes.iter().zip(&self.rest.touching);
         modes.all(|(mode, stood)| mode.pressed == *stood) && !self.right_support_is_gone()
     }
 
-    /// True if the right support has moved relative to the left one.
+    /// Returns whether the right support is displaced relative to the left one.
     fn right_support_is_gone(&self) -> bool {
         self.right.gone_m.norm() > APART_RATIO * self.thinnest_m
     }
 
-    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slide of the row
+    /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slip of the row
     /// along the ground.
     fn displacement(&self) -> f64 {
         let on_ground = match (self.row.supports, self.row.supports_extend) {
             (Supports::Left, [base, _]) => [base; 2],
             (Supports::Both, both) => both,
         };
-        // On a face that ends a block slides off, so its slide counts.
+        // A block can slide off a support that ends at the joint, so slip on such a support is included.
         let slides = self.slides().into_iter().zip(on_ground);
         let slides = slides.filter(|(_, on_ground)| *on_ground);
         let slid: f64 = slides.map(|(slide, _)| 0.5 * slide.x).sum();
@@ -455,7 +456,7 @@ impl<'a> SlidingStepper<'a> {
     }
 }
 
-/// The joint of this index at the positions of supports and blocks.
+/// Returns the joint with this index at given positions of supports and blocks.
 fn contact(
     faces: &[Faces],
     supports: &[Position; 2],
@@ -512,7 +513,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         self.sliding().friction_j += late.friction_j + taken.friction_j;
         if landing.is_none() {
             late.add(taken);
-            // Friction in an impact does not hold the row.
+            // Friction in an impact does not count as holding the row up.
             self.held_back += self.held_back_j();
         }
         self.end_landing(late, landing.is_none());

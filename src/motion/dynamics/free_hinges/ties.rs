@@ -9,20 +9,20 @@ use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stance::{Stance, lines};
 use crate::mechanics::tie::{Tie, TieLine, TieMemory};
 
-/// The ties of a row.
+/// Ties of a row, with their states.
 pub(super) struct Ties<'a> {
     row: &'a Row,
     memories: Vec<TieMemory<Lanes<1>>>,
-    /// Their present lines.
+    /// Current lines of action.
     lines: Vec<TieLine>,
-    /// Positions of the left and the right support: with each the ends of ties on the ground nearer to it move.
+    /// Poses of the left and the right support. The end of a tie in the ground moves with the nearer support.
     pub supports: [Pose; 2],
-    /// Elastic energy at the initial position.
+    /// Elastic energy in the initial position, in J.
     at_rest_j: f64,
 }
 
 impl<'a> Ties<'a> {
-    /// Ties of a row whose motion starts from this stance.
+    /// Returns the ties of a row whose motion starts from a given state.
     pub fn new(row: &'a Row, standing: &Stance) -> Self {
         let mut ties = Self {
             row,
@@ -39,7 +39,7 @@ impl<'a> Ties<'a> {
         self.memories.is_empty()
     }
 
-    /// Forces on the right support.
+    /// Returns the force of the ties on the right support, in N.
     pub fn on_right_support_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
         let ends = self.memories().zip(&self.lines);
@@ -51,7 +51,7 @@ impl<'a> Ties<'a> {
         ends.map(|(_, force)| force).sum()
     }
 
-    /// Stretches the ties to these poses of the blocks.
+    /// Updates the ties for given poses of the blocks.
     pub fn stretch(&mut self, pose: impl Fn(usize) -> Pose) {
         let lines = lines(self.row, &self.supports, pose);
         let ties = self.row.ties.iter().zip(&mut self.memories);
@@ -61,8 +61,8 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// Contributions of the ties to the motion of free blocks with these centres, in a time: to the velocity of the centre and the rate of
-    /// rotation of a block.
+    /// Computes the effect of the ties on free blocks with given centres, during `lasts_s`. `gain` receives block, change of velocity and change of
+    /// rotation rate.
     pub fn pull(
         &self,
         centres_m: &[Vector2<f64>],
@@ -75,19 +75,19 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// Their elastic energy, above that at the initial position.
+    /// Returns the elastic energy of the ties above that in the initial position, in J.
     pub fn energy_j(&self) -> f64 {
         let memories = self.memories();
         let each_j = memories.map(|(tie, memory)| memory.energy_j(tie).0[0]);
         each_j.sum::<f64>() - self.at_rest_j
     }
 
-    /// Energy that they dissipated by yielding and breaking.
+    /// Returns the energy dissipated by yield and break of the ties, in J.
     pub fn taken_j(&self) -> f64 {
         self.memories.iter().map(|memory| memory.taken_j.0[0]).sum()
     }
 
-    /// The ties and their memories.
+    /// Returns the ties with their states.
     pub fn memories(&self) -> impl Iterator<Item = (&Tie, TieMemory<Lanes<1>>)> {
         self.row.ties.iter().zip(self.memories.iter().copied())
     }

@@ -1,4 +1,4 @@
-//! Records and reports during the motion: energies and their balance, impacts and samples.
+//! Records during the motion: energy balance, impacts and samples.
 
 use nalgebra::Vector2;
 
@@ -12,8 +12,7 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::SHUT_RATIO;
 
-/// Joints that open at less than this fraction of the fastest rate do not count as opened by an
-/// impact.
+/// Least opening rate, relative to the fastest one, of a joint that an impact opens.
 const LEAST_OPENING: f64 = 1e-9;
 
 pub fn kinetic(pieces: &[Piece]) -> f64 {
@@ -27,7 +26,7 @@ pub fn momentum(pieces: &[Piece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 
-/// Kinetic energies below this fraction of weight times size are rounding.
+/// Kinetic energy, relative to weight times size, that counts as zero.
 const LEAST_SWING_RATIO: f64 = 1e-18;
 
 impl LandingStepper<'_> {
@@ -35,7 +34,7 @@ impl LandingStepper<'_> {
         self.gravity * self.rest.moved_kg_m(&self.placement.centres_m).y
     }
 
-    /// Potential energy of the blocks.
+    /// Returns the potential energy of the blocks, in J.
     fn height(&self) -> f64 {
         if self.ties.are_none() {
             self.course.potential
@@ -44,12 +43,12 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Potential energy of the blocks, and elastic energy of the ties above that at rest.
+    /// Returns the potential energy of the blocks plus the elastic energy of the ties above that at rest, in J.
     pub fn energy(&self) -> f64 {
         self.height_energy() + self.ties.energy_j()
     }
 
-    /// Compares the energy at an instant with its balance.
+    /// Compares the energy at an instant with the energy balance.
     pub fn audit(&mut self, kinetic: f64) {
         let taken = self.course.of_row.energy_taken_j + self.ties.taken_j();
         let due = self.start_energy + self.course.of_row.ground_j + self.course.of_row.right_foot_j
@@ -62,10 +61,10 @@ impl LandingStepper<'_> {
     fn observe(&mut self) {
         let lies = self.lies_at_rest();
         let potential = self.energy();
-        // At rest on hinges, rounding leaves a small sway to neither side.
+        // At rest on hinges, the sway is only a rounding error.
         let sway = if lies { 0.0 } else { self.sway_kg_m() };
         let kinetic = kinetic(&self.pieces);
-        // On hinges a row may swing while the same corners touch.
+        // On hinges a row may move without a change of contacts.
         let swings =
             self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
         self.course.moved |= !lies || swings;
@@ -82,13 +81,13 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// True if it may come to rest on hinges: it started on some, or its feet move differently.
+    /// Returns whether the row may come to rest on hinges: it started on hinges, or its feet move differently.
     fn may_end_on_hinges(&self) -> bool {
         self.rest.is_on_hinges() || self.right.moves()
     }
 
-    /// Notes heights and displacements of a row that may end on hinges. It may come to rest on other hinges, lower or higher, so its
-    /// energy shows neither rest nor overturning. A block counts as far away if it is far from its positions relative to both feet.
+    /// Records heights and displacements of a row that may end on hinges. Its position at rest may be higher or lower, so energy shows neither rest
+    /// nor overturning. A block has left if it is far from its initial positions relative to both feet.
     fn observe_hinges(&mut self) {
         let height = (!self.right.moves()).then_some(self.course.potential);
         self.course.note_height(height);
@@ -98,17 +97,17 @@ impl LandingStepper<'_> {
         self.course.overturned |= self.rest.is_left_by(blocks, feet_m);
     }
 
-    /// True if the row lies at its initial position.
+    /// Returns whether the row is in its initial position.
     fn lies_at_rest(&self) -> bool {
         self.rest.has(&self.placement.gaps_m) && !self.right_support_is_gone()
     }
 
-    /// True if the right support has moved relative to the left one.
+    /// Returns whether the right support is displaced relative to the left one.
     pub fn right_support_is_gone(&self) -> bool {
         self.right.gone_m.norm() > SHUT_RATIO * self.thinnest
     }
 
-    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass.
+    /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, in kg m.
     pub fn sway_kg_m(&self) -> f64 {
         let sway = self.rest.moved_kg_m(&self.placement.centres_m).x;
         sway - 0.5 * self.row.mass_kg() * self.right.gone_m.x
@@ -141,7 +140,7 @@ impl LandingStepper<'_> {
         self.report_impact([!self.stands, lies], [before_j, taken_j], None);
     }
 
-    /// Reports the joints that opened in a step from the initial position; the step began at this time.
+    /// Reports the joints that open in a step from the initial position. The step begins at `from_s`.
     fn note_uplift(&mut self, from_s: f64) {
         let opened = &mut self.course.opened;
         opened.clear();
@@ -151,7 +150,7 @@ impl LandingStepper<'_> {
         opened.extend(shut.filter_map(|(joint, gaps)| open_hinge(joint, *gaps)));
         self.stands = opened.is_empty() && !self.right_support_is_gone();
         if !self.stands {
-            // Until then it stood still.
+            // The row was at rest until then.
             let still = vec![0.0; self.row.blocks.len()];
             self.report_uplift(from_s, 0.0, (still.clone(), still));
         }
@@ -167,7 +166,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         &mut self.course
     }
 
-    /// Takes a step, which ends at its landing if there is one.
+    /// Takes a step, which ends at the first landing if there is one.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.course.longest_step_s);
@@ -177,7 +176,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let taken_before = self.course.of_row.energy_taken_j;
         self.landing.fill([0.0; 2]);
         if self.has_just_landed() {
-            // Most of the corners that pressed before the impact do so again under gravity.
+            // Most corners that were in contact before the impact are in contact again under gravity.
             self.press(|stepper, joint, edge| stepper.pressed[joint][edge]);
         }
         let step = self.solve_to_landing(longest)?;
@@ -269,7 +268,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.lies_since_s
     }
 
-    /// Judged by its height: the elastic energy of ties may be less than at rest.
+    /// Decides by height only: the elastic energy of ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
         if self.may_end_on_hinges() {
             return self.course.overturned_s();

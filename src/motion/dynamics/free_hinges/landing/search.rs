@@ -1,25 +1,25 @@
-//! The length of a step: to the first landing, or where landings crowd, with all of them merged.
+//! Step length: up to the first landing, or a step with merged landings if impacts are too frequent.
 
 use super::{LandingStepper, Step};
 use crate::dynamics::row::error::RowMotionError;
 use crate::mechanics::joints::SHUT_RATIO;
 
-/// Passes in which the step that ends at a landing is found.
+/// Maximum number of iterations to find the step that ends at a landing.
 const LANDING_PASSES: usize = 30;
-/// The search also ends once the landing is known to within this fraction of the step.
+/// Relative width of the bracket around the landing that ends the search.
 const BRACKET_RATIO: f64 = 1e-12;
-/// Rounds of landings in a merged step after which all corners that can land are looked for at once.
+/// Number of rounds of landings in a merged step before all corners that may land are constrained at once.
 const LANDING_ROUNDS: usize = 8;
-/// A landing by this fraction of a step earlier or later than expected needs no other pass.
+/// Relative tolerance between the step length and the landing.
 const LANDING_TOLERANCE: f64 = 1e-6;
 
-/// A corner that falls towards its joint.
+/// Corner that closes.
 #[derive(Clone, Copy, Debug)]
 struct Fall {
     joint: usize,
     edge: usize,
     gap_m: f64,
-    /// Rate of the gap, below zero.
+    /// Rate of the gap in m/s, below zero.
     rate_m_s: f64,
 }
 
@@ -30,8 +30,8 @@ impl Fall {
 }
 
 impl LandingStepper<'_> {
-    /// Solves the step that ends at the first landing, or the longest one if nothing lands in it. Its length changes the kick, and
-    /// so the landing.
+    /// Solves the step that ends at the first landing, or the longest step without a landing. The step length affects the kick and therefore the
+    /// landing.
     pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
         let floor = if self.is_crowded() {
             self.course.task.settings.shortest_step_s.min(longest)
@@ -40,9 +40,9 @@ impl LandingStepper<'_> {
         };
         let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
         let mut step = duration_s(self.first_fall()).clamp(floor, longest);
-        // No corner lands within `safe`, some do within `late`.
+        // No corner lands within `safe`; some corner lands within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
-        // The rates before the step are those of a step of negative length whose kick ends where the last one did.
+        // The initial rates correspond to a step of negative length whose kick ends at the end of the last kick.
         let mut earlier = 2.0 * (self.kicked_s - self.course.time);
         for pass in 1.. {
             self.note_rates();
@@ -50,7 +50,7 @@ impl LandingStepper<'_> {
             let fall = self.first_fall();
             let lands = duration_s(fall);
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
-            // Rounding may say otherwise of a step that was found safe before.
+            // With rounding errors a step may seem too long although it was safe before.
             if met || (lands > step && step == longest) || step == safe {
                 return Ok(Step {
                     expected_s: step,
@@ -65,7 +65,7 @@ impl LandingStepper<'_> {
             } else {
                 break;
             }
-            // Where the mechanism changes with the length there may be no landing to find.
+            // There may be no landing to find if the mechanism changes with the step length.
             if pass >= LANDING_PASSES || late - safe <= BRACKET_RATIO * late {
                 if safe == 0.0 {
                     break;
@@ -91,8 +91,7 @@ impl LandingStepper<'_> {
         })
     }
 
-    /// Length of the step at whose end this corner lands, if its rate changes linearly with the length: through the rates of the
-    /// step last solved and of the one before.
+    /// Returns the step length at whose end a corner lands, by a linear model of its rate. The model uses the rates of the last two solved steps.
     fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
         let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
         let acceleration = change / (step - earlier);
@@ -101,14 +100,14 @@ impl LandingStepper<'_> {
         2.0 * fall.gap_m / (root - rate)
     }
 
-    /// Keeps the rates of the last solution for comparison with those of the next.
+    /// Stores the rates of the last solution for comparison with the next ones.
     fn note_rates(&mut self) {
         for (joint, rates) in self.program.open_joints() {
             self.earlier_rates[joint] = rates;
         }
     }
 
-    /// The open corner that lands first at the rates of the last solution.
+    /// Returns the open corner that lands first at the rates of the last solution; `None` if none closes.
     fn first_fall(&self) -> Option<Fall> {
         let mut first: Option<Fall> = None;
         for (joint, rates) in self.program.open_joints() {
@@ -129,7 +128,7 @@ impl LandingStepper<'_> {
         first
     }
 
-    /// Solves a step within which all corners that would land come to touch.
+    /// Solves a step of fixed length in which all landing corners come into contact.
     fn merge(&mut self, step: f64) -> Result<(), RowMotionError> {
         if self.kicked_s < self.course.time {
             self.complete_kick()?;
@@ -155,7 +154,7 @@ impl LandingStepper<'_> {
             if self.landed.is_empty() {
                 break;
             }
-            // Landings travel along the row: if they do not end, the program gets all corners that can land.
+            // Landings propagate along the row. If they do not end, constrain all corners that may land.
             if round >= LANDING_ROUNDS {
                 let rates = self.program.open_joints().flat_map(|(_, rates)| rates);
                 let fastest = rates.fold(0.0_f64, |most, rate| most.max(rate.abs()));

@@ -1,4 +1,4 @@
-//! Impacts of joints that slip: each is complete one step after its corners land.
+//! Impacts of a row with sliding joints. An impact is complete one step after its corners land.
 
 use nalgebra::Vector2;
 
@@ -7,23 +7,23 @@ use crate::dynamics::row::stepper::{Stepper as _, only};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode};
 
-/// An impact that began in the last step: its energy is complete after the next one.
+/// Impact that began in the last step. Its energy is complete after the next step.
 pub(super) struct Landing {
     /// Corners that landed, joint by joint.
     pub(super) corners: Vec<[bool; 2]>,
-    /// Modes of the joints before.
+    /// Modes of the joints before the impact.
     pub(super) modes_before: Vec<Mode>,
     pub(super) shut: Vec<Hinge>,
-    /// Kinetic energy before, in J.
+    /// Kinetic energy before the impact, in J.
     pub(super) energy_before_j: f64,
     pub(super) taken: Taken,
 }
 
-/// Energy taken by the impulses at joints, in J.
+/// Energy dissipated by the impulses at joints, in J.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Taken {
     pub(super) total_j: f64,
-    /// The part of it that friction took.
+    /// Part dissipated by friction.
     pub(super) friction_j: f64,
 }
 
@@ -35,7 +35,7 @@ impl Taken {
 }
 
 impl SlidingStepper<'_> {
-    /// The impact that begins in the step that was solved, if a corner lands, without its energy.
+    /// Returns the impact that begins in the solved step, without its energy; `None` if no corner lands.
     pub(super) fn find_landing(&self, step: f64) -> Option<Landing> {
         let (before, after) = (&self.modes_before, &self.program.modes);
         let lands = |joint: usize| {
@@ -43,7 +43,7 @@ impl SlidingStepper<'_> {
             let rates = &self.rates_before[joint];
             let least = APART_RATIO * self.faces[joint].thickness_m;
             [0, 1].map(|end| {
-                // A corner that reached its face just as the last step ended lands in this one.
+                // A corner that reaches its face exactly at the end of the last step lands in this step.
                 let was_apart = gaps[end] > least || -rates[end] * step > least;
                 after[joint].pressed[end] && !before[joint].pressed[end] && was_apart
             })
@@ -56,7 +56,7 @@ impl SlidingStepper<'_> {
         let mut shut = Vec::new();
         for (joint, landed) in corners.iter().enumerate() {
             let (before, after) = (before[joint].pressed, after[joint].pressed);
-            // A joint that was parted and lands on one corner has not shut.
+            // A parted joint that lands on one corner does not close.
             if *landed != [false; 2] && (after == [true; 2] || before != [false; 2]) {
                 let edge = only(before.map(|pressed| !pressed));
                 shut.push(Hinge::Joint { joint, edge });
@@ -71,7 +71,7 @@ impl SlidingStepper<'_> {
         })
     }
 
-    /// Joints that open at an impact that shuts these and changes the modes: they shut in it, or were shut before, and are open after.
+    /// Returns the joints that open in an impact: they close in the impact or were closed before, and are open afterwards.
     fn opened(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
         let mut opened = Vec::new();
         for (joint, (before, after)) in before.iter().zip(after).enumerate() {
@@ -86,11 +86,11 @@ impl SlidingStepper<'_> {
         opened
     }
 
-    /// Energy taken in the step that was solved, in which the right support moves at this velocity on average: at the corners that
-    /// landed in the step before, and by everything else.
+    /// Returns the energy dissipated in the solved step: first at the corners that landed in the step before, then by all other impulses. `mean_m_s`
+    /// is the mean velocity of the right support.
     ///
-    /// The work of an impulse is its product with the mean of the rates before and after. Its sum over the steps of an impact does not
-    /// depend on how these share the impulse.
+    /// The work of an impulse is its product with the mean of the rates before and after. The sum over the steps of an impact does not depend on the
+    /// distribution of the impulse over these steps.
     pub(super) fn taken(&self, mean_m_s: Vector2<f64>) -> [Taken; 2] {
         let landed_before = self.landing.as_ref().map(|landing| &landing.corners);
         let mut parts = [Taken::default(); 2];
@@ -106,28 +106,28 @@ impl SlidingStepper<'_> {
             part.total_j -= by_row.z;
             let slips = |modes: &[Mode]| modes[joint].along != Along::Stick;
             if slips(&self.modes_before) || slips(&self.program.modes) {
-                // Below the tolerance of the rates its sign is rounding.
+                // Below the tolerance of the rates the sign is a rounding error.
                 part.friction_j += (-by_row.z).max(0.0);
             }
         }
         parts
     }
 
-    /// Energy that friction took in the step that was solved, at the rates at its end.
+    /// Returns the energy dissipated by friction in the solved step, with the rates at its end.
     pub(super) fn held_back_j(&self) -> f64 {
         let mut held_back_j = 0.0;
         for (joint, impulse) in self.program.impulses.iter().enumerate() {
             if let Along::Slip(_) = self.program.modes[joint].along {
                 let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
-                // Below the tolerance of the rates its sign is rounding.
+                // Below the tolerance of the rates the sign is a rounding error.
                 held_back_j += (-impulse.z * rate).max(0.0);
             }
         }
         held_back_j
     }
 
-    /// Files and reports the impact of the last step, if there was one, with the energy that it took since then. The blocks are still
-    /// in the places of that step, and have the rates after this one; `alone` if no corner lands in this one.
+    /// Completes and reports the impact of the last step, if there was one. `late` is the energy dissipated since then. The blocks still have the
+    /// positions of that step, and the rates after the current one. `alone` is true if no corner lands in the current step.
     pub(super) fn end_landing(&mut self, late: Taken, alone: bool) {
         let Some(mut landing) = self.landing.take() else {
             return;
