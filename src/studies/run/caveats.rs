@@ -1,4 +1,4 @@
-//! Limits of a computed motion, in sentences that words, warnings and the verdict share.
+//! Caveats of a history, in sentences for words, warnings and the verdict.
 
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::Model;
@@ -6,26 +6,26 @@ use crate::dynamics::peak::Peak;
 use crate::dynamics::thrust::EXCESS_LEVELS;
 use crate::scenario::{Hinges, Scenario, Structure};
 
-/// A rotation of at most this is zero in print: a block that rotates no more slides without rocking.
+/// Rotations up to this value are printed as zero: such a block slides without rocking.
 pub(super) const STRAIGHT_RAD: f64 = 5e-7;
 
-/// Coefficients of friction of stone on stone: the smallest and the largest that can be relied on.
+/// Smallest and largest coefficient of friction of stone on stone.
 pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
 
-/// Peak of the first half cycle that rocks.
+/// Returns the peak of the first half cycle that rocks, in radians.
 pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
     let cycles = history.half_cycles().into_iter();
     let mut peaks = cycles.map(|cycle| cycle.peak_rad);
     peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
 }
 
-/// Warnings about a run: unlikely numbers of its scenario, and limits of its history. Programs and the Python package issue them, so
-/// they name no options.
+/// Returns warnings about a run: unlikely numbers of its scenario, and limits of its history. The texts name no options, because the Python
+/// package prints them too.
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
     let structure = &scenario.structure;
-    // The ground cannot hold a column down; an arch is four links as long as its line of thrust stays almost inside.
+    // The ground cannot pull a column down. An arch moves as four links as long as its thrust line stays almost inside.
     let thrusts = structure.thrusts();
     let most = if thrusts { EXCESS_LEVELS[1] } else { 0.0 };
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
@@ -38,7 +38,7 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     warnings
 }
 
-/// Why an incomplete run has no verdict, and the remedy; `None` for a complete one.
+/// Returns the reason why a run has no verdict, and the remedy; `None` for a complete run.
 pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<String> {
     let (end_s, ground_s) = (history.end_s, scenario.ground_motion().end_s());
     let why = if end_s < ground_s {
@@ -52,7 +52,7 @@ pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<Strin
     is_incomplete.then(|| format!("NO VERDICT: {why}; give a longer duration_s in [simulation]"))
 }
 
-/// A coefficient of friction. Values above 10, which no stone has, occur at almost unloaded joints.
+/// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
     if friction > 10.0 {
         "more than 10".to_owned()
@@ -61,7 +61,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
     }
 }
 
-/// The friction that a motion without sliding needs, if stone may not have it.
+/// Returns the friction that a motion without sliding needs; `None` if stone certainly has it.
 pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<String> {
     let needed = history.thrust.as_ref()?.largest_friction.value;
     let [low, high] = STONE_FRICTION;
@@ -76,7 +76,7 @@ pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<St
     })
 }
 
-/// A conjunction and the quality of four links if the line of thrust leaves the arch by this many thicknesses.
+/// Returns a conjunction and the quality of four links, for an excess of the thrust line in thicknesses.
 const fn grade(excess_ratio: f64) -> [&'static str; 2] {
     if excess_ratio <= EXCESS_LEVELS[0] {
         ["and", "four links suffice"]
@@ -87,7 +87,7 @@ const fn grade(excess_ratio: f64) -> [&'static str; 2] {
     }
 }
 
-/// The grade of four links of an arch that rocked.
+/// Returns the quality of four links of an arch that rocked.
 pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<String> {
     let is_arch = scenario.structure.thrusts();
     let four = scenario.motion.hinges() == Hinges::Four && is_arch;
@@ -96,7 +96,8 @@ pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<Strin
     Some(grade(thrust.largest_excess.value).join(" "))
 }
 
-/// The limits of four links, or of a column on its toe, in parts of a sentence, with advice if four links are not enough; `None` if it did not rock, empty for a column that the ground need not hold down.
+/// Returns the limits of four links, or of a column on its toe, in parts of a sentence, with `advice` if four links are not enough. `None` if
+/// the structure did not rock; empty for a column that never needs tension at its base.
 pub(super) fn trust(
     history: &Summary,
     structure: &Structure,

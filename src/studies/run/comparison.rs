@@ -1,4 +1,4 @@
-//! Several models of motion of one structure side by side: the result of each, the most reliable one, and the differences of the others.
+//! Comparison of several models of motion of one structure: the result of each, the most reliable one, and the differences of the others.
 
 use std::fmt::Write as _;
 
@@ -8,7 +8,7 @@ use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::Varied;
 use crate::scenario::Hinges;
 
-/// A table of the runs of one structure with different models of motion and their results, followed by the conclusion.
+/// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
 #[must_use]
 pub fn compared(runs: &[RunResults<'_>]) -> String {
     let rows: Vec<[String; 3]> = runs
@@ -41,7 +41,8 @@ fn ends(history: &Summary) -> String {
     }
 }
 
-/// The model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other models.
+/// Returns the conclusion: the model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other
+/// models.
 fn believed(runs: &[RunResults<'_>]) -> String {
     let trust = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
@@ -89,7 +90,7 @@ fn believed(runs: &[RunResults<'_>]) -> String {
     text
 }
 
-/// The other ending of a motion, and the properties with which it occurs; `None` if there are none.
+/// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.
 pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
     let (opposite, otherwise) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),
@@ -104,7 +105,7 @@ pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
     (!others.is_empty()).then(|| format!("{otherwise} with {}", others.join(" and with ")))
 }
 
-/// Whether the motion was computed with other properties, and ends alike with all of them.
+/// Returns true if the motion was computed with other properties, and all outcomes agree.
 fn all_agree(own: &Summary, varied: &[Varied]) -> bool {
     let own = Verdict::from(own.outcome);
     let ends = varied.iter().map(|one| one.result.as_ref());

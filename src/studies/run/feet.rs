@@ -1,4 +1,4 @@
-//! The displacement between feet that move differently in a run.
+//! The displacement between the feet of a structure that move differently.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -9,18 +9,18 @@ use crate::scenario::Scenario;
 /// Displacements of the right foot relative to the left one, to the right and upwards.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FeetApart {
-    /// When the history starts, in seconds: zero or negative.
+    /// Time at which the history starts, in seconds: zero or negative.
     pub start_s: f64,
-    /// The largest displacement of the right foot relative to the left one, among output steps, in metres.
+    /// The largest displacement of the right foot relative to the left one at output steps, in metres.
     pub feet_farthest_apart_m: Vector2<f64>,
-    /// Time of that displacement, in seconds.
+    /// Time of the largest displacement, in seconds.
     pub feet_farthest_apart_time_s: f64,
     /// The displacement of the right foot relative to the left one at the end of the run, in metres.
     pub feet_apart_at_end_m: Vector2<f64>,
 }
 
 impl FeetApart {
-    /// The displacements in a run; `None` if both feet move alike.
+    /// Computes the displacements in a run; `None` if both feet move together.
     pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;

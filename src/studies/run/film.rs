@@ -3,7 +3,7 @@
 use crate::dynamics::history::Sample;
 use crate::output::envelope::Thinned;
 
-/// Every sample, or every second, fourth, eighth ... one, so that there are no more than a given number; and the last one.
+/// The frames: every sample, or every second, fourth, eighth and so on, up to a given number; and the last sample.
 #[derive(Clone, Debug)]
 pub(super) struct Film {
     thinned: Thinned<Sample>,
@@ -11,7 +11,7 @@ pub(super) struct Film {
 }
 
 impl Film {
-    /// An empty film, of at most this many frames plus the last one.
+    /// Makes an empty film with at most this number of frames plus the last one.
     pub(super) const fn new(most: usize) -> Self {
         Self {
             thinned: Thinned::new(most),
@@ -19,7 +19,7 @@ impl Film {
         }
     }
 
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         if self.thinned.next(|_, _| ()).is_none() {
             self.thinned.columns.push(sample.clone());
@@ -27,7 +27,7 @@ impl Film {
         self.last = Some(sample.clone());
     }
 
-    /// The frames in order of time.
+    /// Returns the frames in order of time.
     pub(super) fn frames(&self) -> Vec<&Sample> {
         let kept = &self.thinned.columns;
         let is_kept = |last: &&Sample| kept.last().is_some_and(|kept| kept.time_s >= last.time_s);

@@ -12,29 +12,29 @@ use crate::output::panels::Panels;
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
 
-/// Height of the strip of a joint below which it is not divided by edges.
+/// Height of the strip of a joint below which the strip is not divided by edges.
 const NARROW_PX: f64 = 5.0;
 /// Number of columns in the panel of joints: about one per pixel.
 const JOINT_COLUMNS: usize = 800;
 
-/// The ways in which a joint can be open: name and colour of their marks, and the lower and upper ends of these in the strip of the joint.
+/// States of an open joint: name and colour of the marks, and the lower and upper end of the marks in the strip of the joint.
 const KINDS: [(&str, &str, [f64; 2]); 3] = [
     ("intrados", color::BLUE, [-0.42, 0.0]),
     ("extrados", color::VERMILION, [0.0, 0.42]),
     ("parted", color::BLACK, [-0.42, 0.42]),
 ];
 
-/// The open joints over time, thinned to columns. A column has all ways in which a joint is open in any of its samples.
+/// The open joints over time, thinned to columns. A column has all open states of a joint in any of its samples.
 #[derive(Clone, Debug)]
 pub(super) struct OpenJoints {
     count: usize,
     /// Names of the hinges at the two edges.
     edges: [&'static str; 2],
-    /// The time at which each column begins, and for each joint a bit for each of [`KINDS`].
+    /// The time at which each column begins, and for each joint one bit for each of [`KINDS`].
     thinned: Thinned<(f64, Vec<u8>)>,
 }
 
-/// Adds the bits of a column to those of another.
+/// Adds the bits of a column to those of another column.
 fn join((_, bits): &mut (f64, Vec<u8>), (_, after): (f64, Vec<u8>)) {
     for (own, after) in bits.iter_mut().zip(after) {
         *own |= after;
@@ -58,7 +58,7 @@ impl OpenJoints {
         }
     }
 
-    /// Whether any joint is ever open in one of these ways.
+    /// Returns true if a joint is ever open in one of these ways.
     fn has(&self, kinds: u8) -> bool {
         let mut columns = self.thinned.columns.iter();
         columns.any(|(_, bits)| bits.iter().any(|bits| bits & kinds != 0))
@@ -82,7 +82,7 @@ impl OpenJoints {
         }
     }
 
-    /// Adds the panel of the joints; nothing if none is ever open.
+    /// Adds the panel of the joints if a joint is ever open.
     pub(super) fn add_to(&self, panels: &mut Panels, figure: Figure, end_s: f64) {
         if !self.has(u8::MAX) {
             return;
@@ -93,7 +93,7 @@ impl OpenJoints {
         let texts = [(1, intrados), (2, extrados), (4, "parted")];
         let mut marks = Vec::new();
         for ((bit, text), (name, fill, part)) in texts.into_iter().zip(KINDS) {
-            // Divided strips this narrow would look pale.
+            // Divided strips of this height would look pale.
             let part = if is_narrow { [-0.5, 0.5] } else { part };
             let boxes = (0..self.count).flat_map(|joint| {
                 let [low, high] = part.map(|part| joint as f64 + part);
@@ -111,7 +111,7 @@ impl OpenJoints {
         panels.panel("Open joint", height_px, y, None, marks);
     }
 
-    /// The times from which and to which a joint is open in this way.
+    /// Returns the intervals of time in which a joint is open in this way.
     fn stretches(&self, joint: usize, bit: u8, end_s: f64) -> Vec<[f64; 2]> {
         let is_open = |(_, bits): &&(f64, Vec<u8>)| bits[joint] & bit != 0;
         let mut columns = self.thinned.columns.iter();
@@ -130,7 +130,7 @@ mod tests {
     use crate::dynamics::history::OpenHinge;
     use nalgebra::Vector2;
 
-    /// A sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.
+    /// Returns a sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.
     fn sample(time_s: f64, parted: bool) -> Sample {
         let hinge = |joint, edge| OpenHinge {
             hinge: Hinge::Joint { joint, edge },

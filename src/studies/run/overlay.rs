@@ -1,4 +1,4 @@
-//! `overlay.svg`: histories of several models of motion of one structure in one picture.
+//! `overlay.svg`: histories of one structure by several models of motion in one picture.
 
 use crate::dynamics::history::Sample;
 use crate::mechanics::sway::Sway;
@@ -8,7 +8,7 @@ use crate::output::envelope::Envelope;
 use crate::output::panels::{Panels, Subject, around};
 use crate::output::svg::CURVES;
 
-/// The curves that every model has, thinned.
+/// Curves of a history that every model of motion has, thinned.
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
     rotation_rad: Envelope,
@@ -17,7 +17,7 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.end_s = time_s;
@@ -34,8 +34,8 @@ impl Curves {
     }
 }
 
-/// The picture of named histories: the ground, the largest rotation of a body, and the energy. The rotation is positive while the
-/// structure sways left, which is anticlockwise, as rotations are positive everywhere, and negative while it sways right.
+/// Draws named histories: the ground, the largest rotation of a body, and the energy. Rotations are positive (anticlockwise) while the structure
+/// sways left, and negative while it sways right.
 #[must_use]
 pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);

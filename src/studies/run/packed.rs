@@ -1,4 +1,4 @@
-//! The numbers of a page: in base 64, with as many digits as a picture needs.
+//! Encoding of the numbers of a page in base 64, with the precision of a picture.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::scene::{Piece, Scene};
 
-/// The largest integer that stands for a rotation or displacement.
+/// Largest integer of an encoded rotation or displacement.
 pub(super) const MOST: f64 = 32767.0;
 
-/// The distinct layouts of frames by their hinges, and which of them each frame has. The joints of a row are written for each frame
-/// instead.
+/// Returns the distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
+/// encoded in each frame.
 pub(super) fn layouts<'a>(
     scene: &Scene,
     frames: &[&'a Sample],
@@ -35,7 +35,7 @@ pub(super) fn layouts<'a>(
     (layouts, layout_of)
 }
 
-/// The body and the outline of a piece, in units of the page.
+/// Returns the body and the outline of a piece, in units of the page.
 pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
     let corners = piece.outline_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
@@ -43,17 +43,17 @@ pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
     json!({ "body": body_number(piece.body), "outline": outline })
 }
 
-/// The number of a body; -1 for parts that stand still.
+/// Returns the number of a body; -1 for parts that do not move.
 pub(super) fn body_number(body: Option<usize>) -> i64 {
     body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
 }
 
-/// A fraction from 0 to 1 as a byte from 0 to 255, rounded up: only zero becomes zero.
+/// Encodes a fraction from 0 to 1 as a byte from 0 to 255, rounded up: only zero becomes zero.
 pub(super) fn eighth(part: f64) -> u8 {
     (255.0 * part).ceil().clamp(0.0, 255.0) as u8
 }
 
-/// Values as integer multiples of a unit, which is chosen so that the largest fits.
+/// Encodes values as integer multiples of a unit. Returns the encoded values and the unit, with which the largest value just fits.
 pub(super) fn whole(values: impl Iterator<Item = f64> + Clone) -> (String, f64) {
     let most = values
         .clone()
@@ -71,7 +71,7 @@ pub(super) fn floats(values: impl Iterator<Item = f64>) -> String {
     encoded(values.map(|value| (value as f32).to_le_bytes()))
 }
 
-/// The times of a curve, followed by its values.
+/// Encodes the times of a curve, followed by its values.
 pub(super) fn curve(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let (times_s, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
     floats(times_s.into_iter().chain(values))

@@ -1,4 +1,4 @@
-//! `history.svg`: a history at a glance, over a shared time axis.
+//! `history.svg`: curves of a history over a shared time axis.
 
 use super::open_joints::OpenJoints;
 use super::points::Points;
@@ -14,53 +14,52 @@ use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, 
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 
-/// The excess of the thrust line is cut off at this value, in thicknesses: a falling structure has
-/// values that would hide all others.
+/// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;
 
 /// A half cycle that comes near the unstable equilibrium or passes it.
 #[derive(Clone, Copy, Debug)]
 struct FarCycle {
     phase: usize,
-    /// The body whose rotation is the coordinate.
+    /// The body whose rotation is the coordinate of the mechanism.
     body: usize,
     from_s: f64,
     to_s: f64,
-    /// Its rotation at the unstable equilibrium, with its sign.
+    /// Rotation of the body at the unstable equilibrium, with its sign.
     unstable_rad: f64,
 }
 
-/// The limit is drawn if a motion reaches this fraction of the unstable rotation or of the barrier.
+/// Fraction of the unstable rotation, or of the barrier, from which the limit is drawn.
 const FAR: f64 = 0.25;
 
-/// The stroke for the unstable rotation of a body, in the colour of its curve.
+/// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
 
-/// Number of columns for all curves of rotations together, so that long rows do not make huge files.
+/// Number of columns of all curves of rotations together. It limits the size of pictures of long rows.
 const COLUMNS_OF_ALL: usize = 16_000;
-/// Least number of columns for one of them.
+/// Smallest number of columns of a curve.
 const LEAST_COLUMNS: usize = 200;
 
-/// Collects the samples of a history, thinned, and draws them.
+/// Collects and thins the samples of a history, and draws them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Timeline {
     bodies: Vec<String>,
     rotations_rad: Vec<Envelope>,
     excess_ratio: Envelope,
     energy: Envelope,
-    /// Whether energies are relative to a barrier; otherwise they are in J.
+    /// True if energies are relative to a barrier, false if they are in J.
     in_barriers: bool,
     /// Displacement of the right foot relative to the left one, to the right and upwards, in millimetres.
     feet_mm: [Envelope; 2],
     slips_mm: Vec<Envelope>,
     /// The joints of a row of blocks.
     joints: Option<OpenJoints>,
-    /// The last phase, and when it began.
+    /// The last phase.
     phase: usize,
     phase_from_s: f64,
-    /// Half cycles that went far.
+    /// Half cycles that come near the unstable equilibrium.
     far: Vec<FarCycle>,
     /// The states of mechanisms over time, and their impacts.
     states: States,
@@ -68,7 +67,7 @@ pub(super) struct Timeline {
     end_s: f64,
 }
 
-/// Empty envelopes for a number of curves.
+/// Makes empty envelopes for a number of curves.
 fn envelopes(count: usize) -> Vec<Envelope> {
     let columns = (COLUMNS_OF_ALL / count.max(1)).clamp(LEAST_COLUMNS, COLUMNS);
     vec![Envelope::of_columns(columns); count]
@@ -82,7 +81,7 @@ fn push(envelopes: &mut [Envelope], time_s: f64, values: impl IntoIterator<Item 
 }
 
 impl Timeline {
-    /// An empty timeline for a model of motion.
+    /// Makes an empty timeline for a model of motion.
     pub(super) fn new(model: &dyn Model) -> Self {
         let bodies = model.bodies();
         Self {
@@ -94,7 +93,7 @@ impl Timeline {
         }
     }
 
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub(super) fn sample(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         if sample.phase == 0 {
@@ -119,9 +118,9 @@ impl Timeline {
         }
     }
 
-    /// Takes an event. Events come in the order of time.
+    /// Adds an event. Events come in the order of time.
     pub(super) fn event(&mut self, event: &Event) {
-        // A row has thousands; its summary has its half cycles.
+        // Rows have thousands of events; half cycles from the summary replace them.
         if self.joints.is_none() {
             self.states.changes.push((event.time_s, event.state));
             let time_s = event.impact.as_ref().map(|_| event.time_s);
@@ -129,7 +128,7 @@ impl Timeline {
         }
     }
 
-    /// Notes the unstable equilibrium of a half cycle that comes near it.
+    /// Adds the half cycle of a sample if the sample is near the unstable equilibrium.
     fn note_if_far(&mut self, sample: &Sample) {
         if sample.phase != self.phase {
             (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);
@@ -138,7 +137,7 @@ impl Timeline {
         else {
             return;
         };
-        // The coordinate is the rotation of the body at the end from which the structure leans away.
+        // The coordinate is the rotation of the body at the left end if the structure sways right, and at the right end if it sways left.
         let body = match sway {
             Sway::Right => 0,
             Sway::Left => sample.rotations_rad.len() - 1,
@@ -212,7 +211,7 @@ impl Timeline {
                 false => "Energy (J)",
             };
             let mut curves = vec![energy];
-            // A barrier far above the curve would flatten it.
+            // A barrier far above the curve would flatten the curve.
             let over_barrier = summary.peak_potential_over_barrier();
             if over_barrier.is_some_and(|peak| peak >= FAR) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
@@ -244,7 +243,7 @@ impl Timeline {
         panels.curves("Right foot (mm)", 110.0, feet, states);
     }
 
-    /// The rotations of a mechanism with its impacts and unstable equilibria, and their scale.
+    /// Returns the curves of the rotations of a mechanism, with impacts and unstable equilibria, and their scale.
     fn rotations(&self, panels: &mut Panels) -> (Vec<Mark>, Scale) {
         let mut marks = Vec::new();
         let bodies = self.bodies.iter().zip(&self.rotations_rad);
@@ -275,7 +274,7 @@ impl Timeline {
         (marks, y)
     }
 
-    /// The rotations of blocks and their scale. The block that rotates most is drawn on top of the others.
+    /// Returns the curves of the rotations of blocks and their scale. The block with the largest rotation is drawn last, on top.
     fn rotations_of_row(&self, panels: &mut Panels, largest: usize) -> (Vec<Mark>, Scale) {
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
         let strokes = others.map(|block| (block, BLOCK));
@@ -294,7 +293,7 @@ impl Timeline {
     }
 }
 
-/// The states of a row: its half cycles, and the end.
+/// Returns the states of a row: its half cycles, and the end.
 fn states(summary: &Summary, half_cycles: &[HalfCycle]) -> States {
     let end = match summary.outcome {
         Outcome::Rest => Some(State::Rest),

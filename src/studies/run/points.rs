@@ -15,11 +15,10 @@ use crate::output::scene::Scene;
 use crate::output::svg::CURVES;
 use crate::output::table::{Cell, Column, several};
 
-/// The largest number of points: each has two curves in the pictures, all of different looks.
+/// Largest number of points: each has two curves with different strokes in the pictures.
 pub const MOST_POINTS: usize = CURVES.len() / 2;
 
-/// Observes points of a structure, and records their displacements from the undeformed structure, relative to
-/// the ground.
+/// Observed points of a structure. Collects their displacements from the undeformed structure, relative to the ground.
 #[derive(Clone, Debug)]
 pub struct Points {
     scene: Scene,
@@ -29,16 +28,16 @@ pub struct Points {
 #[derive(Clone, Debug)]
 struct Watched {
     point: Point,
-    /// Its name in columns; empty if it is the only point.
+    /// Name of the point in columns; empty if there is only one point.
     name: String,
-    /// To the right and upwards.
+    /// Displacements to the right and upwards.
     displacements: [Displacement; 2],
 }
 
 #[derive(Clone, Debug, Default)]
 struct Displacement {
     millimetres: Envelope,
-    /// The largest displacement, with its time.
+    /// The largest displacement, with its sign, in metres.
     farthest_m: f64,
     time_s: f64,
 }
@@ -47,10 +46,10 @@ struct Displacement {
 const AXES: [(&str, &str); 2] = [("x", "to the right"), ("y", "up")];
 
 impl Points {
-    /// Points of a structure, given by their undeformed positions in metres.
+    /// Makes observed points of a structure from their undeformed positions in metres.
     ///
     /// # Errors
-    /// Explains that one is outside the structure, or that there are too many.
+    /// When a point is outside the structure, or there are too many points.
     pub(super) fn new(scene: Scene, places_m: &[Vector2<f64>]) -> Result<Self, String> {
         if places_m.len() > MOST_POINTS {
             return Err(format!(
@@ -82,12 +81,12 @@ impl Points {
         Ok(Self { scene, watched })
     }
 
-    /// Whether there are any.
+    /// Returns true if there are observed points.
     pub(super) const fn any(&self) -> bool {
         !self.watched.is_empty()
     }
 
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         for watched in &mut self.watched {
             let displaced_m = displacement_m(&self.scene, &watched.point, sample);
@@ -100,8 +99,8 @@ impl Points {
         }
     }
 
-    /// Their columns in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; for several points
-    /// `point_1_x_m` and so on.
+    /// Returns the columns of the points in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; with several
+    /// points `point_1_x_m` and so on.
     pub(super) fn columns(&self) -> Vec<Column<'static, Sample>> {
         let column = |watched: &Watched| {
             let (scene, point) = (self.scene.clone(), watched.point);
@@ -115,7 +114,7 @@ impl Points {
         self.watched.iter().map(column).collect()
     }
 
-    /// Their largest displacements.
+    /// Returns the largest displacements of the points.
     pub(super) fn peaks(&self) -> Vec<PointPeaks> {
         let peaks = self.watched.iter().map(|watched| {
             let [x, y] = &watched.displacements;
@@ -131,7 +130,7 @@ impl Points {
         peaks.collect()
     }
 
-    /// Adds the panel of their displacements.
+    /// Adds the panel of the displacements.
     pub(super) fn draw(&self, panels: &mut Panels, states: Option<&States>) {
         let displacements = self
             .watched
@@ -148,14 +147,14 @@ impl Points {
         panels.curves("Displacement (mm)", 150.0, curves, states);
     }
 
-    /// Names of their curves, for the displacements to the right and upwards.
+    /// Returns the names of the curves of each point, for displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
         let places = self.watched.iter().map(|one| place(one.point.at_m));
         let named = places.map(|at| AXES.map(|(_, positive)| format!("point {at}, {positive}")));
         named.collect()
     }
 
-    /// The bodies that carry them while these hinges are open.
+    /// Returns the bodies that carry the points while these hinges are open.
     pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let marks = self
             .watched
@@ -164,7 +163,7 @@ impl Points {
         marks.map(|mark| mark.body).collect()
     }
 
-    /// Their positions and named curves in millimetres, for the page.
+    /// Returns the positions and named curves of the points, in millimetres, for the page.
     pub(super) fn on_page(&self) -> Value {
         let point = |(watched, names): (&Watched, [String; 2])| {
             let curves = watched.displacements.iter().zip(names);
@@ -182,9 +181,9 @@ fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64>
     mark.moved(&sample.poses, 1.0) - point.at_m
 }
 
-/// A position as people would type it.
+/// Returns a position in the format of `--point`.
 pub(super) fn place(at_m: Vector2<f64>) -> String {
-    // Rounded to a millimetre; adding zero makes a negative zero positive.
+    // Rounds to a millimetre. Adding zero makes a negative zero positive.
     let [x, y] = [at_m.x, at_m.y].map(|metres| (1e3 * metres).round() / 1e3 + 0.0);
     format!("{x},{y}")
 }

@@ -1,8 +1,8 @@
-//! `report.html`: a history as a self-contained page: the structure in motion, curves over time, and the report in words.
+//! `report.html`: a self-contained page with the structure in motion, curves over time, and the report in words.
 //!
-//! It is one file that needs no network. Its frames are packed in base 64: times in 64 bits, motion of the ground in 32 bits, rotations,
-//! displacements and thrust as 16-bit multiples of a unit, states and joints in 8 bits.
-//! Everything drawn is thinned, so that the page stays below half a megabyte for rows of a few dozen blocks.
+//! The page needs no network. Frames are encoded in base 64: times as 64-bit numbers, motion of the ground as 32-bit numbers, rotations,
+//! displacements and thrust as 16-bit multiples of a unit, states and joints as 8-bit numbers. Frames and curves are thinned, so that the page
+//! of a row of a few dozen blocks is smaller than half a megabyte.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -34,30 +34,30 @@ use crate::scenario::metres;
 const FRAME_BYTES: usize = 280_000;
 /// Largest number of frames of a page: one every hundredth of a second, for ten seconds.
 const MOST_FRAMES: usize = 1001;
-/// Smallest limit on the number of frames, whatever the number of blocks.
+/// Smallest limit on the number of frames, for any number of blocks.
 const FEWEST_FRAMES: usize = 101;
-/// The largest number of frames of a history, over that of its fall.
+/// Ratio of the largest number of frames of a history to that of its fall.
 const FALL_SHARE: usize = 6;
 /// Number of columns to which a curve is thinned.
 const CURVE_COLUMNS: usize = 700;
 /// Coordinates are rounded to this fraction of the size of the structure.
 const COORDINATE_RATIO: f64 = 5e-5;
-/// The code for a section without compression.
+/// Code of a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
-// The library that draws the curves.
+// uPlot, the library that draws the curves.
 const PLOT_STYLE: &str = include_str!("../../../vendor/uplot/uPlot.min.css");
 const PLOT_SCRIPT: &str = include_str!("../../../vendor/uplot/uPlot.iife.min.js");
 const PLOT_LICENCE: &str = include_str!("../../../vendor/uplot/LICENSE");
 
-/// Collects the samples of a history, thinned, for its page.
+/// Collects and thins the samples of a history for its page.
 #[derive(Clone, Debug)]
 pub struct Report {
     scene: Scene,
     bodies: Vec<String>,
     gravity_m_s2: f64,
     film: Film,
-    /// The fall after a structure has overturned, and its end.
+    /// The fall after the structure has overturned.
     fall: Film,
     fall_end: Option<FallEnd>,
     energy: Envelope,
@@ -66,12 +66,12 @@ pub struct Report {
 }
 
 impl Report {
-    /// An empty report, for the structure of a scenario as a model moves it.
+    /// Makes an empty report for the structure of a scenario and its model of motion.
     #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
         let pressing = model.shape().pressing;
-        // Rotation and displacement of each body, each section, each pressed joint, time, ground and the rest, in base 64.
+        // Rotation and displacement of each body, each section, each closed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
         Self {
@@ -87,7 +87,7 @@ impl Report {
         }
     }
 
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.film.push(sample);
@@ -98,17 +98,18 @@ impl Report {
         self.excess_ratio.push(time_s, excess_ratio);
     }
 
-    /// Takes a sample of the fall after the structure has overturned.
+    /// Adds a sample of the fall after the structure has overturned.
     pub fn push_fall(&mut self, sample: &Sample) {
         self.fall.push(sample);
     }
 
-    /// Takes the end of that fall.
+    /// Adds the end of the fall.
     pub fn end_fall(&mut self, end: FallEnd) {
         self.fall_end = Some(end);
     }
 
-    /// The page for a scenario, with its observed points: the report on its samples, if there are any, the verdict, and the other words of `run`.
+    /// Makes the page of a scenario. `samples` is the report of the samples of `[uncertain]`, empty without samples; `verdict` and `words` are
+    /// the words of `run`.
     #[must_use]
     pub fn page(
         &self,
@@ -149,7 +150,7 @@ impl Report {
         )
     }
 
-    /// All data that the page draws; the fall begins with this frame.
+    /// Returns all data that the page draws. The frames of the fall begin at index `fall_from`.
     fn data(
         &self,
         ground: &GroundMotion,
@@ -168,7 +169,7 @@ impl Report {
         let joints: Vec<_> = (0..).map_while(joint).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let sections = self.scene.sections.iter();
-        // As built, and as moved.
+        // Undeformed and moved faces of the supports.
         let supports = [0.0, 1.0].map(|exaggeration| {
             let faces = self.scene.supports_m(exaggeration).into_iter();
             list(faces.map(flat))
@@ -221,7 +222,7 @@ impl Report {
         })
     }
 
-    /// The outlines and hinges of a layout.
+    /// Returns the outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], points: Option<&Points>, unit_m: f64) -> Value {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
@@ -251,7 +252,7 @@ impl Report {
         })
     }
 
-    /// The data that change from frame to frame: in base 64, as multiples of a unit if there is one.
+    /// Returns the data of the frames, encoded in base 64, as multiples of a unit where the key has a unit.
     fn frames(
         &self,
         ground: &GroundMotion,
@@ -280,7 +281,7 @@ impl Report {
         let codes = frames.iter().flat_map(|frame| {
             let mut codes = vec![0; joints];
             for open in &frame.hinges {
-                // If a row moves as a few linked bodies, its hinges are in the layout instead.
+                // Hinges of a row that moves as a few linked bodies are in the layout.
                 if let Hinge::Joint { joint, edge } = open.hinge
                     && let Some(code) = codes.get_mut(joint)
                 {
@@ -326,7 +327,7 @@ fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
     items.map(|item| json!(item)).collect()
 }
 
-/// The number of the body of a point, and its place.
+/// Returns the number of the body of a point, and its position.
 fn point(mark: Mark) -> (i64, f64, f64) {
     (body_number(mark.body), mark.at_m.x, mark.at_m.y)
 }
@@ -335,7 +336,7 @@ fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
     [a.x, a.y, b.x, b.y]
 }
 
-/// The instant at which the page opens: the largest rotation, or overturning.
+/// Returns the time at which the page opens: that of overturning, or of the largest rotation.
 fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;
@@ -349,7 +350,7 @@ fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
     farthest.map_or(0.0, |frame| frame.time_s)
 }
 
-/// The code of an open joint; 0 means shut.
+/// Returns the code of an open joint; 0 means closed.
 const fn edge_code(edge: Option<Edge>) -> u8 {
     match edge {
         Some(Edge::Intrados) => 1,

@@ -1,20 +1,20 @@
-//! The scales that make a history dimensionless, as papers plot it.
+//! Scales that make a history dimensionless, as in papers.
 
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::sway::Sway;
 
-/// The scales that make a history dimensionless, as papers plot it.
+/// Scales that make a history dimensionless, as in papers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// `p` of the equivalent block at the unstable equilibrium (see
-    /// [`crate::mechanics::equivalent`]); for a column, its own `p`.
+    /// Frequency parameter `p` of the equivalent block at the unstable equilibrium (see [`crate::mechanics::equivalent`]); the `p` of a column
+    /// itself.
     pub frequency_rad_s: f64,
-    /// `g A_L`, the acceleration that starts the structure to the right and to the left; infinite if no push does.
+    /// `g A_L`: the acceleration that starts the structure to the right and to the left; infinite if no push starts it.
     pub incipient_m_s2: [f64; 2],
 }
 
 impl Scales {
-    /// The scales of a model under gravity; `None` if it has no unstable equilibrium.
+    /// Computes the scales of a model under gravity; `None` if the model has no unstable equilibrium.
     #[must_use]
     pub fn new(model: &dyn MechanismModel, gravity_m_s2: f64) -> Option<Self> {
         let incipient_g = |sway| model.incipient_acceleration_g(sway);
@@ -29,7 +29,7 @@ impl Scales {
         })
     }
 
-    /// The larger of two pushes, to the right and to the left, each over the one that starts the structure to that side.
+    /// Returns the larger ratio of a push, to the right or to the left, to the push that starts the structure to that side.
     #[must_use]
     pub fn over_incipient(&self, pushes_m_s2: [f64; 2]) -> f64 {
         let [right, left] = [0, 1].map(|side: usize| pushes_m_s2[side] / self.incipient_m_s2[side]);

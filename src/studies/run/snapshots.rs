@@ -16,11 +16,11 @@ use crate::output::svg::{Anchor, Drawing, Stroke, color};
 pub(super) struct Snapshots {
     scene: Scene,
     exaggeration: f64,
-    /// The requested times, in seconds, each with the nearest sample so far.
+    /// The requested times, in seconds, each with the nearest sample until now.
     taken: Vec<(f64, Option<Sample>)>,
-    /// For a film: the time from picture to picture, and the time of the next one; minus infinity before the first sample.
+    /// For a film: the interval between pictures, and the time of the next picture, in seconds; minus infinity before the first sample.
     film: Option<(f64, f64)>,
-    /// When the history begins and ends, in seconds.
+    /// Times of the first and the last sample, in seconds.
     span_s: [f64; 2],
 }
 
@@ -28,11 +28,11 @@ pub(super) struct Snapshots {
 const MOST_STILLS: usize = 9999;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
-/// Least width of a picture.
+/// Smallest width of a picture.
 const LEAST_PX: f64 = 180.0;
 
 impl Snapshots {
-    /// Snapshots of a structure, with displacements multiplied by `exaggeration`.
+    /// Makes snapshots of a structure, with displacements multiplied by `exaggeration`.
     pub(super) const fn new(scene: Scene, exaggeration: f64) -> Self {
         Self {
             scene,
@@ -43,13 +43,13 @@ impl Snapshots {
         }
     }
 
-    /// Those at these times, in seconds.
+    /// Sets the times of the snapshots, in seconds.
     pub(super) fn at(mut self, times_s: &[f64]) -> Self {
         self.taken = times_s.iter().map(|time_s| (*time_s, None)).collect();
         self
     }
 
-    /// Pictures of a film, one at each of these intervals, in seconds.
+    /// Makes a film instead, with a picture at each of these intervals, in seconds.
     pub(super) const fn every(mut self, interval_s: f64) -> Self {
         self.film = Some((interval_s, f64::NEG_INFINITY));
         self
@@ -59,7 +59,7 @@ impl Snapshots {
         self.film.is_some()
     }
 
-    /// Takes a sample. Samples come in the order of time.
+    /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.span_s = [self.span_s[0].min(time_s), time_s];
@@ -80,8 +80,7 @@ impl Snapshots {
         }
     }
 
-    /// Lines about requested times before the start of the history, whose pictures show its first instant, and after its end, whose
-    /// pictures show its last instant.
+    /// Returns lines about requested times before the start or after the end of the history. Their pictures show the first or the last instant.
     pub(super) fn outside(&self) -> String {
         let [start_s, end_s] = self.span_s;
         let line = |is_outside: &dyn Fn(f64) -> bool, place: &str| {
@@ -98,7 +97,7 @@ impl Snapshots {
         line(&|time_s| time_s < start_s, early) + &line(&|time_s| time_s > end_s, late)
     }
 
-    /// The largest joint stress in any of the pictures, in Pa.
+    /// Returns the largest joint stress in all pictures, in Pa.
     fn largest_pa(&self) -> f64 {
         let pressures = self.shown().into_iter();
         let pressures = pressures.flat_map(|sample| &sample.pressures);
@@ -106,25 +105,25 @@ impl Snapshots {
         stresses_pa.fold(0.0, f64::max)
     }
 
-    /// The thickness of the thinnest joint, in metres.
+    /// Returns the thickness of the thinnest joint, in metres.
     fn thickness_m(&self) -> f64 {
         let sections = self.scene.sections.iter();
         let thicknesses_m = sections.map(|section| section.across_m.norm());
         thicknesses_m.fold(f64::INFINITY, f64::min)
     }
 
-    /// The instants that are drawn.
+    /// Returns the samples that are drawn.
     fn shown(&self) -> Vec<&Sample> {
         let taken = self.taken.iter();
         taken.filter_map(|(_, sample)| sample.as_ref()).collect()
     }
 
-    /// The picture.
+    /// Draws all snapshots in one picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
         self.sheet(figure, title, &self.shown())
     }
 
-    /// Each instant as a picture of its own, all to one scale.
+    /// Draws each snapshot as a separate picture, all with one scale.
     pub(super) fn stills(&self, figure: Figure, title: &str) -> Vec<String> {
         let shown = self.shown().into_iter();
         shown
@@ -137,7 +136,7 @@ impl Snapshots {
         let cell_px = figure.width_px / columns as f64;
         let [low_m, high_m] = self.scene.frame_m();
         let (width_m, height_m) = (high_m.x - low_m.x, high_m.y - low_m.y);
-        // Leaves room for the sway; no higher than wide.
+        // Leaves space for the sway; the picture is not higher than wide.
         let scale = ((cell_px - 30.0) / (1.25 * width_m)).min(cell_px / (1.1 * height_m));
         let mut sheet = Sheet::new(figure, title);
         sheet.gap(14.0);
@@ -240,9 +239,9 @@ impl Snapshots {
     }
 }
 
-/// The part of a broken tie that is drawn at either end.
+/// Fraction of the length of a broken tie that is drawn at each end.
 const STUB_RATIO: f64 = 0.4;
-/// Height of the highest stress wedge, relative to the thickness of the thinnest joint.
+/// Height of the highest stress wedge, over the thickness of the thinnest joint.
 const WEDGE_RATIO: f64 = 0.6;
 /// The colour of stress wedges.
 const PRESSED: &str = "#e3c3dc";

@@ -1,4 +1,4 @@
-//! The summary of a run, as in `summary.json`.
+//! The summary of a run: `summary.json`.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -23,23 +23,23 @@ use crate::scenario::{Ground, Scenario};
 pub struct Evidence<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
-    /// Its model of motion.
+    /// The model of motion.
     pub model: &'a dyn Model,
-    /// The motion.
+    /// The history.
     pub history: &'a History,
-    /// The comparison with its repetitions; `None` if it was not repeated.
+    /// The comparison with its repetitions; `None` if the history was not repeated.
     pub repeated: Option<&'a Result<Repeatability, RepeatabilityError>>,
-    /// The motions with other properties that are equally likely.
+    /// The histories with other stiffness and contact, and with rigid joints.
     pub varied: &'a [Varied],
 }
 
 impl<'a> Evidence<'a> {
-    /// The comparison with its repetitions, if these are known.
+    /// Returns the comparison with the repetitions; `None` if there are none, or one failed.
     pub(super) fn repeatability(&self) -> Option<&'a Repeatability> {
         self.repeated.and_then(|repeated| repeated.as_ref().ok())
     }
 
-    /// Whether the structure overturns, as far as this is known.
+    /// Returns the verdict; uncertain if the repetitions disagree.
     pub(super) fn verdict(&self) -> Verdict {
         let own = Verdict::from(self.history.outcome);
         let repeated = self.repeatability();
@@ -50,34 +50,34 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Summary of a run, `summary.json`. Largest rotations of the bodies are keys such as `peak_rotation_left_rad`, `peak_rotation_1_rad` of the first
-/// block of a row, or `peak_rotation_rad` of a column.
+/// The summary of a run: `summary.json`. Largest rotations of the bodies have keys such as `peak_rotation_left_rad`, `peak_rotation_1_rad` for
+/// the first block of a row, or `peak_rotation_rad` for a column.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary<'a> {
     /// The name of the program.
     pub program: &'static str,
-    /// Its version.
+    /// Version of the program.
     pub version: &'static str,
     /// The scenario with all defaults.
     pub scenario: Value,
-    /// Checksums of its records.
+    /// Checksums of the records.
     pub record_checksums: Vec<String>,
-    /// Whether the structure overturns, as far as this is known.
+    /// Verdict on overturning; uncertain if the repetitions disagree.
     pub verdict: Verdict,
-    /// Sentences about unlikely numbers of the scenario, and about limits of its history.
+    /// Warnings about unlikely numbers of the scenario, and about limits of its history.
     pub warnings: Vec<String>,
     /// Outcome of the motion.
     #[serde(flatten)]
     pub ended: Ended,
-    /// Number of impacts; null with elastic joints, because their contact lasts.
+    /// Number of impacts; null with elastic joints, whose contact is continuous.
     pub impacts: Option<usize>,
     /// Largest rotations of the bodies, in radians.
     #[serde(flatten)]
     pub peak_rotations_rad: Named<f64>,
-    /// The push that starts the structure, in units of gravity; null if none does.
+    /// The push that starts the structure to each side, in units of gravity; null if no push starts it.
     pub incipient_acceleration_g: Sides<Option<f64>>,
-    /// Largest error of the energy balance: of four links and columns over the barrier of the first mechanism, of a row of blocks over weight times
-    /// size (the mean radius of an arch, or half the diagonal of a column); with friction, the largest energy created.
+    /// Largest error of the energy balance. Reference of four links and columns: the barrier of the first mechanism. Reference of a row of
+    /// blocks: weight times size (the mean radius of an arch, or half the diagonal of a column). With friction, the largest energy created.
     pub energy_defect_ratio: f64,
     /// The friction that prevents sliding.
     #[serde(flatten)]
@@ -90,16 +90,16 @@ pub struct Summary<'a> {
     /// Results of rows of blocks.
     #[serde(flatten)]
     pub row: Option<OfRow<'a>>,
-    /// The comparison of the motion with its repetitions, if it was repeated.
+    /// The comparison with its repetitions; absent if the history was not repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub repeatability: Option<Repeated<'a>>,
-    /// The ends of the motions with other stiffness and contact, and with rigid joints.
+    /// The ends of the histories with other stiffness and contact, and with rigid joints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub variations: Vec<OneVariation<'a>>,
     /// Largest displacements of the points that were chosen with `--point`, relative to the ground.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointPeaks>,
-    /// Time that the longest step took to compute, in microseconds; it alone differs from one computation to the next.
+    /// Computing time of the longest step, in microseconds. It is the only number that differs between computations.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_us: Option<f64>,
 }
@@ -109,17 +109,17 @@ pub struct Summary<'a> {
 pub struct Ended {
     /// `never_moved`, `vibrates`, `rest`, `overturned`, `still_rocking` or `incomplete`.
     pub outcome: &'static str,
-    /// Time of the outcome, in seconds: of a structure that overturned, the last time at which it could still return.
+    /// Time of the outcome, in seconds. For an overturned structure it is the last time at which the structure could still return.
     pub outcome_time_s: f64,
-    /// The side to which it overturned; null unless it did.
+    /// The side to which the structure overturned; null if it did not.
     pub overturning_sway: Option<Sway>,
 }
 
 /// The friction that prevents sliding.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FrictionDemand {
-    /// Largest coefficient of friction that a motion without sliding needs, outside impacts. Joints with less than a hundredth of the weight do not
-    /// count.
+    /// Largest coefficient of friction that a motion without sliding needs, outside impacts. Joints that carry less than a hundredth of the
+    /// weight do not count.
     pub largest_friction_demand: f64,
     /// Time of the largest friction demand, in seconds.
     pub largest_friction_demand_time_s: f64,
@@ -128,39 +128,39 @@ pub struct FrictionDemand {
 /// Results of four links or of a column.
 #[derive(Clone, Debug, Serialize)]
 pub struct OfMechanisms {
-    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity alone overturns.
+    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, gravity alone overturns the structure.
     pub peak_rotation_over_critical: Option<f64>,
-    /// Numbers without dimension; absent without unstable equilibrium.
+    /// Dimensionless numbers; absent without an unstable equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dimensionless: Option<Dimensionless>,
-    /// The line of thrust.
+    /// The thrust line.
     #[serde(flatten)]
     pub thrust: Option<Thrust>,
     /// Evaluations of the equation of motion.
     pub evaluations: u64,
 }
 
-/// Numbers of a history without dimension.
+/// Dimensionless numbers of a history.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Dimensionless {
     /// Frequency parameter of the structure, in rad/s.
     pub p_rad_s: f64,
     /// Frequency parameter times the duration of the pulse; null for records.
     pub p_t_p: Option<f64>,
-    /// Largest acceleration of the ground over `g A_L` of the side to which it pushes.
+    /// Largest acceleration of the ground over `g A_L` of the side to which the ground pushes.
     pub peak_acceleration_over_incipient: f64,
 }
 
-/// The line of thrust of four links, or of a column, from the output samples.
+/// The thrust line of four links, or of a column, at the output samples.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Thrust {
-    /// Largest excess of the line of thrust, over the thickness.
+    /// Largest excess of the thrust line, over the thickness.
     pub largest_thrust_excess_ratio: f64,
     /// Time of the largest excess, in seconds.
     pub largest_thrust_excess_time_s: f64,
-    /// Share of the time in motion in which the excess is at most 0.01; null if it never moved.
+    /// Share of the time in motion in which the excess is at most 0.01; null if the structure never moved.
     pub rocking_share_thrust_excess_below_0_01: Option<f64>,
-    /// Share of the time in motion in which the excess is at most 0.05; null if it never moved.
+    /// Share of the time in motion in which the excess is at most 0.05; null if the structure never moved.
     pub rocking_share_thrust_excess_below_0_05: Option<f64>,
 }
 
@@ -169,21 +169,21 @@ pub struct Thrust {
 pub struct OfRow<'a> {
     /// Largest rotation of any block, in radians.
     pub largest_peak_rotation_rad: f64,
-    /// Half cycles that peak at a thousandth of the largest rotation or more.
+    /// Half cycles whose peak is at least a thousandth of the largest rotation.
     pub half_cycles: Vec<HalfCycle>,
     /// Results of elastic joints.
     #[serde(flatten)]
     pub elastic: Option<&'a ElasticSummary>,
-    /// The results of every row.
+    /// Results of all rows.
     #[serde(flatten)]
     pub row: &'a RowSummary,
-    /// The displacement between the feet, if they move differently.
+    /// Displacement between the feet; absent if both feet move together.
     #[serde(flatten)]
     pub feet: Option<FeetApart>,
-    /// The coefficient of friction, if joints can slip.
+    /// Coefficient of friction; absent if joints cannot slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
-    /// Systems of equations that were solved.
+    /// Number of systems of equations that were solved.
     pub iterations: u64,
 }
 
@@ -191,38 +191,38 @@ pub struct OfRow<'a> {
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
 pub enum Repeated<'a> {
-    /// If all repetitions are known:
+    /// Comparison with all repetitions.
     Compared {
-        /// Outcomes of the run itself (`own`) and of its repetitions by their names.
+        /// Outcomes of the run itself (`own`) and of its repetitions, by name.
         outcomes: Named<&'static str>,
-        /// The sides to which they overturn.
+        /// The sides to which the structure overturned, by name.
         overturning_sways: Named<Option<Sway>>,
         /// The results.
         #[serde(flatten)]
         repeatability: &'a Repeatability,
     },
-    /// If a repetition failed:
+    /// A repetition failed.
     Failed {
         /// The reason.
         failed: String,
     },
 }
 
-/// The end of a motion with other properties.
+/// The end of a history with other properties.
 #[derive(Clone, Debug, Serialize)]
 pub struct OneVariation<'a> {
-    /// The difference.
+    /// The changed property.
     pub with: &'a str,
-    /// The end.
+    /// The end of the history.
     #[serde(flatten)]
     pub end: VariationEnd<'a>,
 }
 
-/// The end of a motion with other properties, or why there is none.
+/// The end of a history with other properties, or the reason why there is none.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(untagged)]
 pub enum VariationEnd<'a> {
-    /// If the motion is known:
+    /// The history was computed.
     Ended {
         /// The ending.
         #[serde(flatten)]
@@ -232,7 +232,7 @@ pub enum VariationEnd<'a> {
         /// Largest rotation of a block, in radians.
         largest_peak_rotation_rad: f64,
     },
-    /// If it failed:
+    /// The history failed.
     Failed {
         /// The reason.
         failed: &'a str,
@@ -242,7 +242,7 @@ pub enum VariationEnd<'a> {
 /// Largest displacements of a point.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct PointPeaks {
-    /// Place in the undeformed structure to the right of its middle, in metres.
+    /// Horizontal position in the undeformed structure, from its middle to the right, in metres.
     pub x_m: f64,
     /// Height in the undeformed structure, in metres.
     pub y_m: f64,
@@ -257,7 +257,7 @@ pub struct PointPeaks {
 }
 
 impl Ended {
-    /// The outcome of a motion.
+    /// Returns the outcome of a history.
     #[must_use]
     pub fn of(history: &History) -> Self {
         Self {
@@ -269,14 +269,14 @@ impl Ended {
 }
 
 impl<'a> Summary<'a> {
-    /// The summary of a motion, with the peaks of its observed points.
+    /// Makes the summary of a history, with the peaks of the observed points.
     #[must_use]
     pub fn of(evidence: &Evidence<'a>, points: Vec<PointPeaks>) -> Self {
         let (scenario, model, history) = (evidence.scenario, evidence.model, evidence.history);
         let mechanisms = model.as_mechanisms();
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
-        // The cost of a computation is reported here; the results do not contain it.
+        // Only the summary contains the time of computation; results would otherwise differ between runs.
         let longest_step = history.row().and_then(|row| row.longest_step.0);
         Self {
             program: env!("CARGO_PKG_NAME"),
@@ -378,7 +378,7 @@ impl<'a> OneVariation<'a> {
     }
 }
 
-/// The summary of a motion as JSON.
+/// Returns the summary of a history as JSON.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -395,7 +395,7 @@ pub fn summary(
         repeated,
         varied: &[],
     };
-    // A history computed again is equal, except for the time that it took.
+    // Computing time would differ between equal histories.
     summary_of(&Summary {
         longest_step_us: None,
         ..Summary::of(&evidence, Vec::new())

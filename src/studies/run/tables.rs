@@ -11,14 +11,16 @@ use crate::output::table::{Cell, Column, column, list, numbers, row_number, seve
 
 use super::Scales;
 
-/// Columns of `rotations.csv`, one row per sample: time, ground, `phase` (events so far), `state`, rotations and rates of all
-/// bodies; for mechanisms `thrust_excess_ratio`, for rows `open_joints`, because their line of thrust stays inside;
-/// `friction_demand`; the vertical acceleration if the ground has one; if the feet move differently, `right_foot_x_m` and `right_foot_y_m`,
-/// the displacement of the right foot relative to the left one, to the right and upwards.
+/// Returns the columns of `rotations.csv`, one row per sample.
 ///
-/// With scales, three columns follow these: `p_t` (time times `p`), `acceleration_over_incipient`
-/// (ground acceleration over `g A_L`) and `rotation_over_critical` (see [`Sample::rotation_over_critical`]). Columns of
-/// points come last.
+/// - time, acceleration of the ground, `phase` (number of events up to the sample), `state`, rotations and rates of all bodies;
+/// - `thrust_excess_ratio` of mechanisms, or `open_joints` of rows, whose thrust line never leaves the structure;
+/// - `friction_demand`; the vertical acceleration if the ground has one;
+/// - if the feet move differently, `right_foot_x_m` and `right_foot_y_m`: the displacement of the right foot relative to the left one, to the
+///   right and upwards.
+///
+/// With scales, three more columns: `p_t` (time times `p`), `acceleration_over_incipient` (acceleration of the ground over `g A_L`) and
+/// `rotation_over_critical` (see [`Sample::rotation_over_critical`]). The columns of observed points come last.
 pub(super) fn rotations(
     model: &dyn Model,
     ground: &GroundMotion,
@@ -76,11 +78,11 @@ pub(super) fn rotations(
     all
 }
 
-/// Columns of `poses.csv`, one row per sample: `time_s`, then for each body `x_..._m`, `y_..._m`, `rotation_..._rad`.
+/// Returns the columns of `poses.csv`, one row per sample: `time_s`, then `x_..._m`, `y_..._m`, `rotation_..._rad` of each body.
 ///
-/// `(x, y)` is the current position, relative to the ground, of the body's point that is at the origin when undeformed. The
-/// origin is the centre of a circular arch, or the middle of a column's base. A corner that was at `c` is at `(x, y) + R c`,
-/// where `R` turns anticlockwise by the rotation.
+/// `(x, y)` is the current position, relative to the ground, of the point of the body that is at the origin in the undeformed structure. The
+/// origin is the centre of a circular arch, or the middle of the base of a column. A corner that was at `c` is now at `(x, y) + R c`, where `R`
+/// is the anticlockwise rotation of the body.
 pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
     let names = bodies.iter().flat_map(|body| {
         let body = std::slice::from_ref(body);
@@ -99,16 +101,17 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
     ]
 }
 
-/// Columns of `joints.csv`, one row per sample: `time_s`, then the gaps of all joints at both edges, `gap_0_intrados_m`,
-/// `gap_0_extrados_m` and so on. If joints slip, then `slip_0_m` and so on: the offset of the right face towards the
-/// extrados (in a column: of the upper face to the right). If joints are elastic, then the action of each: `normal_0_n` (compression is
-/// positive), `shear_0_n` (positive if it keeps the right face from slipping towards the extrados), `eccentricity_0_ratio` (distance of
-/// the normal force from the middle towards the extrados, relative to the thickness; empty without compression),
-/// `contact_0_ratio` (the compressed fraction) and the stresses `stress_0_intrados_pa` and `stress_0_extrados_pa`.
-/// For each tie, from 1 on, `tie_1_force_n` and `tie_1_elongation_m` since the undeformed structure.
+/// Returns the columns of `joints.csv`, one row per sample.
 ///
-/// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a
-/// joint is measured along the arc: thickness times relative rotation, plus the smaller gap.
+/// - `time_s`, then the gaps of all joints at both edges: `gap_0_intrados_m`, `gap_0_extrados_m` and so on;
+/// - if joints slip, `slip_0_m` and so on: the offset of the right face towards the extrados (in a column: of the upper face to the right);
+/// - if joints are elastic, for each joint `normal_0_n` (compression is positive), `shear_0_n` (positive if it resists slip of the right face
+///   towards the extrados), `eccentricity_0_ratio` (distance of the normal force from the middle towards the extrados, over the thickness; empty
+///   without compression), `contact_0_ratio` (the compressed fraction), `stress_0_intrados_pa` and `stress_0_extrados_pa`;
+/// - for each tie, from 1 on, `tie_1_force_n` and `tie_1_elongation_m` since the undeformed structure.
+///
+/// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a joint is measured along the arc:
+/// thickness times relative rotation, plus the smaller gap.
 pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let shape = model.shape();
     let gaps = (0..shape.joints)
@@ -147,7 +150,7 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     ]
 }
 
-/// Columns of `events.csv`, one row per transition.
+/// Returns the columns of `events.csv`, one row per event.
 ///
 /// | column | |
 /// |---|---|
@@ -162,10 +165,10 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
 /// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
 /// | `joints_open`, `edges_open` | of a row of blocks: joints that are open from here on, and the edge about which each turns (`both`: the joint parts), separated by spaces |
 ///
-/// The table of a free-standing column has no hinges. A structure that is released starts in the first mechanism
-/// without a row: `impacts.csv` has its hinges, as the first to close.
+/// The table of a free-standing column has no hinges. A structure that is released starts in the first mechanism without a row; the first row of
+/// `impacts.csv` has the hinges of that mechanism as closed hinges.
 ///
-/// Rows of blocks have thousands of impacts and hundreds of bodies, so the columns of bodies are left out.
+/// Rows of blocks have thousands of impacts and hundreds of bodies, so their table has no columns of bodies.
 pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         column("time_s", |event: &Event| event.time_s),
@@ -199,18 +202,17 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     all
 }
 
-/// Columns of `impacts.csv` for mechanisms, one row per impact.
+/// Returns the columns of `impacts.csv` for mechanisms, one row per impact.
 ///
-/// The mechanism after is the one to which the impact leads, with the energy that it would keep, even if this
-/// is so little that the structure comes to rest. If no mechanism can follow, the hinges are
-/// empty. The table of a free-standing column has no hinges.
+/// The mechanism after the impact is written with the energy that it would keep, even if this energy is so small that the structure comes to
+/// rest. Hinges are empty if no mechanism can follow. The table of a free-standing column has no hinges.
 ///
-/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after, from the left, in degrees from the left
-/// springing; `hinge_a_edge` ... are their edges, `intrados` or `extrados`. `closed_a_deg` and
-/// `closed_a_edge` ... are the same for the mechanism before; in the first row, for the first mechanism of all.
+/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after the impact, from the left, in degrees from the left springing;
+/// `hinge_a_edge` to `hinge_d_edge` are their edges, `intrados` or `extrados`. `closed_a_deg`, `closed_a_edge` and so on are the hinges of the
+/// mechanism before the impact.
 ///
-/// The impulses at its hinges act on the part towards the crown, in the frame of the ground; they are empty
-/// if the restitution coefficient is prescribed.
+/// The impulses at the new hinges act on the part towards the crown, in the frame of the ground. They are empty if the restitution coefficient
+/// is prescribed.
 pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
     let (bodies, sections) = (model.bodies(), sections(model));
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
@@ -255,10 +257,14 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
     ]
 }
 
-/// Columns of `impacts.csv` for rows, one row per impact: `impact` (from 1), `time_s`, `joints_shut` and
-/// `joints_opened` (numbers separated by spaces), each with its edges in the same order (`edges_shut`: those that landed,
-/// `edges_opened`: those about which they turn; `both` if both landed or the joint parts), the kinetic energies `energy_before_j`,
-/// `energy_after_j` and `energy_taken_j`, and if joints slip `friction_j`, the part that friction took.
+/// Returns the columns of `impacts.csv` for rows, one row per impact.
+///
+/// - `impact` (from 1), `time_s`;
+/// - `joints_shut` and `joints_opened`: numbers of joints, separated by spaces;
+/// - `edges_shut` and `edges_opened`: for each joint the edge that landed, or the edge about which the joint turns; `both` if both edges landed
+///   or the joint parts;
+/// - the kinetic energies `energy_before_j`, `energy_after_j` and `energy_taken_j`, and, if joints slip, `friction_j`: the energy dissipated by
+///   friction.
 pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
@@ -277,7 +283,7 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     all
 }
 
-/// Energy lost in an impact, in J.
+/// Returns the energy lost in an impact, in J.
 pub(super) fn taken_j(impact: &Impact) -> f64 {
     impact.energy_before_j - impact.energy_after_j
 }
@@ -290,7 +296,7 @@ fn opened(event: &Event) -> &[Hinge] {
     impact(event).map_or(&[], |impact| &impact.opened)
 }
 
-/// A column with a quantity of the impact; empty for other events.
+/// Returns a column with a quantity of the impact; empty for other events.
 fn of_impact<C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&Impact) -> C + 'static,
@@ -298,22 +304,22 @@ fn of_impact<C: Into<Cell<'static>>>(
     column(name, move |event: &Event| impact(event).map(&cell))
 }
 
-/// Names of the hinges of a mechanism in columns, from the left.
+/// Names of the hinges of a mechanism in columns, from left to right.
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
-/// Names of columns, several for each of this many hinges.
+/// Returns names of columns: `parts` of each of a number of hinges.
 fn by_hinge<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
     let names = hinges.flat_map(|hinge| parts.map(|part| format!("{what}_{hinge}_{part}")));
     names.collect()
 }
 
-/// The number of hinges of a model's mechanisms that are at sections.
+/// Returns the number of hinges of a mechanism that are at sections of an arch.
 fn sections(model: &dyn MechanismModel) -> usize {
     hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
 }
 
-/// The columns of place and edge for this many hinges.
+/// Returns the columns with angle and edge of a number of hinges.
 fn hinges(
     what: &str,
     sections: usize,
@@ -325,8 +331,8 @@ fn hinges(
     })
 }
 
-/// Angles, in degrees from the left springing, and edges of the hinges at sections of an arch, followed by empty cells
-/// up to this number.
+/// Returns the angles, in degrees from the left springing, and the edges of hinges at sections of an arch, with empty cells up to the number
+/// `least`.
 fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'static str>)> {
     let sections = hinges.iter().filter_map(|hinge| match hinge {
         Hinge::Section { angle_rad, edge } => {
@@ -339,12 +345,12 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
     cells
 }
 
-/// Numbers of the joints of these hinges, separated by spaces.
+/// Returns the numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
     of_joints(hinges, |joint, _| joint.to_string())
 }
 
-/// Edges of these joints, separated by spaces.
+/// Returns the edges of these hinges, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
     of_joints(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
 }

@@ -1,4 +1,4 @@
-//! The words of a run, from its summary and its motion: outcome, times, comparisons and repeatability.
+//! The words of a run, from its summary and its history: outcome, times, comparisons and repeatability.
 
 use askama::Template;
 use nalgebra::Vector2;
@@ -21,7 +21,7 @@ use crate::output::range_ends;
 use crate::output::template::filters;
 use crate::scenario::{Hinges, Scenario, Series};
 
-/// The heading of the words for the runs of a scenario: its title, and the records that shake it, one line each.
+/// Returns the heading of the words for the runs of a scenario: title, and one line per record.
 #[must_use]
 pub fn heading(scenario: &Scenario) -> String {
     let title = scenario.title.as_deref();
@@ -34,13 +34,13 @@ pub fn heading(scenario: &Scenario) -> String {
     text
 }
 
-/// The verdict: the outcome, whether it is certain, and the properties that may change it.
+/// The verdict: the outcome, its certainty, and the properties that may change it.
 #[derive(Template)]
 #[template(path = "studies/run/words/verdict.txt")]
 pub(super) struct VerdictLine<'a>(pub Evidence<'a>);
 
 impl VerdictLine<'_> {
-    /// Names of the repetitions whose outcome `differs` from that of the motion.
+    /// Returns the names of the repetitions whose outcome `differs` from that of the run.
     fn others(
         &self,
         repeated: &Repeatability,
@@ -62,7 +62,7 @@ impl VerdictLine<'_> {
         self.others(repeated, |own, other| own != other)
     }
 
-    /// The conditions of the outcome: friction that stone may not have, and properties that change the ending.
+    /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.
     fn doubts(&self) -> Vec<String> {
         let (history, varied) = (self.0.history, self.0.varied);
         let needed = caveats::friction_need(self.0.scenario, history).into_iter();
@@ -80,20 +80,20 @@ pub(super) struct Words<'a> {
     pub evidence: Evidence<'a>,
     pub summary: &'a Summary<'a>,
     pub impacts: &'a Notable,
-    /// The models of all runs that are reported together.
+    /// The models of motion of all runs that are reported together.
     pub beside: &'a [Hinges],
 }
 
-/// Number of half cycles that are described.
+/// Largest number of half cycles that are described.
 const DESCRIBED: usize = 3;
 /// Slips below this fraction of the thickness of a joint are not reported.
 const LEAST_SLIP_RATIO: f64 = 1e-6;
-/// Number of joints whose slips are reported.
+/// Largest number of joints whose slips are reported.
 const SLIPPED: usize = 4;
-/// At this distance from the middle, in thicknesses of a joint, the thrust of a row at rest is close to the edge.
+/// Distance of the thrust from the middle, in thicknesses of a joint, from which the thrust of a row at rest is reported as close to the edge.
 const NEAR_EDGE_RATIO: f64 = 0.4;
 
-/// The slip of a joint: the largest, and that at the end.
+/// The slip of a joint: the largest and the final value.
 struct Slip {
     joint: usize,
     largest_mm: f64,
@@ -101,7 +101,7 @@ struct Slip {
 }
 
 impl<'a> Words<'a> {
-    /// Whether nothing moved until the end of the run.
+    /// Returns true if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
         let history = self.evidence.history;
         match history.outcome {
@@ -120,12 +120,12 @@ impl<'a> Words<'a> {
             .is_some_and(|sliding| sliding.largest_offsets_m.iter().any(|slip_m| *slip_m > 0.0))
     }
 
-    /// Whether a motion has another verdict.
+    /// Returns true if a history has another verdict.
     fn differs(&self, other: &History) -> bool {
         Verdict::from(other.outcome) != Verdict::from(self.evidence.history.outcome)
     }
 
-    /// The half cycles with the largest peaks that are not zero in print, in order of time.
+    /// Returns the half cycles with the largest peaks that are printed as nonzero, in order of time.
     fn half_cycles(&self) -> Vec<&'a HalfCycle> {
         let row = self.summary.row.as_ref();
         row.map_or_else(Vec::new, |row| {
@@ -133,19 +133,19 @@ impl<'a> Words<'a> {
         })
     }
 
-    /// Those half cycles compared with their repetitions: the certain ones, and the others.
+    /// Returns the comparisons of these half cycles with the repetitions: first the certain ones, then the others.
     fn repeated<'r>(&self, all: &'r Repeatability) -> [Vec<&'r RepeatedHalfCycle>; 2] {
         let described = largest(&all.half_cycles, |cycle| cycle.own.peak_rad).into_iter();
         let (same, differ) = described.partition(|cycle| cycle.is_certain());
         [same, differ]
     }
 
-    /// The least and the largest of a value in all motions.
+    /// Returns the smallest and the largest value in all repetitions.
     fn range(&self, value: &RepeatedValue) -> String {
         range_ends([value.min, value.max], 6).join(" to ")
     }
 
-    /// The first impact, and the one that takes the most energy; those after overturning do not count.
+    /// Returns the first impact, and the impact of a row that takes the most energy. Impacts after overturning do not count.
     fn notable(&self) -> [Option<&'a (f64, Impact)>; 2] {
         let until_s = self.evidence.history.overturned_s();
         let until_s = until_s.unwrap_or(f64::INFINITY);
@@ -156,7 +156,7 @@ impl<'a> Words<'a> {
         [before().next(), hardest]
     }
 
-    /// The part of the energy that an impact keeps. It is printed as 1.0000 only if the impact takes no energy.
+    /// Returns the fraction of the energy that an impact keeps. "1.0000" appears only if the impact takes no energy.
     fn kept(&self, impact: &Impact) -> String {
         match format!("{:.4}", impact.restitution) {
             all if impact.restitution < 1.0 && all == "1.0000" => "above 0.9999".to_owned(),
@@ -164,7 +164,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Numbers of the joints of these hinges, as the subject of a verb; neighbours as `3-7`.
+    /// Returns the numbers of the joints of these hinges, as the subject of a verb; consecutive joints as `3-7`.
     fn joints(&self, hinges: &[Hinge], verb: &str) -> String {
         let mut runs: Vec<[usize; 2]> = Vec::new();
         for hinge in hinges {
@@ -193,7 +193,7 @@ impl<'a> Words<'a> {
         by_body(&model.bodies(), &history.peak_rotations_rad)
     }
 
-    /// The joints that slipped, those with the largest slips first.
+    /// Returns the joints that slipped, the largest slip first.
     fn slips(&self) -> Vec<Slip> {
         let row = self.evidence.model.row();
         let joints = row.zip(self.sliding()).into_iter();
@@ -215,12 +215,12 @@ impl<'a> Words<'a> {
         slips
     }
 
-    /// The largest final slip of these joints, in mm.
+    /// Returns the largest final slip of these joints, in mm.
     fn most_end_mm(&self, slips: &[Slip]) -> f64 {
         slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
     }
 
-    /// The acceleration that starts the structure to either side; `None` unless both are equal.
+    /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
     fn alike_g(&self) -> Option<f64> {
         let Sides { right, left } = self.summary.incipient_acceleration_g;
         right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
@@ -230,13 +230,13 @@ impl<'a> Words<'a> {
         acceleration_m_s2 / self.evidence.scenario.gravity_m_s2()
     }
 
-    /// The largest horizontal and vertical acceleration of the ground until a time, in units of gravity.
+    /// Returns the largest horizontal and vertical acceleration of the ground until a time, in units of gravity.
     fn peaks_g(&self, until_s: &f64) -> Vector2<f64> {
         let ground = self.evidence.scenario.ground_motion();
         ground.peaks_m_s2(*until_s).map(|peak| self.in_g(peak))
     }
 
-    /// Each side to which the ground pushes, with that push and the push that starts the structure to that side, in units of gravity.
+    /// Returns each side to which the ground pushes, the largest push, and the push that starts the structure to that side, in units of gravity.
     fn pushes_g(&self) -> Vec<(Sway, f64, Option<f64>)> {
         let ground = self.evidence.scenario.ground_motion();
         let [right, left] = ground.pushes_m_s2(self.evidence.history.end_s);
@@ -249,7 +249,7 @@ impl<'a> Words<'a> {
         pushed.collect()
     }
 
-    /// A push as a multiple of the one that starts the structure, in words. Any push starts a structure on hinges that ties hold.
+    /// Returns the ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
     fn times(&self, push_g: &f64, starts_g: &f64) -> String {
         match push_g / starts_g {
             times if times.is_finite() => format!(", {times:.2} times as much"),
@@ -257,26 +257,26 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Whether the motion of the right foot is recorded.
+    /// Returns true if the right foot has a record.
     fn is_recorded(&self) -> bool {
         let right = self.evidence.scenario.right_foot.as_ref();
         right.is_some_and(|right| right.record().is_some())
     }
 
-    /// The records of feet that end before the ground stops, with the time.
+    /// Returns the feet whose records end before the ground stops, with the times.
     fn ended_records(&self) -> Vec<(&'static str, f64)> {
         let ground = self.evidence.scenario.ground_motion();
         let feet = ["left", "right"].into_iter().zip(ground.ends_s());
         feet.filter(|(_, at_s)| *at_s < ground.end_s()).collect()
     }
 
-    /// The limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
+    /// Returns the limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
     fn trust(&self) -> Option<Vec<String>> {
         let (scenario, history) = (self.evidence.scenario, self.evidence.history);
         if self.evidence.model.as_mechanisms().is_none() {
             return self.sliding().is_none().then(Vec::new);
         }
-        // No advice to compare with free hinges if they are compared already.
+        // Advises to compare with free hinges only if the comparison was not requested.
         let compared = self.beside.contains(&Hinges::Free);
         let advice = (!compared).then_some("compare with --hinges both");
         caveats::trust(history, &scenario.structure, advice)
@@ -291,7 +291,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// The values with the largest peaks that are not zero in print, in their order.
+/// Returns the values with the largest peaks that are printed as nonzero, in their order.
 fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> Vec<&T> {
     let mut rocking: Vec<usize> = (0..cycles.len())
         .filter(|index| peak_rad(&cycles[*index]) > STRAIGHT_RAD)
@@ -302,7 +302,7 @@ fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> Vec<&T> {
     rocking.into_iter().map(|index| &cycles[index]).collect()
 }
 
-/// Impacts that are described, with their times: the first, and then each that takes more energy than all before.
+/// Impacts that may be described, with their times: the first impact, and each impact that takes more energy than all before.
 #[derive(Default)]
 pub(super) struct Notable(Vec<(f64, Impact)>);
 

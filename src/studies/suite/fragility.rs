@@ -1,33 +1,28 @@
-//! Fragility: how likely ground motions of a given intensity overturn the structure.
+//! Fragility: the probability that ground motions of a given intensity overturn the structure.
 //!
-//! A suite of records, each at several intensities and perhaps to either side, gives cases that overturn
-//! and cases that do not. The curve through them is lognormal,
+//! A suite of records, each at several intensities and perhaps with both signs, gives cases that overturn and cases that survive. The curve
+//! through these cases is lognormal,
 //!
 //! `P(overturns | x) = Phi(ln(x / theta) / beta)`,
 //!
-//! with the median `theta` and the dispersion `beta` of largest likelihood (Baker, "Efficient analytical
-//! fragility function fitting using dynamic structural analysis", Earthquake Spectra 31(1), 2015). The
-//! log-likelihood is the sum, over all cases, of the logarithm of the probability of the observed outcome.
-//! With `eta = a + b ln x`, `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its
-//! log-likelihood is concave in `a` and `b`, so Newton's method finds the only maximum from any start.
-//! Whether there is a maximum is known in advance: in one dimension there is none if and only if the cases
-//! of either kind lie on two sides of a point (Silvapulle, "On the existence of maximum likelihood estimators
-//! for the binomial response models", Journal of the Royal Statistical Society B 43, 1981).
+//! with the median `theta` and the dispersion `beta` of maximum likelihood (Baker, "Efficient analytical fragility function fitting using
+//! dynamic structural analysis", Earthquake Spectra 31(1), 2015). The log-likelihood is the sum, over all cases, of the logarithm of the
+//! probability of the observed outcome. With `eta = a + b ln x`, `b = 1 / beta` and `theta = exp(-a / b)` this is probit regression. Its
+//! log-likelihood is concave in `a` and `b`, so Newton's method finds the only maximum from any start. In one dimension the maximum exists
+//! unless one intensity separates the cases that overturn from those that survive (Silvapulle, "On the existence of maximum likelihood
+//! estimators for the binomial response models", Journal of the Royal Statistical Society B 43, 1981).
 //!
 //! # Uncertainty
 //!
-//! There are two sets of standard errors. The plain one is the inverse of the observed information, and
-//! assumes that all cases are independent. Cases of one record are not: a record that is harmless for its
-//! intensity is harmless at every scale, so more levels without more records add less information than they
-//! seem to. The other set allows for any dependence within a record (Liang and Zeger, "Longitudinal data
-//! analysis using generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed
-//! for each record, and their scatter replaces the one that independence would give. The factor
-//! `G / (G - 1)` for `G` records is the usual correction for few of them (Cameron and Miller, "A practitioner's
-//! guide to cluster-robust inference", Journal of Human Resources 50(2), 2015). It does not suffice for
-//! very few: with less than some thirty records these errors, too, tend to be small.
+//! There are two sets of standard errors. The first is the inverse of the observed information, and assumes that all cases are independent.
+//! Cases of one record are not independent: a record that is harmless for its intensity is harmless at every scale. So more levels without more
+//! records add less information than this set shows. The second set allows for any dependence within a record (Liang and Zeger, "Longitudinal
+//! data analysis using generalized linear models", Biometrika 73, 1986): the scores of the likelihood are summed for each record, and the
+//! scatter of these sums replaces the scatter of independent cases. The factor `G / (G - 1)` for `G` records is the usual correction for small
+//! samples (Cameron and Miller, "A practitioner's guide to cluster-robust inference", Journal of Human Resources 50(2), 2015). With fewer than
+//! about thirty records these errors, too, tend to be too small.
 //!
-//! Both are first-order: they need samples so large that the errors are small compared with the
-//! dispersion.
+//! Both sets are first-order approximations: they hold if the errors are small compared with the dispersion.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -41,9 +36,9 @@ use crate::argument::plain;
 pub struct Observation {
     /// Intensity of the ground motion, positive, in any unit; the median has the same unit.
     pub intensity: f64,
-    /// Whether the structure overturned.
+    /// True if the structure overturned.
     pub overturned: bool,
-    /// The record: cases of the same record are not independent.
+    /// Index of the record. Cases of one record are not independent.
     pub record: usize,
 }
 
@@ -54,40 +49,40 @@ pub struct Fraction {
     pub intensity: f64,
     /// Number of cases.
     pub cases: usize,
-    /// Number of those that overturned.
+    /// Number of cases that overturned.
     pub overturned: usize,
 }
 
 /// Standard errors of the parameters of a [`Fragility`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// Of the median, in its unit.
+    /// Standard error of the median, in the unit of the median.
     pub median: f64,
-    /// Of the dispersion.
+    /// Standard error of the dispersion.
     pub dispersion: f64,
 }
 
 /// A lognormal fragility curve with its uncertainty. All numbers are finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fragility {
-    /// The intensity `theta` at which half of the cases overturn.
+    /// Median `theta`: the intensity at which half of the cases overturn.
     pub median: f64,
-    /// The dispersion `beta`: standard deviation of the logarithm of the intensity that overturns.
+    /// Dispersion `beta`: standard deviation of the logarithm of the overturning intensity.
     pub dispersion: f64,
     /// Standard errors under the assumption that all cases are independent.
     pub independent: Errors,
     /// Standard errors that allow for any dependence within a record; `None` with one record.
     pub clustered: Option<Errors>,
-    /// The largest logarithm of the likelihood.
+    /// The maximum of the log-likelihood.
     pub log_likelihood: f64,
     line: Line,
-    /// Covariance of the line's level and slope under the assumption that all cases are independent.
+    /// Covariance of level and slope of the line under the assumption that all cases are independent.
     covariance: Matrix2<f64>,
     /// Covariance of level and slope, allowing for dependence within records.
     clustered_covariance: Option<Matrix2<f64>>,
 }
 
-/// Why there is no fragility curve.
+/// Reasons why a fragility curve cannot be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum NoFit {
     /// An intensity has no finite logarithm.
@@ -108,21 +103,23 @@ pub enum NoFit {
         lowest = plain(*.1)
     )]
     AllOverturned(usize, f64),
-    /// One intensity, the first number, does not show how the fraction grows: the number of cases, and of those that overturned.
+    /// All cases have one intensity, so the growth of the fraction is unknown: the intensity, the number of cases, and the number of overturned
+    /// cases.
     #[error(
         "{2} of {1} cases overturn, but all at the intensity {intensity}: add lower and higher ones",
         intensity = plain(*.0)
     )]
     OneIntensity(f64, usize, usize),
-    /// The fraction that overturns jumps from none to all, between two levels or at one level: whatever the
-    /// dispersion, a smaller one is likelier. The highest intensity of a case that survived, and the lowest of a case that overturned.
+    /// One intensity separates survival from overturning, so the likelihood increases as the dispersion goes to zero: the highest intensity of a
+    /// survived case, and the lowest of an overturned case.
     #[error(
         "no case overturns below an intensity of {overturned} and none survives above {survived}: the median is about there, and the \
          dispersion is too small for these levels; add closer ones there",
         overturned = plain(*.1), survived = plain(*.0)
     )]
     Separated(f64, f64),
-    /// The likeliest curve is horizontal or falls. The geometric mean intensities of the cases that survived, and of those that overturned.
+    /// The curve of maximum likelihood is horizontal or falls: the geometric mean intensity of the survived cases, and that of the overturned
+    /// cases.
     #[error(
         "the fraction that overturns does not increase with the intensity: the geometric mean intensity of \
          cases that overturn is {overturned}, of those that survive {survived}; add intensities at which few and at which most cases \
@@ -130,8 +127,7 @@ pub enum NoFit {
         overturned = plain(*.1), survived = plain(*.0)
     )]
     NotIncreasing(f64, f64),
-    /// The fraction grows so little, or within so narrow a range, that the parameters or their errors
-    /// exceed the range of numbers.
+    /// The fraction grows so little, or over so narrow a range, that the parameters or their errors are not finite.
     #[error(
         "the fraction that overturns hardly grows with the intensity, and the likeliest curve cannot be \
          computed; add intensities at which few and at which most cases overturn"
@@ -140,15 +136,14 @@ pub enum NoFit {
 }
 
 impl Fragility {
-    /// The probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
+    /// Returns the probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
     #[must_use]
     pub fn probability(&self, x: f64) -> f64 {
         normal_probability(self.line.at(logarithm(x)))
     }
 
-    /// The 95 % confidence band of the curve at the intensity `x`, for each intensity on its own:
-    /// `Phi(eta -+ 1.96 s)`, where `s` is the standard error of `eta`, the larger of those with and without
-    /// dependence within records.
+    /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ 1.96 s)`. `s` is the larger standard error of
+    /// `eta`, with or without dependence within records.
     #[must_use]
     pub fn band(&self, x: f64) -> (f64, f64) {
         let log = logarithm(x);
@@ -163,15 +158,15 @@ impl Fragility {
     }
 }
 
-/// Number of standard deviations for two-sided 95 % of the normal distribution.
+/// Number of standard deviations on each side of the mean that enclose 95 % of the normal distribution.
 const QUANTILE_95: f64 = 1.959_963_984_540_054;
 
-/// `ln x`, with `x` limited to the range of positive numbers, so that the logarithm is finite.
+/// Returns `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
 fn logarithm(x: f64) -> f64 {
     x.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
 }
 
-/// Cases by intensity, lowest first. Only exactly equal intensities are the same.
+/// Groups cases by intensity, the lowest first. Only exactly equal intensities form a group.
 pub(super) fn by_intensity<T: Copy>(
     mut cases: Vec<T>,
     intensity: impl Fn(T) -> f64,
@@ -183,7 +178,7 @@ pub(super) fn by_intensity<T: Copy>(
         .collect()
 }
 
-/// The fraction of the cases that overturned at each intensity, lowest first.
+/// Returns the fraction of overturned cases at each intensity, the lowest first.
 #[must_use]
 pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
     by_intensity(observations.to_vec(), |case| case.intensity)
@@ -196,7 +191,7 @@ pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
         .collect()
 }
 
-/// The lognormal fragility curve of largest likelihood. The order of the observations does not matter.
+/// Fits the lognormal fragility curve of maximum likelihood. The order of the observations does not matter.
 ///
 /// # Errors
 ///
@@ -210,7 +205,7 @@ pub fn fit(observations: &[Observation]) -> Result<Fragility, NoFit> {
     Fragility::new(&best, observations).ok_or(NoFit::Undetermined)
 }
 
-/// Fails unless there are cases of both kinds, at two or more intensities, all valid.
+/// Checks that there are overturned and survived cases, at two or more intensities, all valid.
 fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     let mut intensities = levels.iter().map(|level| level.intensity);
     if let Some(wrong) = intensities.find(|at| !(*at > 0.0 && at.is_finite())) {
@@ -236,7 +231,7 @@ impl Fraction {
         self.intensity.ln()
     }
 
-    /// Number of the cases that overturned, and of the others.
+    /// Returns the number of overturned cases and the number of survived cases.
     const fn numbers(&self) -> [f64; 2] {
         [
             self.overturned as f64,
@@ -244,7 +239,7 @@ impl Fraction {
         ]
     }
 
-    /// The log-probability of the outcomes of its cases, at the linear predictor `eta`.
+    /// Returns the log-probability of the outcomes of the cases, at the linear predictor `eta`.
     fn log_probability(&self, eta: f64) -> LogProbability {
         let [overturned, survived] = self.numbers();
         let [fall, survival] = [eta, -eta].map(LogProbability::at);
@@ -256,15 +251,14 @@ impl Fraction {
     }
 }
 
-/// Difference between two mean logarithms, relative to the whole range, that rounding can cause.
+/// Rounding error of the difference between two mean logarithms, over their range.
 const ROUNDING: f64 = 1e-12;
 
-/// Fails if the likelihood has no maximum with a positive slope.
+/// Checks that the likelihood has a maximum with a positive slope.
 ///
-/// If no survivor lies above a case that overturned, a steeper line is always likelier. The sign of the
-/// line's slope is that of the derivative of the likelihood by the slope, taken at zero slope and the
-/// likeliest level. With `n` cases this derivative is `n phi(a)` times the mean logarithm of the intensities
-/// that overturned minus that of the intensities that did not.
+/// If no survived case has a larger intensity than an overturned case, the likelihood increases with the slope without limit. The slope at the
+/// maximum has the sign of the derivative of the log-likelihood by the slope, at zero slope and the best level. With `n` cases this derivative
+/// is `n phi(a)` times the mean logarithm of the overturning intensities minus that of the survived intensities.
 fn demand_overlap_and_growth(levels: &[Fraction]) -> Result<(), NoFit> {
     let last_survival = levels.iter().rfind(|level| level.overturned < level.cases);
     let first_fall = levels.iter().find(|level| level.overturned > 0);
@@ -300,25 +294,24 @@ impl Line {
     }
 }
 
-/// The likelihood of a line. The pivot is the mean of the logarithms weighted by their information; this
-/// makes the information about level and slope a diagonal matrix, so that narrow ranges lose no digits.
+/// The likelihood of a line. The pivot is the mean of the logarithms weighted by their information. The information about level and slope is
+/// then a diagonal matrix, and narrow ranges lose no digits.
 struct Likelihood {
     line: Line,
     logarithm: f64,
-    /// Derivatives of the logarithm by level and slope.
+    /// Derivatives of the log-likelihood by level and slope.
     score: Vector2<f64>,
-    /// Its negative second derivatives by level and by slope.
+    /// Negative second derivatives of the log-likelihood by level and by slope.
     information: Vector2<f64>,
 }
 
-/// Largest number of Newton steps: about ten are usual. Levels that almost coincide, among others hundreds of
-/// decades away, have taken 114.
+/// Largest number of Newton steps. About ten are usual; levels that almost coincide, with others hundreds of decades away, needed 114.
 const STEPS: usize = 1000;
 
-/// Largest number of halvings of a step that does not climb.
+/// Largest number of halvings of a step that does not increase the likelihood.
 const HALVINGS: usize = 60;
 
-/// Squared length of a Newton step, in standard errors of level and slope, that ends the search.
+/// Tolerance of the squared length of a Newton step, in standard errors of level and slope.
 const SHORT: f64 = 1e-20;
 
 impl Likelihood {
@@ -348,8 +341,8 @@ impl Likelihood {
         likelihood
     }
 
-    /// The largest likelihood, by Newton's method with step halving, starting from equal chances everywhere.
-    /// `None` if it is too far away to be found.
+    /// Finds the maximum of the likelihood by Newton's method with step halving, starting from a probability of one half everywhere. `None` if
+    /// the search does not converge.
     fn largest(levels: &[Fraction]) -> Option<Self> {
         let equal_chances = Line {
             pivot: levels[0].log(),
@@ -361,7 +354,7 @@ impl Likelihood {
             if best.score.dot(&step) <= SHORT {
                 return Some(best);
             }
-            // Near the maximum a good step gains less than the rounding error.
+            // Near the maximum the gain of a good step is less than the rounding error.
             let least = best.logarithm * (1.0 + ROUNDING);
             let mut line = best.line;
             let from = line.coefficients;
@@ -378,7 +371,7 @@ impl Likelihood {
 }
 
 impl Fragility {
-    /// The curve of a line, with its first-order errors; `None` if a number is out of range.
+    /// Makes the curve of a line, with first-order errors; `None` if a number is out of range.
     fn new(best: &Likelihood, observations: &[Observation]) -> Option<Self> {
         let line = best.line;
         let covariance = Matrix2::from_diagonal(&best.information.map(f64::recip));
@@ -414,15 +407,15 @@ impl Fragility {
     }
 }
 
-/// Standard error of a quantity with this gradient by level and slope.
+/// Returns the standard error of a quantity with this gradient by level and slope.
 fn standard_error(covariance: &Matrix2<f64>, gradient: &Vector2<f64>) -> f64 {
     let variance = gradient.dot(&(covariance * gradient));
-    // With few records the matrix may be singular, and rounding may make the variance negative. Infinity stays.
+    // With few records the matrix may be singular, and rounding errors may make the variance negative. Infinity stays infinite.
     variance.clamp(0.0, f64::INFINITY).sqrt()
 }
 
-/// Covariance of level and slope with any dependence within records, from the covariance without: the sandwich
-/// `C M C G / (G - 1)`, where `M` sums the squares of the `G` records' scores. `None` with one record.
+/// Computes the covariance of level and slope with any dependence within records, from the covariance without dependence: the sandwich `C M C G
+/// / (G - 1)`, where `M` sums the squares of the scores of `G` records. `None` with one record.
 fn clustered_covariance(
     line: &Line,
     covariance: &Matrix2<f64>,
@@ -436,7 +429,7 @@ fn clustered_covariance(
     });
     let mut records = 0;
     let mut squares = Matrix2::zeros();
-    // Derivatives by level and slope of the log-probability of the outcome of a case.
+    // Derivatives of the log-probability of the outcome of a case by level and slope.
     let score = |case: &Observation| {
         let case = fractions(&[*case])[0];
         let slope = case.log_probability(line.at(case.log())).slope;
@@ -451,7 +444,7 @@ fn clustered_covariance(
     (records > 1).then(|| covariance * squares * covariance * factor)
 }
 
-/// `Phi(eta)`.
+/// Returns `Phi(eta)`.
 fn normal_probability(eta: f64) -> f64 {
     0.5 * libm::erfc(-eta * FRAC_1_SQRT_2)
 }
@@ -461,19 +454,18 @@ struct LogProbability {
     value: f64,
     /// First derivative.
     slope: f64,
-    /// Negative second derivative; it is positive because the logarithm is concave.
+    /// Negative second derivative; positive, because the logarithm is concave.
     bend: f64,
 }
 
-/// Where the tail of the normal distribution begins: further down `Phi` eventually underflows, and `h + eta`
-/// loses digits.
+/// Largest `eta` of the tail of the normal distribution. In the tail `h + eta` loses digits, and `Phi` eventually underflows.
 const TAIL: f64 = -5.0;
 
-/// Terms of the continued fraction in the tail, enough for all digits where the tail begins.
+/// Number of terms of the continued fraction in the tail: full precision at `TAIL`.
 const TERMS: u32 = 40;
 
 impl LogProbability {
-    /// `ln Phi(eta)`, whose derivatives are `h = phi / Phi` and `-h (h + eta)`.
+    /// Returns `ln Phi(eta)` with its derivatives `h = phi / Phi` and `-h (h + eta)`.
     fn at(eta: f64) -> Self {
         if eta < TAIL {
             // Laplace's continued fraction: with t = -eta, h - t = 1/(t + 2/(t + 3/(t + ...))).
@@ -489,7 +481,7 @@ impl LogProbability {
         let probability = normal_probability(eta);
         let slope = (-0.5 * eta * eta).exp() / ((2.0 * PI).sqrt() * probability);
         Self {
-            // Above zero the digits are in the complement.
+            // Above zero the complement has more digits.
             value: match eta > 0.0 {
                 true => (-normal_probability(-eta)).ln_1p(),
                 false => probability.ln(),

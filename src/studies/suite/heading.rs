@@ -1,4 +1,4 @@
-//! The parts of the scenario of a suite that its report needs.
+//! The parts of a scenario that the report of its suite needs.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::scenario::{MODELS, Measure, Spacing, Spectral};
 
-/// The scenario of a suite in its report. It follows from the text of the resolved scenario, so parts can be joined without the record
+/// The parts of a scenario that the report of its suite needs. They come from the text of the resolved scenario, so that `merge` needs no record
 /// files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heading {
@@ -20,7 +20,8 @@ pub struct Heading {
 }
 
 impl Heading {
-    /// The heading from the text of a scenario with every default filled in, and the warnings about it; `None` if it has no suite.
+    /// Reads the text of a scenario with every default filled in. `warnings` are the warnings about the scenario. `None` if the scenario has no
+    /// suite.
     #[must_use]
     pub fn of_resolved(scenario: &str, warnings: Vec<String>) -> Option<Self> {
         let scenario: Value = toml::from_str(scenario).ok()?;
@@ -37,7 +38,7 @@ impl Heading {
         })
     }
 
-    /// Whether its model has joints, whose cases may be uncertain.
+    /// Returns true if the model of motion has joints, whose cases may be uncertain.
     pub(super) fn has_joints(&self) -> bool {
         let mut models = MODELS.iter().filter(|model| model.has_joints);
         models.any(|model| self.scenario.get(model.table).is_some())
@@ -48,7 +49,7 @@ impl Heading {
         title.unwrap_or("Fragility under a suite of records")
     }
 
-    /// The oscillator whose spectral acceleration is a measure of intensity, in words.
+    /// Returns the oscillator of the spectral acceleration in words: period and damping.
     pub(super) fn spectral(&self) -> String {
         let of = |key: &str, default: f64| {
             let own = self.scenario["suite"].get(key).and_then(Value::as_f64);
@@ -60,7 +61,7 @@ impl Heading {
         format!("{period_s} s and {damping_percent} %")
     }
 
-    /// The axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.
+    /// Returns the axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.
     pub(super) fn axis(&self, results: &SuiteFragility, figure: Figure) -> (&'static str, Scale) {
         let ends = [results.levels.first(), results.levels.last()];
         let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
@@ -78,7 +79,7 @@ impl Heading {
         (label, scale)
     }
 
-    /// The level of a case in words.
+    /// Returns the level of a case in words.
     pub(super) fn level(&self, case: &CaseRow) -> String {
         format!(
             "{} {}",

@@ -1,4 +1,4 @@
-//! Incremental dynamic analysis: the response to each record as it gets stronger.
+//! Incremental dynamic analysis: the response to each record at increasing intensity.
 
 use super::fragility::by_intensity;
 use super::{CaseRow, Heading, SuiteFragility};
@@ -10,13 +10,14 @@ use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::statistics::{ascending, fractile, shares_up_to};
 
-/// Number of records whose curves have strokes and names of their own.
+/// Largest number of records whose curves have their own stroke and name.
 const NAMED: usize = CURVES.len();
-/// Surviving cases are drawn left of this fraction of the width, and overturned cases at its end.
+/// Surviving cases are drawn left of this fraction of the width. Overturned cases are drawn at the right end.
 const SURVIVED: f64 = 0.94;
 
-/// Draws the intensity against the peak rotation, relative to the critical one if that is known. Every record has a curve, also
-/// when mirrored if mirrored cases count. Overturned cases are at the right end; an uncertain case is marked by the outcome of its own history.
+/// Draws the intensity against the peak rotation, relative to the critical rotation if that is known. Every record has a curve, and a second one
+/// for the mirrored record if mirrored cases count. Overturned cases are at the right end; the position of an uncertain case shows the outcome
+/// of its own history.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let over_critical = over_critical(results);
@@ -68,7 +69,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     chart.draw(figure, heading.title())
 }
 
-/// The curve of a record through the cases that it survives, and a mark for each case.
+/// Draws the curve of a record through its surviving cases, and a mark for each case.
 fn of_record(
     name: &str,
     stroke: Stroke,
@@ -76,7 +77,7 @@ fn of_record(
     results: &SuiteFragility,
 ) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
-    // Overturned cases are no points of the curve: it is interrupted there.
+    // Overturned cases interrupt the curve.
     let points = cases.iter();
     let points = points.filter_map(|case| match case.overturned_itself() {
         true => Some((f64::NAN, level(case))),
@@ -106,35 +107,35 @@ fn of_record(
 }
 
 const MANY: Stroke = Stroke::new(color::GREY, 0.9, "");
-/// Fractiles of the peaks at each level, over all records.
+/// Fractiles of the peaks at each level over all records: part, name and stroke.
 const FRACTILES: [(f64, &str, Stroke); 3] = [
     (0.16, "16 %", Stroke::new(color::BLACK, 1.8, "2 3")),
     (0.5, "median", Stroke::new(color::BLACK, 2.6, "")),
     (0.84, "84 %", Stroke::new(color::BLACK, 1.8, "8 4")),
 ];
 
-/// The peaks at a level, over all records that count.
+/// The distribution of the peaks at a level, over all records that count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fractiles {
     /// The level.
     pub intensity: f64,
     /// Number of cases with a history.
     pub cases: usize,
-    /// Number of those that overturned.
+    /// Number of overturned cases.
     pub overturned: usize,
-    /// The 16 % fractile, the median and the 84 % fractile of the peaks, over critical if that is known, otherwise in rad; `None` if it is
-    /// among overturned cases.
+    /// The 16 % fractile, the median and the 84 % fractile of the peaks, over the critical rotation if that is known, otherwise in rad. `None`
+    /// for a fractile among overturned cases.
     pub peaks: [Option<f64>; 3],
 }
 
-/// The peak of a case, if its history is complete.
+/// Returns the peak of a case; `None` if its history is incomplete.
 fn peak(case: &CaseRow) -> Option<f64> {
     case.known_verdict()?;
     let peak = case.result.as_ref().ok()?.peak;
     peak.over_critical().or(peak.rad())
 }
 
-/// The fractiles of the peaks (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002), level by level.
+/// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
 #[must_use]
 pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
     let levels = by_intensity(results.evidence(), |case| case.level(results.measure)).into_iter();
@@ -151,11 +152,11 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
         })
         .collect()
 }
-/// Grey, since dashed black lines are fractiles.
+/// Grey, because dashed black lines are fractiles.
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
-/// The largest rotation of each case that counts, in radians, infinite if it overturned.
+/// Returns the largest rotation of each case with a complete history, in radians, infinite if the case overturned.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
     let peak_rad = |case: &CaseRow| {
         case.known_verdict()?;
@@ -167,14 +168,14 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
     cases.iter().filter_map(peak_rad).collect()
 }
 
-/// The distribution of the peaks of all cases that count: ascending peaks, as in [`Fractiles`], with the share of all cases with a
-/// history up to each. Overturned cases are beyond all others, so the share ends below 1.
+/// Returns the distribution of the peaks of all cases that count: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
+/// to the peak. The last share is below 1 if cases overturned.
 #[must_use]
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
     shares_up_to(results.evidence().into_iter().filter_map(beyond))
 }
 
-/// The peak of a case with a complete history, infinite if it overturned.
+/// Returns the peak of a case with a complete history, infinite if the case overturned.
 fn beyond(case: &CaseRow) -> Option<f64> {
     case.known_verdict()?;
     match case.overturned_itself() {
@@ -209,7 +210,7 @@ const fn peak_in_words(over_critical: bool) -> &'static str {
     }
 }
 
-/// Whether all peaks are known over the critical rotation.
+/// Returns true if the critical rotation of every case is known.
 fn over_critical(results: &SuiteFragility) -> bool {
     let mut endings = results.cases.iter().flat_map(|case| &case.result);
     endings.all(|ending| ending.peak.over_critical().is_some())

@@ -1,4 +1,4 @@
-//! A suite of records: a history for every record at every level, and the fragility that follows from them.
+//! A suite of records: a history for every record at every level, and the fragility of the structure.
 
 pub mod fragility;
 mod heading;
@@ -25,24 +25,24 @@ use crate::dynamics::model::{Case, Model};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
 
-/// A record that shakes the structure, and how its history ended.
+/// A case of a suite: a record at a level, and the end of its history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CaseRow {
-    /// The file.
+    /// Name of the record file.
     pub record: String,
-    /// Whether the record is mirrored.
+    /// True if the record is mirrored.
     pub mirrored: bool,
     /// The factor on the record, above 0.
     pub scale: f64,
-    /// Its peak after scaling, in units of gravity.
+    /// Peak acceleration after scaling, in units of gravity.
     pub peak_g: f64,
-    /// Outcome of its history, or the reason for which it could not be computed.
+    /// Outcome of the history, or the reason why there is none.
     pub result: Result<Ending, String>,
-    /// The lowest level that overturns between this level and the one below, by bisection; `None` unless this level overturns and the
-    /// one below does not.
+    /// The lowest overturning level between this level and the level below, by bisection. `None` unless this level overturns and the level below
+    /// survives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edge: Option<f64>,
-    /// Whether lower levels may overturn as well, since a level between the two has no verdict.
+    /// True if lower levels may overturn as well, because a level between the two has no verdict.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub edge_at_most: bool,
     /// Intensities of the unscaled record.
@@ -51,7 +51,7 @@ pub struct CaseRow {
 }
 
 impl CaseRow {
-    /// The level, in the measure of the suite.
+    /// Returns the level, in the measure of the suite.
     #[must_use]
     pub const fn level(&self, measure: Measure) -> f64 {
         match measure {
@@ -60,58 +60,58 @@ impl CaseRow {
         }
     }
 
-    /// The level from which a case overturns that is the first of its record: its edge by bisection, if it has one.
+    /// Returns the level from which the record overturns the structure, if this is its first overturning case: `edge`, or the level without an
+    /// edge.
     #[must_use]
     pub fn overturns_from(&self, measure: Measure) -> f64 {
         self.edge.unwrap_or_else(|| self.level(measure))
     }
 
-    /// Whether it overturned, as far as this is known; `None` if there is no history.
+    /// Returns the verdict; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
-    /// The verdict; `None` if there is no history, or an incomplete one.
+    /// Returns the verdict; `None` if there is no history, or the history is incomplete.
     #[must_use]
     pub fn known_verdict(&self) -> Option<Verdict> {
         self.verdict()
             .filter(|verdict| *verdict != Verdict::Incomplete)
     }
 
-    /// True if both cases apply one record with one sign.
+    /// Returns true if both cases apply one record with one sign.
     fn has_shake_of(&self, other: &Self) -> bool {
         (&self.record, self.mirrored) == (&other.record, other.mirrored)
     }
 
-    /// The record in words.
+    /// Returns the name of the record, with "mirrored" if the record is mirrored.
     pub(super) fn record_in_words(&self) -> String {
         let mirrored = if self.mirrored { " mirrored" } else { "" };
         format!("{}{mirrored}", self.record)
     }
 
-    /// Whether its history overturned, whether certain or not.
+    /// Returns true if the history of the case itself overturned, even if the verdict is uncertain.
     fn overturned_itself(&self) -> bool {
         let ending = self.result.as_ref();
         ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
     }
 
-    /// Whether it certainly survived, but had not come to rest.
+    /// Returns true if the structure certainly survived, but had not come to rest.
     #[must_use]
     pub fn still_rocking(&self) -> bool {
         let rocking = |ending: &Ending| ending.outcome == Outcome::StillRocking;
         self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
     }
 
-    /// Whether its result is exactly that of another case, to the other side.
+    /// Returns true if the result is exactly the mirror image of the result of another case.
     fn is_mirror_image_of(&self, other: &Self) -> bool {
         let ended = self.result.as_ref().map(Ending::mirrored);
         ended.ok() == other.result.as_ref().ok().cloned()
     }
 }
 
-/// The cases of a suite: first the levels of a record, then those of the mirrored record, then the
-/// next record.
+/// The cases of a suite. Their order: the levels of a record, the levels of the mirrored record, then the next record.
 #[derive(Debug)]
 pub struct RecordSuite<'a> {
     scenario: &'a Scenario,
@@ -123,10 +123,10 @@ pub struct RecordSuite<'a> {
 }
 
 impl<'a> RecordSuite<'a> {
-    /// The suite of a scenario, which must start from rest.
+    /// Makes the suite of a scenario, which must start from rest.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario.suite.as_ref().ok_or(
@@ -168,7 +168,7 @@ impl Study for RecordSuite<'_> {
         self.suite.records.len() * self.signs() * self.levels.len()
     }
 
-    /// The levels of a record: whether a level has an edge below it is then known from its neighbour.
+    /// Returns the index of the record, with its sign: a level needs the result of the level below to know whether it has an edge.
     fn family(&self, index: usize) -> Option<usize> {
         Some(index / self.levels.len())
     }
@@ -224,7 +224,7 @@ impl Reported for RecordSuite<'_> {
     }
 }
 
-/// The ground motion of a case, and the request for its history.
+/// Returns the ground motion of a case, and the request for its history.
 pub(super) fn case(
     scenario: &Scenario,
     suite: &Suite,
@@ -238,25 +238,25 @@ pub(super) fn case(
     (ground, request)
 }
 
-/// Whether a history certainly overturns, if there is one that is complete.
+/// Returns true if a history certainly overturns; `None` without a complete history.
 fn overturns_certainly(result: &Result<Ending, String>) -> Option<bool> {
     let verdict = result.as_ref().ok()?.verdict();
     (verdict != Verdict::Incomplete).then_some(verdict == Verdict::Overturns)
 }
 
-/// How closely an edge is enclosed, as a part of it: far closer than records agree.
+/// Relative width to which bisection encloses an edge: much less than the scatter of records.
 const EDGE_WIDTH: f64 = 2e-3;
 
 impl RecordSuite<'_> {
-    /// The level of a case, the index of its record, and whether the record is mirrored.
+    /// Returns the level of a case, the index of its record, and whether the record is mirrored.
     fn place(&self, index: usize) -> (f64, usize, bool) {
         let level = self.levels[index % self.levels.len()];
         let shake = index / self.levels.len();
         (level, shake / self.signs(), shake % self.signs() == 1)
     }
 
-    /// The lowest level that overturns, between the level of a case that overturns and the level with the index `below`; `None` if that
-    /// overturns as well. Also whether the edge may lie lower: a level without a verdict narrows the interval as one that survives.
+    /// Finds the lowest overturning level between the level of a case that overturns and the level with index `below`; `None` if that level
+    /// overturns as well. The second value is true if the edge may lie lower, because a level without a verdict counted as surviving.
     fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<(f64, bool)> {
         let (level, record, mirrored) = self.place(index);
         let overturns = |level: f64| {
@@ -278,29 +278,29 @@ impl RecordSuite<'_> {
     }
 }
 
-/// The cases of one intensity.
+/// The results of all cases of one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FragilityRow {
     /// The intensity.
     pub intensity: f64,
     /// The number of cases with each outcome.
     pub counts: Counts,
-    /// The probability by the curve at this intensity, and the ends of its 95 % band, if there is a curve.
+    /// The probability by the curve at this intensity, and the ends of its 95 % band; `None` without a curve.
     pub curve: Option<[f64; 3]>,
-    /// The curve with uncertain cases counted as overturned.
+    /// The values of the curve that counts uncertain cases as overturned.
     pub curve_with_uncertain: Option<[f64; 3]>,
 }
 
 /// The number of cases with each outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Counts {
-    /// Number of cases that have an outcome.
+    /// Number of cases with a verdict.
     pub cases: usize,
-    /// Number of those that certainly overturned.
+    /// Number of cases that certainly overturned.
     pub overturned: usize,
-    /// Number of those for which overturning is uncertain.
+    /// Number of cases whose overturning is uncertain.
     pub uncertain: usize,
-    /// Number of those that had neither overturned nor come to rest.
+    /// Number of cases that had neither overturned nor come to rest.
     #[serde(rename = "still_rocking_counted_as_not_overturned")]
     pub still_rocking: usize,
     /// Number of cases whose history ended too early for a verdict. They do not count.
@@ -330,13 +330,13 @@ impl Counts {
 }
 
 impl FragilityRow {
-    /// The fraction of the cases that certainly overturned.
+    /// Returns the fraction of cases that certainly overturned; `None` without cases.
     #[must_use]
     pub fn fraction(&self) -> Option<f64> {
         self.part(self.counts.overturned)
     }
 
-    /// The fraction of the cases that overturned or may have.
+    /// Returns the fraction of cases that overturned or are uncertain; `None` without cases.
     #[must_use]
     pub fn fraction_with_uncertain(&self) -> Option<f64> {
         self.part(self.counts.overturned + self.counts.uncertain)
@@ -348,30 +348,30 @@ impl FragilityRow {
     }
 }
 
-/// The results of all cases together. Cases that are still rocking have not overturned; failed cases do not
-/// count. There are two curves if cases are uncertain: these count as survived in one, and as overturned in the other.
+/// The results of a suite. Cases that are still rocking count as survived; failed cases do not count. If cases are uncertain, there are two
+/// curves: one counts them as survived, the other as overturned.
 ///
-/// Both signs of a record count, as cases of one record, which are not independent. If every mirrored case is exactly the
-/// mirror image of the other, as with four links on a symmetric structure, it adds no evidence and does not count.
-/// With free hinges this symmetry is broken by rounding and by the order of impacts that almost coincide.
+/// Both signs of a record count as cases of one record, which are not independent. If every mirrored case is exactly the mirror image of the
+/// original, as with four links on a symmetric structure, mirrored cases add no evidence and do not count. With free hinges rounding errors and
+/// the order of almost simultaneous impacts break the symmetry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuiteFragility {
     /// The measure of the intensities.
     pub measure: Measure,
     /// All cases.
     pub cases: Vec<CaseRow>,
-    /// Whether mirrored cases count.
+    /// True if mirrored cases count.
     pub mirrored_count: bool,
     /// The intensities, lowest first.
     pub levels: Vec<FragilityRow>,
-    /// The curve with uncertain cases counted as survived, if there is one.
+    /// The curve with uncertain cases counted as survived, or the reason why there is none.
     pub fit: Result<Fragility, NoFit>,
-    /// The curve with uncertain cases counted as overturned, if there is one.
+    /// The curve with uncertain cases counted as overturned, or the reason why there is none.
     pub fit_with_uncertain: Result<Fragility, NoFit>,
 }
 
 impl SuiteFragility {
-    /// The results of these cases.
+    /// Computes the results of these cases.
     #[must_use]
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
         let mirrored_count = !mirrored_are_images(&cases);
@@ -411,14 +411,14 @@ impl SuiteFragility {
         }
     }
 
-    /// Whether it is uncertain for any case that counts whether it overturned.
+    /// Returns true if a case that counts is uncertain.
     #[must_use]
     pub fn has_uncertain(&self) -> bool {
         self.levels.iter().any(|level| level.counts.uncertain > 0)
     }
 
-    /// The first case of each record, and the intensities that the structure survives under it; mirrored records only if their results
-    /// differ. The first intensity that overturns is found by bisection, the others are levels of the suite.
+    /// Returns the first case of each record, and the intensities that the structure survives under the record; mirrored records only if their
+    /// results differ. The first overturning intensity is found by bisection, the others are levels of the suite.
     #[must_use]
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
@@ -442,25 +442,25 @@ impl SuiteFragility {
         survivals
     }
 
-    /// The cases that count.
+    /// Returns the cases that count.
     fn evidence(&self) -> Vec<&CaseRow> {
         counting(&self.cases, self.mirrored_count)
     }
 
-    /// The cases of each record that count, weakest first.
+    /// Returns the cases that count, grouped by record and sign, the weakest first.
     fn shakes(&self) -> Vec<Vec<&CaseRow>> {
         let evidence = self.evidence();
         let shakes = evidence.chunk_by(|a, b| a.has_shake_of(b));
         shakes.map(<[_]>::to_vec).collect()
     }
 
-    /// Number of records.
+    /// Returns the number of records.
     #[must_use]
     pub fn record_count(&self) -> usize {
         names(&self.cases).len()
     }
 
-    /// Names of the records whose cases all certainly overturned, or all certainly survived: cases with this `verdict`.
+    /// Returns the names of the records whose cases all have this verdict.
     #[must_use]
     pub fn always(&self, verdict: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
@@ -474,13 +474,13 @@ impl SuiteFragility {
     }
 }
 
-/// The cases that count: all, or those whose record is not mirrored.
+/// Returns the cases that count: all, or those whose record is not mirrored.
 fn counting(cases: &[CaseRow], mirrored_count: bool) -> Vec<&CaseRow> {
     let counts = |case: &&CaseRow| mirrored_count || !case.mirrored;
     cases.iter().filter(counts).collect()
 }
 
-/// Whether every mirrored case has the result of the original, to the other side.
+/// Returns true if every mirrored case is exactly the mirror image of the original case.
 fn mirrored_are_images(cases: &[CaseRow]) -> bool {
     let key = |case: &CaseRow| (case.record.clone(), case.scale.to_bits());
     let own = cases.iter().filter(|case| !case.mirrored);
@@ -492,7 +492,7 @@ fn mirrored_are_images(cases: &[CaseRow]) -> bool {
     })
 }
 
-/// Names of the records.
+/// Returns the names of the records.
 fn names(cases: &[CaseRow]) -> BTreeSet<&str> {
     cases.iter().map(|case| case.record.as_str()).collect()
 }

@@ -69,7 +69,7 @@ const CURVE_WITH_UNCERTAIN: CurveStyle = CurveStyle {
     line: Stroke::new(color::BLUE, 2.0, "7 4"),
 };
 
-/// The curves to draw: with uncertain cases counted as survived, and, if there are any, also as overturned.
+/// Returns the curves to draw: with uncertain cases counted as survived, and, if there are uncertain cases, as overturned.
 fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
     let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
     let with_uncertain = results.has_uncertain().then_some(with_uncertain);
@@ -78,7 +78,7 @@ fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
         .collect()
 }
 
-/// The legend.
+/// Returns the legend.
 fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Key> {
     let cases = Counts::of(&results.evidence()).cases;
     let text = format!("fraction of {}, {cases} cases", results.records_in_words());
@@ -101,12 +101,12 @@ const POINT: Stroke = Stroke::new(color::VERMILION, 1.8, "");
 const BAND: &str = "#d6e8f4";
 const BETWEEN: &str = "#9cc7e3";
 
-/// Number of points along the axis, and of those where a curve rises.
+/// Number of points along the axis, and of points along the rise of each curve.
 const POINTS: u32 = 200;
-/// A curve rises within so many dispersions of its median.
+/// Half width of the rise of a curve around its median, in dispersions.
 const RISES: f64 = 4.0;
 
-/// Positive values along an axis: evenly, and closer together where a curve rises, however steep it is.
+/// Returns positive values along an axis: evenly spaced ones, and closer ones where a curve rises.
 fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     let parts = (0..=POINTS).map(|i| f64::from(i) / f64::from(POINTS));
     let even = parts.clone().map(|part| scale.at(part));
@@ -121,7 +121,7 @@ fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     values
 }
 
-/// The joint 95 % band of the curves, and the area between them.
+/// Draws the joint 95 % band of the curves, and the area between the curves.
 fn bands(x: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<Mark> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold([1.0, 0.0], |[low, high]: [f64; 2], value| {

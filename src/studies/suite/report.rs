@@ -1,4 +1,4 @@
-//! The report of a suite of records: its tables, the fragility of the structure, and its words.
+//! Files and words of a suite of records: tables, pictures, fragility.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -37,11 +37,11 @@ pub const FILES: [&str; 10] = [
 pub struct Summary<'a> {
     /// Name of the program.
     program: &'static str,
-    /// Its version.
+    /// Version of the program.
     version: &'static str,
     /// The scenario with all defaults.
     scenario: &'a Value,
-    /// Unlikely numbers, limits of the model, histories without a verdict.
+    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
     /// The measure of the intensities.
     intensity: &'static str,
@@ -53,7 +53,7 @@ pub struct Summary<'a> {
     counts: Counts,
     /// Measures of intensity, the most efficient first.
     intensity_measures: Vec<Efficiency>,
-    /// Whether mirrored records count: their results are no mirror images.
+    /// True if mirrored records count because their results are not mirror images.
     mirrored_cases_count: bool,
     /// Records that never overturn the structure.
     records_that_never_overturn: Vec<&'a str>,
@@ -66,24 +66,24 @@ pub struct Summary<'a> {
     remarks: Remarks,
 }
 
-/// A fragility curve with its standard errors, or why there is none.
+/// A fragility curve with its standard errors, or the reason why there is none.
 #[derive(Serialize)]
 struct Curve {
     /// The intensity at which half of the cases overturn.
     median: Option<f64>,
-    /// Its standard error if all cases are independent.
+    /// Standard error of the median if all cases are independent.
     median_standard_error: Option<f64>,
-    /// Its standard error if the cases of a record depend on each other.
+    /// Standard error of the median if the cases of a record depend on each other.
     median_standard_error_by_record: Option<f64>,
-    /// Standard deviation of the logarithm of the intensity that overturns.
+    /// Standard deviation of the logarithm of the overturning intensity.
     dispersion: Option<f64>,
-    /// Its standard error if all cases are independent.
+    /// Standard error of the dispersion if all cases are independent.
     dispersion_standard_error: Option<f64>,
-    /// Its standard error if the cases of a record depend on each other.
+    /// Standard error of the dispersion if the cases of a record depend on each other.
     dispersion_standard_error_by_record: Option<f64>,
-    /// The largest logarithm of the likelihood.
+    /// The maximum of the log-likelihood.
     log_likelihood: Option<f64>,
-    /// Why there is no curve.
+    /// The reason why there is no curve.
     no_fit: Option<String>,
 }
 
@@ -105,7 +105,7 @@ impl From<&Result<Fragility, NoFit>> for Curve {
 }
 
 impl Heading {
-    /// The files and words for all rows.
+    /// Makes files and words of all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -162,7 +162,7 @@ impl Heading {
         })
     }
 
-    /// The remarks on the cases: those that failed or are uncertain, with the reasons.
+    /// Returns the failed and uncertain cases, with the reasons.
     fn remarks(&self, results: &SuiteFragility) -> Remarks {
         let mut remarks = Remarks::default();
         for case in &results.cases {
@@ -172,7 +172,7 @@ impl Heading {
         remarks
     }
 
-    /// The results in words, line by line.
+    /// Returns the results in words.
     fn words(
         &self,
         results: &SuiteFragility,
@@ -211,7 +211,7 @@ impl Heading {
         lines.join("\n  ")
     }
 
-    /// The most efficient measure of intensity, and the others.
+    /// Returns the measures of intensity in words, the most efficient first; `None` without capacities.
     fn measures_in_words(
         &self,
         capacities: &[Capacity<'_>],
@@ -245,7 +245,7 @@ impl Heading {
         ))
     }
 
-    /// The columns for one row per case.
+    /// Returns the columns of `suite.csv`, one row per case.
     fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
         let mut all = vec![
             column("record", |case: &CaseRow| shown(&case.record)),
@@ -259,7 +259,7 @@ impl Heading {
         all
     }
 
-    /// The columns for one row per level. Missing values are empty.
+    /// Returns the columns of `fragility.csv`, one row per level. Missing values are empty.
     fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
         let curve = |name: &str, curve: fn(&FragilityRow) -> Option<[f64; 3]>| {
             let names = ["", "_low", "_high"].map(|end| format!("{name}{end}"));
@@ -273,7 +273,7 @@ impl Heading {
         all.push(column("fraction", FragilityRow::fraction));
         all.push(curve("probability", |level| level.curve));
         if self.has_joints() {
-            // The number of uncertain cases, and the columns that count them as overturned.
+            // Columns of uncertain cases, which count as overturned here.
             let fraction = FragilityRow::fraction_with_uncertain;
             all.extend([
                 column("uncertain", |level: &FragilityRow| level.counts.uncertain),
@@ -285,12 +285,12 @@ impl Heading {
     }
 }
 
-/// The sign of a record.
+/// Returns the sign of a record.
 const fn sign(mirrored: bool) -> &'static str {
     if mirrored { "-1" } else { "1" }
 }
 
-/// The columns for one row per record. Missing values are empty.
+/// Returns the columns of `capacity.csv`, one row per record. Missing values are empty.
 fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 5] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
@@ -302,7 +302,7 @@ fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 5] {
     ]
 }
 
-/// A row per measure of intensity, the most efficient first.
+/// Returns the columns of `intensity.csv`, one row per measure of intensity, the most efficient first.
 fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     let mut all = Vec::from(fields!(
         |of: &Efficiency| of => measure, capacities, median, dispersion, dispersion_of_factor
@@ -316,7 +316,7 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
 }
 
 impl SuiteFragility {
-    /// The number of records, in words.
+    /// Returns the number of records in words.
     pub(super) fn records_in_words(&self) -> String {
         match self.record_count() {
             1 => "1 record".to_owned(),
@@ -324,8 +324,8 @@ impl SuiteFragility {
         }
     }
 
-    /// The curves in words, or why there is none, each after the treatment of uncertain cases: they count as survived, and if there are
-    /// any, in a second curve as overturned.
+    /// Returns the curves in words, or the reason why there is none. Before each is the treatment of uncertain cases: they count as survived,
+    /// and in a second curve as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {
         let uncertain = Counts::of(&self.evidence()).uncertain;
         let curve = |fit: &Result<Fragility, NoFit>, how: &str| {
@@ -345,12 +345,12 @@ impl SuiteFragility {
     }
 }
 
-/// A curve in words, with its standard errors; those by record come last.
+/// Returns a curve in words, with its standard errors; those by record come last.
 fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
     let unit = unit(measure);
     let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
         let independent = error(&fit.independent);
-        // An error has at most two significant digits.
+        // The printed errors have two significant digits.
         let digits = digits(independent);
         let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
             format!(" (by record ± {:.digits$}{unit})", error(clustered))
@@ -364,15 +364,15 @@ fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
     )
 }
 
-/// Number of decimals that show two digits of an error.
+/// Returns the number of decimals that show two significant digits of an error.
 fn digits(error: f64) -> usize {
     (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
-/// Definition of the fitted curve, whose median is not that of the capacities.
+/// Definition of the fitted curve: its median differs from that of the capacities.
 const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";
 
-/// The levels that were tried, and the limits of the search between them.
+/// Returns the computed levels, and the limits of the search between them, in words.
 fn searched(results: &SuiteFragility) -> String {
     let ends = [results.levels.first(), results.levels.last()];
     let [from, to] = ends.map(|level| rounded(level.map_or(0.0, |level| level.intensity)));
@@ -384,7 +384,7 @@ fn searched(results: &SuiteFragility) -> String {
     )
 }
 
-/// The unit that follows an intensity.
+/// Returns the unit that follows an intensity.
 const fn unit(measure: Measure) -> &'static str {
     match measure {
         Measure::Scale => "",

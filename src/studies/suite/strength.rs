@@ -1,7 +1,8 @@
-//! The intensity of each record that first overturns the structure, in several measures, and the efficiency of these measures.
+//! Capacities: the lowest overturning intensity of each record, in several measures, and the efficiency of these measures.
 //!
-//! The capacity under a record is the lowest intensity that overturns. A measure is efficient if all records overturn at about the
-//! same intensity in it (Luco and Cornell, Earthquake Spectra 23, 2007). Its inefficiency is the dispersion of the capacities: the standard deviation of their logarithms.
+//! A measure is efficient if all records overturn the structure at about the same intensity in this measure (Luco and Cornell, Earthquake
+//! Spectra 23, 2007). The dispersion of the capacities is the standard deviation of their logarithms: the smaller, the more efficient is the
+//! measure.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +13,7 @@ use crate::scenario::{Series, Spectral};
 use crate::studies::ending::Verdict;
 use crate::studies::statistics::{bootstrap, interval};
 
-/// Intensities of an unscaled record in the measures that do not follow from its peak.
+/// Intensities of an unscaled record in all measures apart from its peak acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Strength {
     /// Peak velocity, in m/s.
@@ -24,7 +25,7 @@ pub struct Strength {
 }
 
 impl Strength {
-    /// The intensities of a record. The spectral acceleration is the pseudo-acceleration, `omega^2` times the largest displacement.
+    /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the largest displacement.
     #[must_use]
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
@@ -40,22 +41,22 @@ impl Strength {
     }
 }
 
-/// The lowest intensity that overturns under a record.
+/// The lowest intensity that overturns the structure under a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Capacity<'a> {
-    /// The file.
+    /// Name of the record file.
     pub record: &'a str,
-    /// Whether it is mirrored.
+    /// True if the record is mirrored.
     pub mirrored: bool,
-    /// The factor on the record; `None` if no level overturns.
+    /// The factor on the record; `None` if no level overturns the structure.
     pub scale: Option<f64>,
-    /// Whether the capacity may be less: the lowest level overturns already, or the level below has no complete history.
+    /// True if the capacity may be less: the lowest level already overturns the structure, or the level below has no complete history.
     pub at_most: bool,
-    /// The intensity at that factor, in the order of [`MEASURES`].
+    /// The intensities at that factor, in the order of [`MEASURES`]; `None` if no level overturns the structure.
     pub in_measures: [Option<f64>; 4],
 }
 
-/// The measures: their names in results, their names in words, and the power of the factor on a record with which they grow.
+/// The measures: name in results, name in words, and the power of the factor on a record to which the measure is proportional.
 pub const MEASURES: [(&str, &str, f64); 4] = [
     ("peak_g", "peak acceleration", 1.0),
     ("peak_velocity_m_s", "peak velocity", 1.0),
@@ -63,7 +64,7 @@ pub const MEASURES: [(&str, &str, f64); 4] = [
     ("arias_m_s", "Arias intensity", 2.0),
 ];
 
-/// Efficiency of a measure: how little the intensities scatter that overturn.
+/// The efficiency of a measure: the scatter of the overturning intensities.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Efficiency {
     /// Name of the measure.
@@ -73,20 +74,20 @@ pub struct Efficiency {
     pub words: &'static str,
     /// Number of capacities.
     pub capacities: usize,
-    /// Their geometric mean.
+    /// Geometric mean of the capacities.
     pub median: f64,
-    /// The standard deviation of their logarithms.
+    /// Standard deviation of the logarithms of the capacities.
     pub dispersion: f64,
-    /// Dispersion of the factor on the record: that of the measure, halved if the measure grows with the square of the factor.
+    /// Dispersion of the factor on the record: the dispersion of the measure, halved if the measure is proportional to the square of the factor.
     pub dispersion_of_factor: f64,
-    /// Ends of the 95 % interval of `dispersion_of_factor`, by bootstrap over the records; `None` if draws have too few capacities.
+    /// Ends of the 95 % interval of `dispersion_of_factor`, by bootstrap over the records; `None` if a draw has too few capacities.
     pub dispersion_of_factor_interval: Option<[f64; 2]>,
-    /// Part of the bootstrap draws in which no other measure has a smaller dispersion of the factor.
+    /// Share of the bootstrap draws in which no other measure has a smaller dispersion of the factor.
     pub best_share: f64,
 }
 
 impl SuiteFragility {
-    /// The capacity under each record, mirrored where that counts.
+    /// Computes the capacity under each record; under mirrored records only if they count.
     #[must_use]
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
         let shakes = self.shakes().into_iter();
@@ -100,7 +101,7 @@ impl SuiteFragility {
         let own = levels[first.unwrap_or(0)];
         let level = first.map(|_| own.overturns_from(self.measure));
         let scale = level.map(|level| own.scale * level / own.level(self.measure));
-        // All measures are multiplied by the factor of the peak.
+        // All measures are scaled by the factor of the peak.
         let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
         let of = |strength: fn(&Strength) -> f64, power: i32| {
             Some(strength(own.strength.as_ref()?) * scale?.powi(power))
@@ -120,10 +121,10 @@ impl SuiteFragility {
     }
 }
 
-/// Least number of capacities for a dispersion.
+/// Smallest number of capacities for a dispersion.
 const LEAST_CAPACITIES: usize = 3;
 
-/// Number, geometric mean and dispersion of the capacities in a measure, and the dispersion of the factor on the record; `None` with
+/// Computes number, geometric mean and dispersion of the capacities in a measure, and the dispersion of the factor on the record. `None` with
 /// fewer than three capacities.
 fn scatter<'a>(
     capacities: impl Iterator<Item = &'a Capacity<'a>>,
@@ -139,11 +140,11 @@ fn scatter<'a>(
     (logarithms.len() >= LEAST_CAPACITIES).then_some((logarithms.len(), numbers))
 }
 
-/// Efficiency of each intensity measure, the best first, with intervals by bootstrap over the records. Records that do not overturn are
-/// left out; empty if fewer than three capacities are known.
+/// Computes the efficiency of each measure of intensity, the best first, with intervals by bootstrap over the records. Records that do not
+/// overturn the structure are ignored. Empty with fewer than three capacities.
 #[must_use]
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
-    // A record and its mirror image are not independent.
+    // Draws whole records, because a record and its mirror image are not independent.
     let records: Vec<&[Capacity<'_>]> = capacities
         .chunk_by(|a, b| a.record == b.record)
         .filter(|own| own.iter().any(|capacity| capacity.scale.is_some()))
