@@ -1,7 +1,6 @@
 //! Motion of a row of rigid blocks with elastic joints.
 //!
-//! `motion` is the leapfrog of one or several histories side by side; `stepper` drives and judges each of them, for the driver of
-//! all rows.
+//! `motion` is the leapfrog of one or several parallel histories. `stepper` advances and evaluates each history, for the driver of all rows.
 
 mod model;
 mod motion;

@@ -1,7 +1,6 @@
-//! Motion of a row of rigid blocks whose joints open and shut anywhere, at any time.
+//! Motion of a row of rigid blocks whose joints open and close anywhere, at any time.
 //!
-//! The driver of rows moves the blocks by a stepper: `landing`, whose steps end where corners land, or `sliding`, in whose equal steps
-//! joints may slip too.
+//! The driver of rows moves the blocks by a stepper: `landing`, with steps that end at landings, or `sliding`, with equal steps and sliding joints.
 
 mod landing;
 mod model;

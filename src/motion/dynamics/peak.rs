@@ -1,11 +1,11 @@
 //! Largest values over time.
 
-/// A largest value, and when it is first reached.
+/// Largest value over time, and the time at which it is first reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
-    /// The value.
+    /// Largest value.
     pub value: f64,
-    /// Its time, in s.
+    /// Time of the largest value, in s.
     pub time_s: f64,
 }
 

@@ -9,49 +9,49 @@ use super::history::{Event, Sample};
 ///
 /// Samples arrive in order of time, and so do events; the last sample before an event may arrive after it.
 pub trait Recorder {
-    /// A sample: one at every multiple of the output step from zero on, and a last one at the end.
+    /// Receives a sample: one at every multiple of the output step from zero on, and the last one at the end.
     fn sample(&mut self, _sample: &Sample) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// An event.
+    /// Receives an event.
     fn event(&mut self, _event: &Event) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// Whether samples need the thrust excess and the friction demand, which take most of the time of a history of four links. Without
-    /// them, the summary of mechanisms has no record of thrust.
+    /// Returns whether samples need the thrust excess and the friction demand. These take most of the time of a history of four links. Without them,
+    /// the summary of mechanisms has no thrust record.
     fn wants_demand(&self) -> bool {
         true
     }
 
-    /// Whether samples need the line of thrust, which takes time to compute.
+    /// Returns whether samples need the thrust line, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false
     }
 
-    /// Whether the recorder needs samples after the structure has overturned.
+    /// Returns whether the recorder needs samples after the structure has overturned.
     fn wants_fall(&self) -> bool {
         false
     }
 
-    /// A sample of the fall. They come after all samples and events of the history, of which they are no part. Breaking ends the fall.
+    /// Receives a sample of the fall. These follow all samples and events of the history and are no part of it. Breaking ends the fall.
     fn fall(&mut self, _sample: &Sample) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// Why the fall is followed no further.
+    /// Receives the reason for the end of the fall.
     fn fell(&mut self, _end: FallEnd) {}
 }
 
-/// A function records samples.
+/// A function is a recorder of samples.
 impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for F {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self(sample)
     }
 }
 
-/// A function records samples without the demand of the line of thrust.
+/// Recorder of samples by a function, without the demand of the thrust line.
 pub struct WithoutDemand<F>(pub F);
 
 impl<F: FnMut(&Sample) -> ControlFlow<()>> Recorder for WithoutDemand<F> {

@@ -1,4 +1,4 @@
-//! The request for a history: how long it lasts, and how accurate it is.
+//! Request for a history: duration and accuracy.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -9,39 +9,41 @@ use super::ground::GroundMotion;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::sway::Sway;
 
-/// A request for a history: how long it lasts, and how accurate it is.
+/// Request for a history: duration and accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Request {
-    /// Acceleration of gravity, in 0.001 to 1000.
+    /// Acceleration of gravity in m/s2, from 0.001 to 1000.
     pub gravity_m_s2: f64,
-    /// Upper bound of the time, in 1e-6 to 1e6: a history ends earlier if the structure overturns, or rests on ground that stays
-    /// quiet.
+    /// Latest end in seconds, from 1e-6 to 1e6. A history ends earlier if the structure overturns, or rests on quiet ground.
     pub end_s: f64,
-    /// Interval of the samples, in 1e-6 to 1e6, of which there are at most 1e7. Some models end their steps there.
+    /// Interval of the samples in seconds, from 1e-6 to 1e6, for at most 1e7 samples. Some models end their steps at samples.
     pub output_step_s: f64,
-    /// The start of the motion; `None`: from rest.
+    /// Initial position; `None` starts from rest.
     pub initial: Option<Initial>,
-    /// Error that the integrator may make in a step, relative to the state, in 1e-13 to 1e-3.
+    /// Error tolerance of the integrator in a step, relative to the state, from 1e-13 to 1e-3.
     pub relative_tolerance: f64,
-    /// An impact that leaves less than this fraction of the energy barrier of the first mechanism ends in rest; in 1e-16 to 0.1.
+    /// Fraction of the energy barrier of the first mechanism, from 1e-16 to 0.1. An impact that leaves less energy ends in rest.
     pub rest_energy_ratio: f64,
 }
 
-/// A rotated position from which a structure is released at no velocity.
+/// Rotated position from which a structure is released at zero velocity.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Initial {
-    /// The side to which it has swayed.
+    /// Side of the sway.
     pub sway: Sway,
-    /// Magnitude of the rotation of the body that carries the coordinate: the end body on the side from which
-    /// the structure sways (the left one of a sway to the right), or the column.
+    /// Rotation, without sign, of the body that carries the coordinate, in radians: the end body on the side from which the structure sways (the left
+    /// one in a sway to the right), or the column.
     pub rotation_rad: f64,
 }
 
 impl Initial {
-    /// Smallest rotation that a structure can be released from: the energy of a smaller one may vanish in rounding.
+    /// Smallest initial rotation in radians: rounding errors may exceed the energy of a smaller one.
     pub const MIN_ROTATION_RAD: f64 = 1e-100;
 
-    /// Refuses a rotation that is not below the limit position of the first mechanism.
+    /// Checks that the rotation is below the limit position of the first mechanism.
+    ///
+    /// # Errors
+    /// If the rotation is not below it.
     pub(super) fn check(self, limit_rad: f64) -> Result<(), ArgumentError> {
         let rotation_rad = self.rotation_rad;
         let allowed =
@@ -57,7 +59,7 @@ impl Initial {
 }
 
 impl Default for Request {
-    /// Ten seconds from rest under gravity of 9.81 m/s2, with the defaults of a scenario.
+    /// Returns a request for ten seconds from rest under 9.81 m/s2, with the defaults of a scenario.
     fn default() -> Self {
         Self {
             gravity_m_s2: 9.81,
@@ -71,32 +73,34 @@ impl Default for Request {
 }
 
 impl Request {
-    /// Accelerations of gravity.
+    /// Range of the acceleration of gravity, in m/s2.
     pub const GRAVITY_M_S2: RangeInclusive<f64> = 1e-3..=1e3;
-    /// Lengths of a history, and intervals of its samples. At shorter times the errors of a step fall below the resolution of
-    /// numbers.
+    /// Range of durations and sample intervals, in seconds. At shorter times the errors of a step are below the resolution of floating-point numbers.
     pub const TIME_S: RangeInclusive<f64> = 1e-6..=1e6;
-    /// Tolerances of the integrator.
+    /// Range of the tolerance of the integrator.
     pub const RELATIVE_TOLERANCE: RangeInclusive<f64> = 1e-13..=1e-3;
-    /// Energies at which a structure is at rest.
+    /// Range of the energy at which a structure rests, over the barrier.
     pub const REST_ENERGY_RATIO: RangeInclusive<f64> = 1e-16..=0.1;
-    /// Samples that a history may have: about a gigabyte of rows.
+    /// Maximum number of samples of a history: about a gigabyte of rows.
     pub const MOST_SAMPLES: f64 = 1e7;
 
-    /// Largest number of samples of a history on this ground: one at the start, at every output step and at the end.
+    /// Returns the maximum number of samples of a history on this ground: one at the start, at every output step and at the end.
     #[must_use]
     pub fn most_samples(&self, ground: &GroundMotion) -> u64 {
         let before = if ground.start_s() < 0.0 { 1 } else { 0 };
-        // Numbers that cannot count samples are refused elsewhere.
+        // Invalid numbers are rejected elsewhere.
         (self.lasts_s(ground) / self.output_step_s) as u64 + 2 + before
     }
 
-    /// Longest time from the start of the ground motion to the end of a history, in seconds.
+    /// Returns the longest time from the start of the ground motion to the end of a history, in seconds.
     fn lasts_s(&self, ground: &GroundMotion) -> f64 {
         self.end_s - ground.start_s()
     }
 
-    /// Refuses numbers that no simulation on this ground can work with.
+    /// Checks all numbers for a simulation on this ground.
+    ///
+    /// # Errors
+    /// If a number is out of range, or there are too many samples.
     pub fn check(&self, ground: &GroundMotion) -> Result<(), ArgumentError> {
         let (tolerance, rest_ratio) = (self.relative_tolerance, self.rest_energy_ratio);
         for (argument, value, range) in [

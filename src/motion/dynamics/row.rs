@@ -1,6 +1,8 @@
-//! Shared by all models of rows of blocks: `stepper`, the driver that steps a row and reports its motion; `course`, which
-//! judges the motion; and `standing`,
-//! what is known of a row of rigid blocks before it moves.
+//! Common parts of all models of rows of blocks.
+//!
+//! - `stepper` is the driver that steps a row and reports its motion.
+//! - `course` records and evaluates the motion.
+//! - `standing` holds the properties of a row of rigid blocks before it moves.
 
 pub(crate) mod clock;
 pub(super) mod course;

@@ -1,27 +1,25 @@
-//! The thrust line along a history: how far the four-link assumption holds.
+//! Thrust line in a history: measures the validity of the four-link assumption.
 
 use super::peak::Peak;
 use crate::mechanics::chain::Demand;
 
-/// Largest thrust excess and friction demand of a history, and the share of its rocking time in which the thrust
-/// line stays (almost) inside.
+/// Largest thrust excess and friction demand of a history, and the fraction of its rocking time in which the thrust line stays (almost) inside.
 ///
-/// Taken from the output samples: peaks between them are missed.
+/// The values are from output samples: peaks between samples are missed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ThrustRecord {
-    /// Largest excess of the thrust line over the thickness, and when it was first reached, in seconds.
+    /// Largest excess of the thrust line over the thickness, and the time at which it is first reached, in seconds.
     pub largest_excess: Peak,
-    /// Largest friction coefficient needed to prevent sliding.
+    /// Largest friction coefficient required to prevent sliding.
     pub largest_friction: Peak,
-    /// Samples in motion.
+    /// Number of samples in motion.
     moving: u64,
-    /// Of these, the number with an excess of at most each of [`EXCESS_LEVELS`].
+    /// Number of samples in motion with an excess of at most each of [`EXCESS_LEVELS`].
     within: [u64; 2],
 }
 
-/// Levels of the excess, over the thickness, for the shares of time. They grade the assumption and do not bound
-/// the error of the motion: peaks with free hinges differed by 3 % for seven voussoirs with an excess of 0.05,
-/// and by 23 % for a continuous semicircle with one of 0.02.
+/// Levels of the excess, over the thickness, for the fractions of time. They grade the assumption and do not bound the error of the motion. Peaks
+/// with free hinges differed by 3 % for seven voussoirs with an excess of 0.05, and by 23 % for a continuous semicircle with an excess of 0.02.
 pub const EXCESS_LEVELS: [f64; 2] = [0.01, 0.05];
 
 impl ThrustRecord {
@@ -37,8 +35,7 @@ impl ThrustRecord {
         }
     }
 
-    /// Shares of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None`
-    /// if no sample is in motion.
+    /// Returns the fractions of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None` if no sample is in motion.
     #[must_use]
     pub fn shares_within(&self) -> Option<[f64; 2]> {
         (self.moving > 0).then(|| self.within.map(|count| count as f64 / self.moving as f64))

@@ -1,4 +1,4 @@
-//! How far a motion is followed, in studies of many cases that need only whether it overturns.
+//! Early end of histories, for studies of many cases that only need to know whether the structure overturns.
 
 use std::ops::ControlFlow;
 
@@ -8,49 +8,47 @@ use super::recorder::Recorder;
 use super::request::Request;
 use crate::mechanics::sway::Sway;
 
-/// The end of the computation of a motion. One that is not followed further is [`StillRocking`](super::history::Outcome::StillRocking) before its
-/// end.
+/// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
-    /// To its end.
+    /// The regular end of the history.
     End,
-    /// Up to where it cannot overturn any more, turns no block as far as it did, and comes to rest by its end.
+    /// The structure cannot overturn, no block exceeds its largest rotation, and it comes to rest before the end of the history.
     Settled,
-    /// Up to where it cannot overturn any more.
+    /// The structure cannot overturn.
     Safe,
 }
 
-/// On ground that stays quiet, a structure with less than this fraction of the energy barrier of its first mechanism cannot overturn
-/// any more. Rows overturn by other mechanisms as well: 125 histories of random rows that overturned never had less than 0.45 of the
-/// barrier on quiet ground before.
+/// Fraction of the energy barrier of the first mechanism below which a structure on quiet ground cannot overturn. Rows may overturn by other
+/// mechanisms: 125 histories of random rows that overturned never had less than 0.45 of the barrier on quiet ground before.
 pub(super) const SAFE: f64 = 0.25;
 
-/// With less than this fraction of the largest energy that it had, a structure turns no block as far as it did.
+/// Fraction of the largest energy of the motion below which no block exceeds its largest rotation.
 const DECAYED: f64 = 0.1;
 
-/// A history that may be ended early comes to rest before its end if this many times its last half cycle fit into the time that is
-/// left: half cycles shorten at least as fast as those of a block whose impacts leave 0.95 of the energy.
+/// Number of durations of the last half cycle that must fit into the time left, so that a history comes to rest before its end. Half cycles shorten
+/// at least as fast as those of a block whose impacts leave 0.95 of the energy.
 const HALF_CYCLES_LEFT: f64 = 40.0;
 
-/// Ends a history that cannot overturn any more.
+/// Recorder that ends a history once the structure cannot overturn.
 #[derive(Default)]
 pub(super) struct UntilSafe {
-    /// From when on the ground is quiet, in seconds.
+    /// Time from which on the ground is quiet, in seconds.
     quiet_s: f64,
-    /// By when it must have come to rest, in seconds; infinite where that does not matter.
+    /// Time of the latest rest, in seconds; infinite without this condition.
     rest_by_s: f64,
-    /// The side to which it sways, and since when, in seconds.
+    /// Side of the current sway, and its start in seconds.
     sways: Option<(Sway, f64)>,
     /// Duration of the previous half cycle, in seconds.
     half_cycle_s: f64,
-    /// The largest energy so far, over the barrier.
+    /// Largest energy up to now, over the barrier.
     largest_ratio: f64,
-    /// True once the history was ended early.
+    /// True once the history is ended early.
     pub(super) has_ended: bool,
 }
 
 impl UntilSafe {
-    /// Of a motion that is followed as far as `until` says; `None` if that is to its end.
+    /// Returns the recorder for a motion with this end; `None` for the regular end.
     pub(super) fn new(until: Until, ground: &GroundMotion, request: &Request) -> Option<Self> {
         let rest_by_s = match until {
             Until::End => return None,
@@ -64,7 +62,7 @@ impl UntilSafe {
         })
     }
 
-    /// Longest duration of a half cycle from now on.
+    /// Returns the longest duration of a half cycle from now on, in seconds.
     fn longest_half_cycle_s(&mut self, sample: &Sample) -> f64 {
         let State::Rocking(sway) = sample.state else {
             return f64::INFINITY;
@@ -75,7 +73,7 @@ impl UntilSafe {
             self.half_cycle_s = now_s - since_s;
             self.sways = Some((sway, now_s));
         }
-        // The half cycle under way may be longer than the one before, which the ground drove.
+        // The current half cycle may be longer than the last one, which the ground affected.
         self.half_cycle_s
             .max(now_s - self.sways.map_or(now_s, |(_, since_s)| since_s))
     }
@@ -88,7 +86,7 @@ impl Recorder for UntilSafe {
 
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
-        // A row that has slipped stands lower: its energy says nothing.
+        // A row that has slipped is lower than before, so its energy gives no information.
         let slips = !sample.offsets_m.is_empty();
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);

@@ -1,4 +1,4 @@
-//! Variations of a motion: other values of properties that are uncertain.
+//! Variations of a motion, with other values of uncertain properties.
 
 use std::panic;
 use std::thread::{self, JoinHandle};
@@ -7,25 +7,25 @@ use super::ground::GroundMotion;
 use super::history::Summary;
 use super::model::{Model, Request, SimulationError};
 
-/// A copy of a model with a property that is equally likely.
+/// Copy of a model with another plausible value of a property.
 #[derive(Debug)]
 pub struct Variation {
-    /// The difference, in words that follow "with".
+    /// Description of the difference, in words that follow "with".
     pub name: String,
-    /// The model; or why the structure does not stand.
+    /// Model, or the reason why the structure is not stable.
     pub model: Result<Box<dyn Model>, String>,
 }
 
-/// The outcome of a variation.
+/// Result of a variation.
 #[derive(Clone, Debug)]
 pub struct Varied {
-    /// The difference.
+    /// Description of the difference.
     pub name: String,
-    /// Its motion; or why there is none.
+    /// Summary of the motion, or the reason why there is none.
     pub result: Result<Summary, String>,
 }
 
-/// A motion that is computed on a thread of its own. If nobody waits for it, it ends with the program.
+/// Motion that is computed on a separate thread. The thread ends with the program if nobody waits for the result.
 #[derive(Debug)]
 pub(super) struct Running(JoinHandle<Result<Summary, SimulationError>>);
 
@@ -36,19 +36,19 @@ impl Running {
         Self(thread::spawn(simulate))
     }
 
-    /// Waits for it. A panic of its thread continues here.
+    /// Waits for the result. A panic of the thread continues in the caller.
     pub(super) fn ended(self) -> Result<Summary, SimulationError> {
         let joined = self.0.join();
         joined.unwrap_or_else(|panicked| panic::resume_unwind(panicked))
     }
 }
 
-/// The motions of variations, while they are computed.
+/// Motions of variations that are being computed.
 #[derive(Debug)]
 pub struct Variations(Vec<(String, Result<Running, String>)>);
 
 impl Variations {
-    /// Starts them.
+    /// Starts the computations.
     #[must_use]
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
         let running = |model| Running::start(model, ground, request);
@@ -56,7 +56,7 @@ impl Variations {
         Self(variations.into_iter().map(start).collect())
     }
 
-    /// Waits for them.
+    /// Waits for all results.
     #[must_use]
     pub fn ended(self) -> Vec<Varied> {
         let ended = |(name, running): (_, Result<Running, String>)| Varied {

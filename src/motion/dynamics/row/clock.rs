@@ -1,32 +1,35 @@
-//! The clock of a motion: its steps, and the times of its samples.
+//! Steps of a motion, and times of its samples.
 
 use super::error::RowMotionError;
 use crate::dynamics::fall;
 
-/// A start within this fraction of the output step before a multiple of it counts as that multiple.
+/// Relative tolerance, in output steps, within which a start before a multiple of the output step counts as that multiple.
 const ALIGNED: f64 = 1e-6;
 
-/// Settings of the computation of a motion.
+/// Numerical settings of a motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Longest step in seconds.
+    /// Longest step, in seconds.
     pub longest_step_s: f64,
-    /// Whether steps may be halved where the energy balance needs it.
+    /// True if steps may be halved after errors of the energy balance.
     pub may_halve: bool,
-    /// Landings that crowd within this time, in seconds, are taken as one.
+    /// Time, in seconds, within which landings are merged if impacts are too frequent.
     pub shortest_step_s: f64,
-    /// Number of impacts within the shortest step after which landings crowd.
+    /// Number of impacts within the shortest step after which landings are merged.
     pub merged_after: usize,
-    /// Latest end, in seconds.
+    /// Latest end of the motion, in seconds.
     pub end_s: f64,
-    /// Time between samples in seconds; if `None`, there are none. Steps end there whether or not samples are wanted.
+    /// Time between samples, in seconds; `None` without samples. Steps also end at these times if nobody records samples.
     pub output_step_s: Option<f64>,
-    /// Coulomb's coefficient of friction at every joint; if `None`, joints do not slip.
+    /// Coulomb's coefficient of friction at all joints; `None` prevents slip.
     pub friction_coefficient: Option<f64>,
 }
 
 impl Settings {
-    /// These settings, if a motion takes at most so many steps.
+    /// Returns these settings.
+    ///
+    /// # Errors
+    /// If a motion takes more than `most_steps` steps; `remedy` is part of the message.
     pub fn within(self, most_steps: f64, remedy: &str) -> Result<Self, RowMotionError> {
         let (end_s, steps) = (self.end_s, self.end_s / self.longest_step_s);
         if steps <= most_steps {
@@ -37,11 +40,11 @@ impl Settings {
     }
 }
 
-/// The times at which samples are due and steps end: the start, and multiples of the output step after it.
+/// Times of samples, at which steps end: the start, and multiples of the output step after it.
 pub struct Marks {
     pub(super) settings: Settings,
     start_s: f64,
-    /// The next multiple; before the start, the start is next.
+    /// Index of the next multiple of the output step; the start precedes it.
     passed: f64,
 }
 
@@ -56,7 +59,7 @@ impl Marks {
         }
     }
 
-    /// The marks of a fall from this time on.
+    /// Returns the sample times of a fall from `from_s` on.
     pub(super) fn of_fall(settings: Settings, from_s: f64) -> Self {
         let given_s = settings.output_step_s.unwrap_or(f64::INFINITY);
         let step_s = given_s.min(fall::SAMPLED_S);
@@ -84,7 +87,7 @@ impl Marks {
         }
     }
 
-    /// Whether a sample is due.
+    /// Returns whether a sample is due.
     pub fn is_due(&self, time_s: f64) -> bool {
         time_s >= self.mark_s() - 1e-9 * self.settings.shortest_step_s
     }
@@ -93,7 +96,7 @@ impl Marks {
         self.passed += 1.0;
     }
 
-    /// Time of the next end of a step.
+    /// Returns the time at which the next step must end.
     pub fn next_s(&self) -> f64 {
         self.mark_s().min(self.settings.end_s)
     }

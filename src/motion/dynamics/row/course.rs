@@ -1,4 +1,4 @@
-//! The course of a motion, whichever stepper moves the row: its clock, reports, peaks, half cycles, energy and outcome.
+//! Course of a motion, common to all steppers of a row: reports, peaks, half cycles, energy balance and outcome.
 
 use std::mem;
 
@@ -16,103 +16,103 @@ use crate::mechanics::lanes::Lanes;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::{Tie, TieMemory};
 
-/// Sways below this fraction of the size do not count as a change of side.
+/// Sway, over the size, below which the side of the motion does not change.
 pub const SWAY_RATIO: f64 = 1e-9;
-/// If no barrier is known, the kinetic energy of at least this many times the square root of size over gravity counts: longer than
-/// from one turning point to the next.
+/// Duration, over the square root of size over gravity, in which the largest kinetic energy counts if no barrier is known. It is longer than the time
+/// between turning points.
 const RECENT_RATIO: f64 = 2.0;
-/// At rest, the kinetic energy is below this fraction of weight times size ...
+/// Kinetic energy, over weight times size, below which a row may be at rest.
 pub const REST_ENERGY_RATIO: f64 = 1e-9;
-/// ... for this many times the square root of size over gravity: longer than at any turning point.
+/// Duration of small kinetic energy, over the square root of size over gravity, after which a row is at rest. It is longer than a turning point.
 const REST_TIME_RATIO: f64 = 0.5;
-/// A block that has turned by this, in radians, has overturned ...
+/// Rotation of a block, in radians, at which the row has overturned.
 pub const OVERTURNED_RAD: f64 = 0.8;
-/// ... and so has one that has moved by this fraction of the size, apart from the slide of the row along a support.
+/// Displacement of a block, over the size, at which the row has overturned; without the slip of the row along a support.
 pub const OVERTURNED_RATIO: f64 = 0.6;
-/// On the way down, a rise of less than this fraction of weight times size is no return.
+/// Rise in a fall, over weight times size, above which the row has returned.
 const LEAST_RETURN: f64 = 1e-3;
-/// An energy balance that is wrong by more than this fraction of the largest energy of the motion is an error.
+/// Error of the energy balance, over the largest energy of the motion, above which the computation fails.
 pub const LARGEST_ENERGY_ERROR: f64 = 1e-2;
-/// Energies below this fraction of weight times size are no motion: their balance is rounding.
+/// Least energy, over weight times size, that counts as motion; the balance of smaller energies is a rounding error.
 const LEAST_ENERGY_RATIO: f64 = 1e-6;
-/// A row has slipped when friction took more than this fraction of the barrier of its first mechanism. It then stands lower than
-/// before, and its potential energy says nothing about that barrier.
+/// Energy dissipated by friction, over the barrier of the first mechanism, above which a row counts as slipped. The row is then lower than before,
+/// and its potential energy is not comparable with the barrier.
 const SLIPPED_RATIO: f64 = 0.01;
 
-/// At these fractions of the energy error that refuses a motion the steps are halved, if none were given: the error then grows at least two
-/// times slower, four times with elastic joints.
+/// Energy errors, over the largest allowed one, at which default steps are halved. The error then grows at least two times slower, four times with
+/// elastic joints.
 const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
 
-/// The motion so far.
+/// Record of a motion up to the current time.
 pub struct Course<'a> {
     pub time: f64,
-    /// Potential energy above the undeformed row.
+    /// Potential energy above the undeformed row, in J.
     pub potential: f64,
-    /// Kinetic energy after the last step.
+    /// Kinetic energy after the last step, in J.
     pub(super) kinetic: f64,
-    /// Horizontal displacement of the centre of gravity times the mass, without the slide of the row along the ground.
+    /// Horizontal displacement of the centre of gravity times the mass, without the slip of the row along the ground, in kg m.
     pub sway: f64,
-    /// Whether a joint has opened or slipped; of elastic joints, whether they move with more energy than at rest.
+    /// True once a joint has opened or slipped; for elastic joints, once the row has moved with more energy than at rest.
     pub moved: bool,
-    /// With elastic joints: whether one has opened beyond its state at rest, or slipped; `None` with rigid joints.
+    /// For elastic joints: true once a joint has opened beyond its state at rest, or slipped. `None` for rigid joints.
     pub rocks: Option<bool>,
-    /// Mass times displacement below which a sway does not change the side.
+    /// Sway times mass, in kg m, below which the side of the motion does not change.
     pub least_sway_kg_m: f64,
-    /// Weight times size.
+    /// Weight times size, in J.
     pub energy_unit: f64,
-    /// Joints that shut in a step, even if they open again at once, with the edge that landed; both landed if none is named.
+    /// Joints that close in a step, also if they open again immediately, with the edge that landed; `None` for both edges.
     pub shut: Vec<Hinge>,
-    /// Joints that open at once, with the edge about which they turn; no edge if they part.
+    /// Joints that open in a step, with the edge about which they turn; `None` for parted joints.
     pub opened: Vec<Hinge>,
     pub impacts: usize,
     pub cost: Cost,
     peak_rotations_rad: Vec<f64>,
     energy_defect_ratio: f64,
     pub of_row: RowSummary,
-    /// Results of elastic joints.
+    /// Results for elastic joints.
     pub elastic: ElasticSummary,
     /// Longest step from now on, in seconds.
     pub longest_step_s: f64,
     pub task: Task<'a>,
-    /// When the row was highest before it came down for good, by heights that the stepper notes.
+    /// Last maximum of the height before the final descent, from the heights that the stepper reports.
     pub summit: Summit,
-    /// Whether the stepper has seen that the row has overturned.
+    /// True once the stepper has found that the row has overturned.
     pub overturned: bool,
-    /// Since when it has had hardly any kinetic energy.
+    /// Time since which the kinetic energy is small, in seconds.
     pub quiet_since_s: f64,
-    /// Potential energy below which the row has overturned; minus infinity if the stepper decides by other signs.
+    /// Potential energy below which the row has overturned, in J; minus infinity if the stepper uses other criteria.
     fallen: f64,
-    /// The results up to the last instant from which it may have fallen without return.
+    /// Results up to the last time from which the row may have fallen without return.
     before_fall: UpTo,
     cycle: Option<HalfCycle>,
     cycle_energy: Option<f64>,
     rising: bool,
     highest_s: f64,
     pub(super) recorder: Option<&'a mut dyn Recorder>,
-    /// The largest kinetic energies in the last two spans of time, the earlier one first, and when the later one began.
+    /// Largest kinetic energies in the last two periods, the earlier one first, and the start of the later one.
     recent_j: [f64; 2],
     recent_from_s: f64,
-    /// True once the row certainly cannot overturn any more.
+    /// True once the row certainly cannot overturn.
     is_safe: bool,
-    /// Whether nobody follows it any further.
+    /// True once the recorder has stopped the history.
     pub(super) stopped: bool,
-    /// Whether its history is complete, and its fall is followed.
+    /// True once the history is complete and the fall is computed.
     pub(super) falls: bool,
-    /// The sample, reused each time.
+    /// Sample, reused to avoid allocations.
     pub(super) sample: Sample,
     phase: usize,
-    /// Later events, while an impact is awaited.
+    /// Events held back until an impact is reported; `None` if no impact is pending.
     later: Option<Vec<Event>>,
     thrust: ThrustRecord,
 }
 
-/// Results up to an instant.
+/// Results up to a time.
 #[derive(Clone, Default)]
 struct UpTo {
     time_s: f64,
     peak_rotations_rad: Vec<f64>,
     impacts: usize,
-    /// Half cycles that have ended, and the one under way.
+    /// Number of completed half cycles, and the current one.
     half_cycles: usize,
     cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
@@ -121,11 +121,11 @@ struct UpTo {
     ties: Vec<TieSummary>,
 }
 
-/// When something was highest before it came down for good.
+/// Last maximum of the height before the final descent.
 pub struct Summit {
     pub time: f64,
     highest: f64,
-    /// The lowest since then.
+    /// Lowest height since then.
     lowest: f64,
 }
 
@@ -139,13 +139,14 @@ impl Summit {
     }
 }
 
-/// Right for a positive value, left for any other.
+/// Returns right for a positive value, left for any other.
 pub(super) fn towards(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
 
 impl<'a> Course<'a> {
-    /// Below the potential energy `fallen` the row has overturned; `None` if the stepper decides by other signs.
+    /// Returns the record of a motion that begins. `fallen` is the potential energy in J below which the row has overturned; `None` if the stepper
+    /// uses other criteria.
     pub fn new(
         task: Task<'a>,
         fallen: Option<f64>,
@@ -204,8 +205,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// The outcome of the motion and its time, if it has ended. The arguments are the time of overturning, if any, and the time since which it stands still
-    /// for good, if it does.
+    /// Returns the outcome of the motion and its time; `None` if the motion continues. `overturned_s` is the time of overturning, `rests_since` the
+    /// time since which the row rests.
     pub fn ending(
         &self,
         overturned_s: Option<f64>,
@@ -228,7 +229,7 @@ impl<'a> Course<'a> {
         over.then(|| (self.standing().unwrap_or(Outcome::StillRocking), time))
     }
 
-    /// The outcome as far as no joint has opened or slipped; otherwise `None`.
+    /// Returns the outcome while no joint has opened or slipped; `None` afterwards.
     fn standing(&self) -> Option<Outcome> {
         let least_j = REST_ENERGY_RATIO * self.energy_unit;
         match self.rocks {
@@ -239,7 +240,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Whether the history ends too early for a verdict: see [`Outcome`].
+    /// Returns whether the history ends too early to decide the outcome; see [`Outcome`].
     fn is_incomplete(&self) -> bool {
         if self.is_safe {
             return false;
@@ -252,7 +253,7 @@ impl<'a> Course<'a> {
         self.time < self.task.ground.end_s() || energy_ratio > SAFE
     }
 
-    /// The energy barrier, unless the row slipped so far that its potential energy says nothing about it.
+    /// Returns the energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
     fn known_barrier_j(&self) -> Option<f64> {
         let sliding = self.of_row.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
@@ -260,17 +261,17 @@ impl<'a> Course<'a> {
         self.task.barrier_j.filter(known)
     }
 
-    /// Time for which it must be quiet to count as at rest, in seconds.
+    /// Returns the duration of small kinetic energy after which the row is at rest, in seconds.
     pub fn rest_time_s(&self) -> f64 {
         REST_TIME_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt()
     }
 
-    /// Normal force below which a joint does not count in the friction that is needed, in N.
+    /// Returns the least normal force of a joint that counts in the friction demand, in N.
     pub fn least_load_n(&self) -> f64 {
         LEAST_LOAD * self.energy_unit / self.task.row.size_m
     }
 
-    /// Notes the least force at a joint, by tangential and normal impulses in a time; returns the friction that they need.
+    /// Records the least normal force at a joint, from tangential and normal impulses during `lasts_s`. Returns the friction demand.
     pub fn note_forces(&mut self, impulses: impl Iterator<Item = [f64; 2]>, lasts_s: f64) -> f64 {
         let loaded = self.least_load_n() * lasts_s;
         let (mut least, mut friction) = (f64::INFINITY, 0.0_f64);
@@ -285,28 +286,27 @@ impl<'a> Course<'a> {
         friction
     }
 
-    /// Whether a row that has hardly moved since then rests.
+    /// Returns whether a row with small kinetic energy since `since_s` is at rest.
     pub fn is_quiet(&self, since_s: f64) -> bool {
         self.time - since_s > self.rest_time_s()
     }
 
-    /// When it passed its last way back, if the stepper has seen that it has overturned.
+    /// Returns the last time at which the row could still return, if the stepper has found that it has overturned.
     pub fn overturned_s(&self) -> Option<f64> {
         self.overturned.then_some(self.summit.time)
     }
 
-    /// When it passed its last way back, if a potential energy of gravity says that it has overturned.
+    /// Returns the last time at which the row could still return, if its potential energy shows that it has overturned.
     pub fn fallen_s(&self, potential: f64) -> Option<f64> {
         (potential < self.fallen).then_some(self.highest_s)
     }
 
-    /// Whether a recorder receives samples and events.
+    /// Returns whether there is a recorder.
     pub const fn is_followed(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Notes that the row is released at rest, with these rotations, this potential energy and this displacement of its centre of
-    /// gravity times the mass.
+    /// Records a release at rest, with rotations of the blocks, potential energy, and displacement of the centre of gravity times the mass.
     pub fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
@@ -323,8 +323,8 @@ impl<'a> Course<'a> {
         self.note_return();
     }
 
-    /// Updates peaks, half cycles and energy after a step, from the rotations of the blocks, the potential and kinetic energy,
-    /// and the displacement of the centre of gravity times the mass.
+    /// Updates peaks, half cycles and energies after a step, from the rotations of the blocks, the potential and kinetic energy, and the displacement
+    /// of the centre of gravity times the mass.
     pub fn observe(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
@@ -376,9 +376,9 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Notes the height of the row after a step, and the results if it had not come down for good before. If it rises again from where it was
-    /// lowest, it had not. `None` where its feet part: the feet do work, so heights do not decide whether it returns, but a row that hardly
-    /// moves has not come down.
+    /// Records the height of the row after a step, and the results while the row has not begun its final descent. A rise above the lowest point
+    /// counts as a return. `None` if the feet move apart: the feet do work, so heights do not decide whether the row returns. The row has then not
+    /// begun to fall while its kinetic energy is small.
     pub fn note_height(&mut self, height: Option<f64>) {
         let (least, summit) = (LEAST_RETURN * self.energy_unit, &mut self.summit);
         if let Some(height) = height {
@@ -394,7 +394,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Updates the summaries of the ties, which are at rest the first time; returns what happened to them since the last time.
+    /// Updates the summaries of the ties; the first call has the state at rest. Returns the events of ties since the last call, with their indices.
     pub fn note_ties<'t>(
         &mut self,
         ties: impl Iterator<Item = (&'t Tie, TieMemory<Lanes<1>>)>,
@@ -412,7 +412,7 @@ impl<'a> Course<'a> {
         happened
     }
 
-    /// Notes that it has not fallen without return before now.
+    /// Records the results at this time, at which the row can still return.
     pub fn note_return(&mut self) {
         let before_fall = &mut self.before_fall;
         before_fall.time_s = self.time;
@@ -430,7 +430,7 @@ impl<'a> Course<'a> {
         before_fall.ties.clone_from(&self.of_row.ties);
     }
 
-    /// Takes the results back to those of the instant at which it fell without return.
+    /// Resets the results to those at the last time at which the row could still return.
     fn take_back_the_fall(&mut self) {
         let before_fall = mem::take(&mut self.before_fall);
         self.peak_rotations_rad = before_fall.peak_rotations_rad;
@@ -452,7 +452,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Raises the peaks to the rotations of the blocks now; returns the largest of these.
+    /// Updates the peak rotations of the blocks, and returns the largest current rotation.
     fn note_peaks(&mut self, rotations_rad: impl Iterator<Item = f64>) -> f64 {
         let mut largest = 0.0_f64;
         let peaks = self.peak_rotations_rad.iter_mut();
@@ -464,7 +464,7 @@ impl<'a> Course<'a> {
         largest
     }
 
-    /// Files the half cycle that ends now, with the energy that is left if it is known.
+    /// Completes the current half cycle, with the remaining energy if known.
     fn end_cycle(&mut self, energy: Option<f64>) {
         if let Some(mut cycle) = self.cycle.take() {
             cycle.duration_s = self.time - cycle.start_s;
@@ -476,13 +476,13 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Notes a difference of the energy from what it should be.
+    /// Records an error of the energy, in J.
     pub fn note_defect(&mut self, energy: f64) {
         let worst = &mut self.energy_defect_ratio;
         *worst = worst.max(energy / self.energy_unit);
     }
 
-    /// Largest error of the energy balance so far, over the largest energy of the motion, which is at least this barrier.
+    /// Returns the largest error of the energy balance up to now, over the largest energy of the motion or `barrier_j`, whichever is larger.
     pub fn energy_error(&self, barrier_j: f64) -> f64 {
         let kinetic_j = self.of_row.largest_kinetic_j;
         let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
@@ -490,8 +490,8 @@ impl<'a> Course<'a> {
         defect_j / kinetic_j.max(barrier_j).max(least_j)
     }
 
-    /// Halves the steps where the energy balance needs it, a few times at most: where its error is too large beside this energy, and beside
-    /// another one that takes longer to find.
+    /// Halves the steps a few times at most, if the error of the energy balance is too large relative to `scale_j` and to another energy, which takes
+    /// longer to compute.
     pub fn mind_balance(&mut self, scale_j: f64, other_scale_j: impl FnOnce() -> f64) {
         let part = HALVED_FROM.get(self.of_row.halvings as usize);
         let most = part.unwrap_or(&f64::INFINITY) * LARGEST_ENERGY_ERROR;
@@ -506,13 +506,13 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Ends the motion here: it cannot overturn any more.
+    /// Ends the motion: the row cannot overturn.
     pub const fn decide(&mut self) {
         self.is_safe = true;
         self.stopped = true;
     }
 
-    /// The sample to write to, complete except for blocks and joints, and whether it needs the line of thrust.
+    /// Returns a sample without data of blocks and joints, and whether the recorder needs the thrust line.
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::take(&mut self.sample);
         let ground = self.task.ground;
@@ -523,7 +523,7 @@ impl<'a> Course<'a> {
         (sample, thrust_line)
     }
 
-    /// Passes on a complete sample.
+    /// Sends a complete sample to the recorder.
     pub(super) fn record(&mut self, sample: Sample, kinetic: f64) {
         self.sample = sample;
         let sample = &mut self.sample;
@@ -543,7 +543,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Passes on an event that begins a phase. Events after an awaited impact are held back until the impact is reported.
+    /// Sends an event that begins a phase to the recorder. Events after a pending impact are held back until the impact is reported.
     pub(super) fn report(&mut self, event: &Event) {
         if self.falls {
             return;
@@ -574,7 +574,8 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Takes energy that an impact at this time took in the step after it, in J, from the energy of the half cycle that began with it.
+    /// Subtracts energy that an impact at this time dissipated in the step after it, in J, from the energy of the half cycle that began with the
+    /// impact.
     pub fn took_late(&mut self, taken_j: f64) {
         if self.cycle.is_none_or(|cycle| cycle.start_s != self.time) {
             return;
@@ -589,7 +590,7 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Makes the summary, and reports the end if the row rests or has overturned.
+    /// Returns the summary, and reports the end if the row rests or has overturned.
     pub fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.of_row.half_cycles_with_fall =
             self.of_row.half_cycles.len() + usize::from(self.cycle.is_some());
@@ -627,7 +628,7 @@ impl<'a> Course<'a> {
             _ => None,
         };
         if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
-            // The history ends here anyway.
+            // The history ends here in any case.
             let _ = recorder.event(&Event {
                 rotations_rad: self.sample.rotations_rad.clone(),
                 rates_rad_s: self.sample.rates_rad_s.clone(),
@@ -640,7 +641,10 @@ impl<'a> Course<'a> {
     }
 }
 
-/// This summary, if its energy balances; else an error with the table of its model, and a step that is short enough, in seconds.
+/// Returns the summary if its energy balances.
+///
+/// # Errors
+/// If the energy balance is wrong. The error names the model's table and proposes a step, in seconds.
 pub fn balanced(
     summary: Summary,
     table: &'static str,

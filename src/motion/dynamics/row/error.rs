@@ -1,4 +1,4 @@
-//! Why a row of blocks has no model, or no motion.
+//! Errors of models and motions of rows of blocks.
 
 use thiserror::Error;
 
@@ -9,13 +9,13 @@ use crate::mechanics::friction::FrictionError;
 use crate::mechanics::settling::SettlingError;
 use crate::mechanics::stability::StabilityError;
 
-/// Why a row of blocks has no model of motion.
+/// Reason why a row of blocks has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RowModelError {
     /// There are no blocks, or they do not make a row.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// The row does not stand with rigid joints, or this could not be determined.
+    /// The row is not stable with rigid joints, or its stability was not determined.
     #[error(transparent)]
     Stability(#[from] StabilityError),
     /// An argument is not allowed.
@@ -24,41 +24,41 @@ pub enum RowModelError {
     /// The row slides apart under its own weight.
     #[error(transparent)]
     Friction(#[from] FrictionError),
-    /// The row does not rest on its elastic joints.
+    /// The row has no equilibrium on its elastic joints.
     #[error(transparent)]
     Rest(#[from] RestError),
-    /// The row falls when its supports have moved by this part of their way.
+    /// The row falls at this fraction of the movement of its supports.
     #[error("with rigid joints the structure falls when its supports have moved {:.2} % of the way", 1e2 * .0)]
     Falls(f64),
-    /// A tie breaks, of this index, before its supports have moved all of their way.
+    /// The tie with this index breaks during the movement of the supports.
     #[error("with rigid joints tie {} breaks before its supports have moved all of the way", .0 + 1)]
     TieBreaks(usize),
-    /// The row cannot be followed as its supports move.
+    /// No equilibrium was found during the movement of the supports.
     #[error(transparent)]
     Settling(#[from] SettlingError),
 }
 
-/// Why a motion of a row of blocks could not be computed.
+/// Reason why a motion of a row of blocks was not computed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum RowMotionError {
-    /// Energy was created or lost.
+    /// The error of the energy balance is too large.
     #[error(
         "the energy balance is wrong by {:.2} % of the largest energy of the motion, so its result is not usable: set \
          `longest_step_s` in [{table}] to at most {longest_step_s:.1e} s",
         1e2 * .error
     )]
     Energy {
-        /// Its error, over the larger of the barrier and the largest kinetic energy.
+        /// Error of the energy, over the larger value of the barrier and the largest kinetic energy.
         error: f64,
-        /// The table of the model in a scenario.
+        /// Name of the model's table in a scenario.
         table: &'static str,
-        /// A step that is short enough, in seconds.
+        /// Sufficiently short step, in seconds.
         longest_step_s: f64,
     },
-    /// The row does not rest on its elastic joints under this gravity.
+    /// The row has no equilibrium on its elastic joints under this gravity.
     #[error(transparent)]
     Rest(#[from] RestError),
-    /// The motion cannot begin, or a step failed: why, with a remedy.
+    /// The motion cannot begin, or a step failed; the message gives the reason and a remedy.
     #[error("{0}")]
     Failed(String),
 }

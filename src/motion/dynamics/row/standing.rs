@@ -1,4 +1,4 @@
-//! A row of rigid blocks before it moves: the push that starts it, and its first mechanism.
+//! A row of rigid blocks before it moves: push of the first motion, and first mechanism.
 
 use super::clock::Settings;
 use super::error::RowModelError;
@@ -18,31 +18,31 @@ use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
 
-/// A row of rigid blocks that stands.
+/// Stable row of rigid blocks.
 #[derive(Clone, Debug)]
 pub struct RigidRow {
-    /// Its blocks.
+    /// Blocks and joints.
     pub row: Row,
-    /// Its stance: undeformed, or on supports that have moved.
+    /// State in equilibrium: undeformed, or on moved supports.
     pub standing: Stance,
-    /// The push that starts it to the right and to the left where joints do not slip, in units of gravity.
+    /// Push of the first motion to the right and to the left without slip, in multiples of gravity; `None` if no push moves the row.
     incipient_g: Sides<Option<f64>>,
-    /// The push that starts it to either side where joints slip, in units of gravity.
+    /// Push of the first motion to either side with slip, in multiples of gravity; `None` without friction coefficient.
     with_friction_g: Option<Sides<Option<f64>>>,
-    /// Its first mechanism, if that is one of four links. A stack turns about an edge of its base.
+    /// First mechanism, if it has four links; `None` for other mechanisms and for stacks, which turn about an edge of their base.
     first: Option<FourLinks>,
 }
 
 impl RigidRow {
-    /// A row, if it stands.
+    /// Returns the model of a stable row.
     ///
     /// # Errors
-    /// When the row cannot carry its own weight.
+    /// If the row does not carry its own weight.
     pub fn new(row: Row) -> Result<Self, StabilityError> {
         let push_g = |sway| onset(&row, sway).map(|onset| Some(onset?.acceleration_g));
         let incipient_g = Sides::try_of(push_g)?;
-        // No motion is released from the first mechanism of a row with ties, whose barrier is known only without them. The impact model is
-        // required, but not used: the first mechanism comes before any impact.
+        // No motion starts from the first mechanism of a row with ties, and the barrier is known only without ties. The impact model is a required
+        // argument without effect: the first mechanism precedes all impacts.
         let four_links =
             || FourLinks::of_row(&row.clone().without_ties(), ImpactModel::MaxRestitution).ok();
         Ok(Self {
@@ -54,13 +54,13 @@ impl RigidRow {
         })
     }
 
-    /// The names of its blocks.
+    /// Returns the names of the blocks.
     pub fn bodies(&self) -> Vec<String> {
         let blocks = 1..=self.row.blocks.len();
         blocks.map(|block| block.to_string()).collect()
     }
 
-    /// The size of its samples, by whether joints slip, and whether pressures are reported.
+    /// Returns the size of the samples. `slips` and `presses` are true if offsets and pressures of joints are reported.
     pub fn shape(&self, slips: bool, presses: bool) -> Shape {
         let joints = self.row.joints.len();
         let joints_if = |reported: bool| if reported { joints } else { 0 };
@@ -73,15 +73,15 @@ impl RigidRow {
         }
     }
 
-    /// The push that starts it to that side, in units of gravity; `None` if no push starts it.
+    /// Returns the push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.
     pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         *self.with_friction_g.unwrap_or(self.incipient_g).to(sway)
     }
 
-    /// This row with joints that slip; the push that starts it to either side follows by limit analysis.
+    /// Returns this row with sliding joints; limit analysis gives the push of the first motion to either side.
     ///
     /// # Errors
-    /// When the row slides apart under its own weight, or this could not be determined.
+    /// If the row slides apart under its own weight, or this was not determined.
     pub fn with_friction(mut self, coefficient: Option<f64>) -> Result<Self, FrictionError> {
         self.with_friction_g = None;
         let Some(coefficient) = coefficient else {
@@ -98,11 +98,11 @@ impl RigidRow {
         Ok(self)
     }
 
-    /// This row on supports that have moved: the push that starts it is that which makes its hinges give way, and where it stands on
-    /// hinges its first mechanism is none of one degree of freedom whose barrier is known.
+    /// Returns this row on moved supports. The first motion is then a snap of the hinges. On hinges the first mechanism has no single degree of
+    /// freedom with a known barrier.
     ///
     /// # Errors
-    /// When it falls on the way, or a tie breaks.
+    /// If the row falls or a tie breaks during the movement.
     pub fn on_supports(self, movements: &Movements) -> Result<Self, RowModelError> {
         let mut follower = Follower::new(&self.row)?;
         let way = |part: f64| *movements * part;
@@ -117,14 +117,13 @@ impl RigidRow {
             incipient_g: Sides::try_of(first_g)?,
             with_friction_g: None,
             standing: follower.stance.clone(),
-            // That of the blocks alone: energies are judged beside it.
+            // The mechanism of the undeformed row gives the scale of energies.
             first: self.first,
             row: self.row,
         })
     }
 
-    /// Energy that the first mechanism has to gain to overturn, in J, to the side where that is less; `None` where it is
-    /// not known.
+    /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         if self.is_on_hinges() || !self.row.ties.is_empty() {
@@ -133,8 +132,8 @@ impl RigidRow {
         self.built_barrier_j(gravity_m_s2)
     }
 
-    /// Its motion on this ground. Energies are judged beside the barrier of the row as it was built, without its ties, in J: where hinges are
-    /// open a small push sets it in a motion of hardly any energy.
+    /// Returns the task to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
+    /// with open hinges, even a small push causes a motion with almost no energy.
     pub fn task<'a>(
         &'a self,
         ground: &'a GroundMotion,
@@ -142,7 +141,7 @@ impl RigidRow {
         settings: Settings,
     ) -> Task<'a> {
         let built_j = self.built_barrier_j(gravity_m_s2);
-        // Where its feet part the feet do work, so it overturns at another energy, if at all.
+        // If the feet move apart they do work, and the barrier is unknown.
         let parts = ground.right_foot_of(&self.row).is_some();
         let known = self.is_on_hinges() || self.row.ties.is_empty();
         let task = Task::new(&self.row, ground, gravity_m_s2, settings);
@@ -154,7 +153,7 @@ impl RigidRow {
         }
     }
 
-    /// Whether it stands on hinges, of supports that have moved.
+    /// Returns whether the row stands on hinges of moved supports.
     fn is_on_hinges(&self) -> bool {
         self.standing.placement.open_corners() > 0
     }
@@ -174,10 +173,13 @@ impl RigidRow {
         }
     }
 
-    /// Rotations of the blocks when the first mechanism is open this far.
+    /// Returns the rotations of the blocks at a given opening of the first mechanism.
+    ///
+    /// # Errors
+    /// If the rotation is too large, or the row does not start with a mechanism of one degree of freedom.
     pub fn released(&self, initial: Initial) -> Result<Vec<f64>, ArgumentError> {
         let blocks = self.row.blocks.len();
-        // Swaying right, in the frame in which the mechanism does so; the other side is its mirror image.
+        // The mechanism is described in the frame in which it sways right; a sway to the left is reflected.
         let side = initial.sway.sign();
         let row = match &self.first {
             Some(row) if !self.is_on_hinges() => row,

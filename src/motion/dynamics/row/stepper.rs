@@ -1,4 +1,4 @@
-//! Moves a row by a stepper, and reports its motion.
+//! Driver that moves a row by a stepper, and reports its motion.
 
 use std::time::{Duration, Instant};
 
@@ -16,44 +16,44 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
-/// Moves a row, step by step.
+/// Stepper of a row: computes its motion step by step.
 pub trait Stepper<'a>: Sized {
     fn course(&self) -> &Course<'a>;
     fn course_mut(&mut self) -> &mut Course<'a>;
-    /// One step, at most to the given time.
+    /// Takes one step, at most up to `until`, in seconds.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError>;
-    /// Writes into a blank sample where the blocks are, their rates at that instant, offsets, friction and, if it is wanted, the line
-    /// of thrust. Returns the kinetic energy at that instant.
+    /// Writes the current state into a blank sample: poses, rates at this time, offsets, friction demand and, on request, the thrust line. Returns
+    /// the kinetic energy in J.
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError>;
-    /// Rotations of the blocks, and their rates after the last step.
+    /// Returns the rotations of the blocks, and their rates after the last step.
     fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
-    /// Gaps of a joint at intrados and extrados.
+    /// Returns the gaps of a joint at intrados and extrados, in metres.
     fn gaps(&self, joint: usize) -> [f64; 2];
-    /// The place at which a joint is pressed, or was last pressed, on the given edge.
+    /// Returns the current or last position of contact of a joint at an edge, in metres.
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
     fn momentum(&self) -> Vector2<f64>;
-    /// A joint as a hinge, if it is open.
+    /// Returns a joint as a hinge; `None` if it is closed.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         open_hinge(joint, self.gaps(joint))
     }
-    /// Whether a row with these hinges and rotations stands.
+    /// Returns whether a row with the hinges and rotations of a sample rests.
     fn stands(&self, sample: &Sample) -> bool;
-    /// Since when it stands still for good, once the ground is still.
+    /// Returns the time since which the row rests, once the ground is quiet; `None` if it moves.
     fn rests_since(&self) -> Option<f64>;
-    /// When the row passed its last point of return, once it has overturned.
+    /// Returns the last time at which the row could still return, once it has overturned; `None` before.
     fn overturned_s(&self) -> Option<f64> {
         self.course().overturned_s()
     }
-    /// Completes the summaries of the course at its end.
+    /// Completes the summaries at the end of the course.
     fn complete(&mut self) {}
 
-    /// The side to which the centre of gravity sways; if that is at its undeformed place, the side to which it moves.
+    /// Returns the side of the centre of gravity; in its undeformed position, the direction of its velocity.
     fn heading(&self) -> Sway {
         let sway = self.course().sway;
         towards(if sway == 0.0 { self.momentum().x } else { sway })
     }
 
-    /// The state of a row that moves.
+    /// Returns the state of a row in motion.
     fn moving(&self) -> State {
         match self.overturned_s() {
             Some(_) => State::Overturned(self.heading()),
@@ -61,8 +61,7 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
-    /// Reports that all joints were shut before this time, with this energy, rotations and rates, and that some have opened
-    /// since.
+    /// Reports the first opening of joints. At `time_s` all joints were still closed; energy, rotations and rates are those at that time.
     fn report_uplift(&mut self, time_s: f64, energy_j: f64, turns: (Vec<f64>, Vec<f64>)) {
         if !self.course().is_followed() {
             return;
@@ -78,8 +77,8 @@ pub trait Stepper<'a>: Sized {
         self.course_mut().report(&event);
     }
 
-    /// Reports that corners have landed: whether the row moves on, whether it lies where it stood before it moved, the kinetic energy before
-    /// and the part taken, and how much of that friction took.
+    /// Reports an impact. `moves` is true if the row moves afterwards, `stood` if it is in its initial position. Energies are the kinetic energy
+    /// before the impact, the energy dissipated, and the part dissipated by friction.
     fn report_impact(
         &mut self,
         [moves, stood]: [bool; 2],
@@ -99,7 +98,7 @@ pub trait Stepper<'a>: Sized {
         let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
         let energy_after_j = (energy_before_j - taken_j).max(0.0);
         let event = self.event(EventKind::Impact, moves);
-        // A row that lands where it stood came from the other side.
+        // A row that lands in its initial position came from the other side.
         let sway = if moves { self.heading() } else { Sway::Right };
         let restitution = energy_after_j / energy_before_j;
         let impact = Impact {
@@ -137,7 +136,7 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
-    /// An event that happens now to a row that moves on, or rests.
+    /// Returns an event at the current time; `moves` is false if the row rests.
     fn event(&self, kind: EventKind, moves: bool) -> Event {
         let course = self.course();
         let (rotations_rad, rates_rad_s) = self.turns().unzip();
@@ -152,7 +151,7 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
-    /// Makes a sample.
+    /// Records a sample.
     fn sample(&mut self) -> Result<(), RowMotionError> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
@@ -174,7 +173,10 @@ pub trait Stepper<'a>: Sized {
     }
 }
 
-/// Steps a row until it rests, has overturned, or the time is over.
+/// Steps a row until it rests, has overturned, or reaches the end of time.
+///
+/// # Errors
+/// If a step fails.
 pub fn run<'a, S>(mut stepper: S) -> Result<Summary, RowMotionError>
 where
     S: Stepper<'a>,
@@ -216,7 +218,7 @@ where
     Ok(summary)
 }
 
-/// Steps a row on that has overturned, if its recorder follows falls.
+/// Continues the motion of an overturned row if the recorder wants its fall.
 fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
     let course = stepper.course_mut();
     let wanted = |recorder: &&mut dyn Recorder| recorder.wants_fall();
@@ -231,7 +233,7 @@ fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
     }
 }
 
-/// Steps a row that falls, and says why its fall is followed no further.
+/// Steps a falling row and returns the reason for the end.
 fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, RowMotionError> {
     for _ in 0..fall::MOST_STEPS {
         let course = stepper.course();
@@ -250,13 +252,13 @@ fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEn
     Ok(FallEnd::Slow)
 }
 
-/// Length of the next step of a leapfrog: equal steps up to the given time.
+/// Returns the length of the next leapfrog step: equal steps up to `until`.
 pub fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     let left = until - time;
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
-/// The edge of the only corner of a joint, intrados or extrados, for which this is true; else `None`.
+/// Returns the edge of the only corner, intrados or extrados, with the value true; `None` if none or both are true.
 pub fn only(corners: [bool; 2]) -> Option<Edge> {
     match corners {
         [true, false] => Some(Edge::Intrados),
@@ -265,19 +267,19 @@ pub fn only(corners: [bool; 2]) -> Option<Edge> {
     }
 }
 
-/// The edge about which a joint with these gaps turns; `None` where it parts, or is shut.
+/// Returns the edge about which a joint with these gaps turns; `None` for parted and closed joints.
 fn turning(gaps: [f64; 2]) -> Option<Edge> {
     only(gaps.map(|gap| gap == 0.0))
 }
 
-/// A joint with these gaps as a hinge, if it is open.
+/// Returns a joint with these gaps as a hinge; `None` if it is closed.
 pub fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
     let edge = turning(gaps);
     (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
 }
 
-/// Distance of the thrust from the middle of a joint towards the extrados, by the impulses at its corners, over the thickness; `None`
-/// if neither presses. A pull below the tolerance of the solver counts as zero.
+/// Returns the eccentricity of the thrust at a joint, towards the extrados, over the thickness, from the impulses at its corners. Tensile impulses
+/// within the solver's tolerance count as zero. `None` if neither impulse is compressive.
 pub fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));
     let normal = intrados + extrados;

@@ -1,4 +1,4 @@
-//! A motion of a row to compute.
+//! Input of the motion of a row.
 
 use nalgebra::Vector2;
 
@@ -7,23 +7,23 @@ use crate::dynamics::ground::GroundMotion;
 use crate::mechanics::blocks::{Joint, Row, Supports};
 use crate::mechanics::geometry::ring::Edge;
 
-/// A motion to compute.
+/// Input of the motion of a row.
 #[derive(Clone, Copy)]
 pub struct Task<'a> {
     pub row: &'a Row,
     pub ground: &'a GroundMotion,
     pub gravity_m_s2: f64,
     pub settings: Settings,
-    /// Energy that the first mechanism has to gain to overturn, where that is known.
+    /// Energy in J that the first mechanism needs to overturn; `None` if unknown.
     pub barrier_j: Option<f64>,
-    /// Energy barrier of the row as built, with rigid joints and without ties, in J; estimated where it is not known.
+    /// Energy barrier of the undeformed row with rigid joints and without ties, in J; an estimate if unknown.
     pub built_barrier_j: f64,
-    /// Energy beside which errors of the balance are small or not, if the motion has less.
+    /// Scale of errors of the energy balance, in J, if the motion has less energy.
     pub energy_scale_j: f64,
 }
 
 impl<'a> Task<'a> {
-    /// A task whose energies follow from the blocks alone.
+    /// Returns a task with energy scales from the blocks alone.
     pub fn new(
         row: &'a Row,
         ground: &'a GroundMotion,
@@ -42,11 +42,11 @@ impl<'a> Task<'a> {
     }
 }
 
-/// The energy barrier of an arch, if none is known, as a fraction of its weight times its size.
+/// Estimated energy barrier of an arch, over weight times size.
 const BARRIER_RATIO: f64 = 1e-3;
 
-/// An estimate of the energy that a row has to gain to overturn, in J, without its ties: of a stack, that by which the part above one of
-/// its joints overturns as one block, where that is least.
+/// Returns an estimate of the energy barrier of a row without ties, in J. For a stack: the least energy to overturn the part above one of its joints
+/// as one block.
 fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     if row.supports == Supports::Both {
         return BARRIER_RATIO * row.mass_kg() * gravity_m_s2 * row.size_m;
@@ -62,7 +62,7 @@ fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     joints.map(above).fold(f64::INFINITY, f64::min)
 }
 
-/// Rise of a centre of gravity, in m, until it is above the nearer edge of the joint about which its block turns.
+/// Returns the rise of a centre of gravity, in m, to the position above the nearer edge of the joint about which its block turns.
 pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
     let rise = |edge: Edge| {
         let arm_m = centre_m - joint.corner_m(edge);
