@@ -1,4 +1,4 @@
-//! The trait of every model of motion: the seam between models and everything that uses them.
+//! Trait of all models of motion.
 
 use std::error::Error;
 use std::fmt::Debug;
@@ -20,40 +20,37 @@ use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
 
-/// A structure under ground motion, as a model of its motion.
+/// Structure under ground motion, as a model of its motion.
 ///
-/// The trait is called once per history; the equation of motion is evaluated inside the model, not through this
-/// trait.
+/// The trait is called once per history. The equation of motion is evaluated inside the model, not through this trait.
 pub trait Model: Debug + Send + Sync {
-    /// Names of its bodies from left to right, the order of all lists by body; a single body has an empty
-    /// name.
+    /// Returns the names of its bodies from left to right, the order of all lists by body; a single body has an empty name.
     fn bodies(&self) -> Vec<String>;
 
-    /// Horizontal acceleration at which it starts to move from rest towards that side, in units of gravity;
-    /// `None` if no push moves it.
+    /// Returns the horizontal acceleration at which it starts to move from rest to a side, in multiples of gravity; `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
 
-    /// This model as one of mechanisms with one degree of freedom, if it is one.
+    /// Returns this model as one of mechanisms with one degree of freedom; `None` for other models.
     fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
         None
     }
 
-    /// The row of blocks, if the model moves its blocks one by one.
+    /// Returns the row of blocks, if the model moves its blocks individually.
     fn row(&self) -> Option<&Row> {
         None
     }
 
-    /// Copies of this model that are computed in other, equally good ways: where they disagree, the result is uncertain. Empty if
-    /// the way of computing does not matter.
+    /// Returns copies of this model with other, equally valid numerical settings: if their results differ, the result is uncertain. Empty if the
+    /// settings do not affect the result.
     fn repetitions(&self) -> Vec<Repetition> {
         Vec::new()
     }
 
-    /// Its motion on moving ground. Samples and events go to the recorder as they happen; without a recorder none
-    /// are made, as in studies.
+    /// Computes the motion on moving ground. The recorder receives samples and events during the computation; without a recorder there are no
+    /// samples, as in studies.
     ///
     /// # Errors
-    /// When the request is not possible, or the motion cannot be computed.
+    /// If the request is not valid, or the motion cannot be computed.
     fn simulate(
         &self,
         ground: &GroundMotion,
@@ -61,18 +58,18 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
-    /// Energy above that at rest, in J, that it must reach to overturn while no joint slips; only for elastic joints, and where it is
-    /// known. A structure that slips may overturn with less.
+    /// Returns the energy above that at rest, in J, required to overturn without slip; only for elastic joints, `None` if unknown. With slip, less
+    /// energy may suffice.
     fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
         None
     }
 
-    /// Whether it computes several motions at once, faster than one after the other.
+    /// Returns whether the model computes several motions in parallel, faster than one by one.
     fn is_faster_together(&self) -> bool {
         false
     }
 
-    /// Its motion, as [`Model::simulate`] gives it without a recorder, followed as far as `until` says.
+    /// Computes the motion without a recorder, as [`Model::simulate`], with the early end `until`.
     ///
     /// # Errors
     /// Those of [`Model::simulate`].
@@ -89,12 +86,12 @@ pub trait Model: Debug + Send + Sync {
         Ok(summary)
     }
 
-    /// Its motions on several grounds, in their order.
+    /// Computes the motions of several cases, in their order.
     fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
         self.simulate_all_until(Until::End, cases)
     }
 
-    /// Its motions on several grounds, in their order, followed as far as `until` says.
+    /// Computes the motions of several cases, in their order, with the early end `until`.
     fn simulate_all_until(
         &self,
         until: Until,
@@ -110,12 +107,12 @@ pub trait Model: Debug + Send + Sync {
         answers.expect("all jobs have ended")
     }
 
-    /// Does all jobs on these cases. A model that computes several motions at once does so here; no result depends on what is beside it.
+    /// Computes all jobs on these cases. A model may compute several motions in parallel; no result depends on the other motions.
     fn work(&self, cases: &[Case], jobs: &mut dyn Jobs) {
         one_by_one(self, cases, jobs);
     }
 
-    /// The size of its samples.
+    /// Returns the size of its samples.
     fn shape(&self) -> Shape {
         Shape {
             bodies: self.bodies().len(),
@@ -123,11 +120,10 @@ pub trait Model: Debug + Send + Sync {
         }
     }
 
-    /// Its motion with all samples and events, which may take [`MEMORY_BYTES`] of memory.
+    /// Computes the motion with all samples and events, which may take up to [`MEMORY_BYTES`] of memory.
     ///
     /// # Errors
-    /// Those of [`Model::simulate`], and when the history takes more memory: if that is known beforehand, nothing is
-    /// computed.
+    /// Those of [`Model::simulate`], and if the history needs more memory. If this is known in advance, nothing is computed.
     fn history(
         &self,
         ground: &GroundMotion,
@@ -150,19 +146,19 @@ pub trait Model: Debug + Send + Sync {
 /// A ground motion, and a request for the motion on it.
 pub type Case = (GroundMotion, Request);
 
-/// A motion to compute.
+/// Motion to compute.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Job {
-    /// The index of its case.
+    /// Index of its case.
     pub case: usize,
     /// Index of the [repetition](Model::repetitions) of the model that computes it; `None` for the model itself.
     pub repetition: Option<usize>,
-    /// The end of its computation.
+    /// Early end of its computation.
     pub until: Until,
 }
 
 impl Job {
-    /// The motion of a model itself in a case.
+    /// Returns the job of a model itself, without repetition, in a case.
     pub(super) const fn of(case: usize, until: Until) -> Self {
         Self {
             case,
@@ -172,16 +168,16 @@ impl Job {
     }
 }
 
-/// Motions to compute, where the answer to one may ask for others.
+/// Queue of motions to compute; the result of one motion may add others.
 pub trait Jobs {
-    /// The next one; `None` if there is none until another one has ended.
+    /// Returns the next job; `None` if there is none until another one has ended.
     fn next(&mut self) -> Option<Job>;
 
-    /// Receives the answer to a job.
+    /// Receives the result of a job.
     fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>);
 }
 
-/// Does jobs one after the other.
+/// Computes jobs one by one.
 pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mut dyn Jobs) {
     let repetitions = model.repetitions();
     while let Some(job) = jobs.next() {
@@ -194,7 +190,7 @@ pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mu
     }
 }
 
-/// Every case followed equally far, with the answers so far.
+/// Queue of all cases with the same early end, with their results.
 struct All {
     until: Until,
     waiting: Range<usize>,
@@ -211,47 +207,44 @@ impl Jobs for All {
     }
 }
 
-/// A copy of a model that is computed in another way.
+/// Copy of a model with other numerical settings.
 #[derive(Debug)]
 pub struct Repetition {
-    /// The other way, in words.
+    /// Description of the settings, in words.
     pub name: &'static str,
-    /// The copy.
+    /// Copy of the model.
     pub model: Box<dyn Model>,
 }
 
-/// A model that moves as one mechanism with one degree of freedom at a time, with what only such a model has.
+/// Model that moves as a sequence of mechanisms with one degree of freedom, with the properties of such models.
 pub trait MechanismModel: Model {
-    /// Restitution coefficient of the impact that leads to the mechanism after this many impacts and a first sway
-    /// to this side, 1 for the first; `None` when an impact before it stops the structure.
+    /// Returns the restitution coefficient of the impact that starts the mechanism after `impacts` impacts and a first sway to a side, 1 for the
+    /// first mechanism. `None` if an earlier impact stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
-    /// Hinges of that mechanism from left to right when it sways to that side; none if there is no such
-    /// mechanism.
+    /// Returns the hinges, from left to right, of the mechanism after `impacts` impacts that now sways to `sway`; empty without such a mechanism.
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
 
-    /// Rotations of the bodies at the unstable equilibrium of the first mechanism, swaying to this side, in radians.
+    /// Returns the rotations of the bodies, in radians, at the unstable equilibrium of the first mechanism to a side.
     fn critical_rotations_rad(&self, sway: Sway) -> Vec<f64>;
 
-    /// Coordinate at the limit position of the first mechanism to this side: no release can start from there or beyond.
+    /// Returns the coordinate at the limit position of the first mechanism to a side; releases must start below it.
     fn limit_rad(&self, sway: Sway) -> f64;
 
-    /// The free-standing blocks that rock like the first mechanism to this side.
+    /// Returns free-standing blocks equivalent to the first mechanism to a side.
     fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
 
-    /// Its first mechanism to this side, displaced by this fraction of the way to the unstable equilibrium; `None` if it has
-    /// none.
+    /// Returns the first mechanism to a side at a fraction `part` of the displacement at its unstable equilibrium; `None` without such a mechanism.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
-    /// Mass times horizontal displacement of the common centre of gravity, in kg m towards the side of the sway, at this
-    /// coordinate of the mechanism after this many impacts and a first sway to this side; `None` when there is no such mechanism.
+    /// Returns the mass times the horizontal displacement of the centre of gravity, in kg m towards the side of the sway, at a coordinate of the
+    /// mechanism after `impacts` impacts and a first sway to a side. `None` without such a mechanism.
     fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64>;
 
-    /// The rigid bodies of its first mechanism to this side, as [`crate::mechanics::capacity::moving_bodies`]; `None` if it
-    /// has none.
+    /// Returns the rigid bodies of the first mechanism to a side, as [`crate::mechanics::capacity::moving_bodies`]; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
 
-    /// The side to which moving ground overturns it from rest before its first impact; `None` if it does not.
+    /// Returns the side to which moving ground overturns the structure from rest before its first impact; `None` if it does not.
     ///
     /// # Errors
     /// Those of [`Model::simulate`].
@@ -262,8 +255,10 @@ pub trait MechanismModel: Model {
     ) -> Result<Option<Sway>, SimulationError>;
 }
 
-/// Refuses numbers that no simulation on this ground can work with, and ground that falls away under the structure: no model follows a
-/// structure that flies.
+/// Checks a request for a ground motion.
+///
+/// # Errors
+/// If a number is not valid, or the ground accelerates downwards faster than a free body: models do not follow a structure that loses contact.
 pub(super) fn check(ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
     request.check(ground)?;
     match ground.free_fall_s(request.gravity_m_s2) {
@@ -272,40 +267,40 @@ pub(super) fn check(ground: &GroundMotion, request: &Request) -> Result<(), Simu
     }
 }
 
-/// Why four links do not take feet that move differently.
+/// Reason why four links cannot follow feet that move differently.
 pub const FEET_NEED_JOINTS: &str = "between feet that move differently joints are open at every instant, and the hinges of four links all shut at once";
 
-/// Why a motion could not be computed.
+/// Reason why a motion was not computed.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum SimulationError {
     /// A number of the request is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// The ground falls away under the structure.
+    /// The ground accelerates downwards faster than a free body.
     #[error(
         "the ground falls as fast as a free body at {time_s:?} s and no longer carries the structure: \
          vertical accelerations must stay above -1 g"
     )]
     FreeFall {
-        /// When, in seconds.
+        /// Time at which this happens, in seconds.
         time_s: f64,
     },
     /// The feet move differently, and the hinges cannot follow.
     #[error("{FEET_NEED_JOINTS}: choose free hinges or elastic joints")]
     Feet,
-    /// The history takes too much memory.
+    /// The history needs too much memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),
-    /// The motion of a row of blocks could not be computed.
+    /// The motion of a row of blocks was not computed.
     #[error(transparent)]
     Row(#[from] RowMotionError),
-    /// The motion could not be computed, for a reason of its model.
+    /// The motion was not computed, for a reason of its model.
     #[error(transparent)]
     Computation(Arc<dyn Error + Send + Sync>),
 }
 
 impl SimulationError {
-    /// An error for a reason of the model.
+    /// Returns an error for a reason of the model.
     pub fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
     }

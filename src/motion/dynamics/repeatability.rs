@@ -1,9 +1,9 @@
-//! The repeatability of a motion: its agreement with its repetitions, [equally good ways to compute it](Model::repetitions).
+//! Repeatability of a motion: its agreement with its repetitions, which have [other, equally valid numerical settings](Model::repetitions).
 //!
-//! If these disagree on whether it overturns, that is **uncertain**: neither overturned nor survived. The side to which it overturns,
-//! and whether a survivor has come to rest, do not count. For this question most repetitions can be spared: those of motions that
-//! nothing after an impact decides (`is_plain`). With rigid joints, a motion that comes near overturning is uncertain as well if a
-//! repetition differs before the largest rotation: then still other steps may end otherwise ([`EarlyDifference`]).
+//! If repetitions differ in whether the structure overturns, the outcome is **uncertain**: neither overturned nor survived. The side of overturning,
+//! and whether a survivor comes to rest, do not count. Most repetitions can be skipped for this question: those of motions whose outcome no later
+//! impact can change (`is_plain`). With rigid joints, a motion close to overturning is uncertain as well if a repetition differs before the largest
+//! rotation: other steps may then change the outcome ([`EarlyDifference`]).
 
 use std::collections::VecDeque;
 
@@ -16,58 +16,58 @@ use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError}
 use super::until::Until;
 use super::variation::Running;
 
-/// Peaks are called certain to within this fraction of them.
+/// Relative tolerance within which a peak is certain.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
 
-/// The repetitions must agree to this fraction of that, because still other ways to compute the motion may differ by more.
+/// Range of the repetitions, over [`SAME_PEAK_RATIO`], within which a peak is certain; other settings may differ more than the repetitions.
 const AGREEMENT: f64 = 0.5;
 
-/// Half cycles that peak below this fraction of the largest peak are not compared.
+/// Peak, over the largest peak, below which half cycles are not compared.
 const LEAST_PEAK_RATIO: f64 = 1e-2;
 
-/// Slips below this, in metres, are none.
+/// Smallest slip that counts, in metres.
 const LEAST_SLIP_M: f64 = 1e-6;
 
-/// A motion beside its repetitions: only results on which they agree are reliable.
+/// Motion compared with its repetitions: only results on which they agree are reliable.
 ///
-/// After the first change of side, the order of impacts that almost coincide decides the rest of the motion.
+/// After the first change of side, the motion depends on the order of almost simultaneous impacts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Repeatability {
-    /// The settings of the repetitions.
+    /// Names of the repetitions.
     #[serde(skip)]
     pub repeated: Vec<&'static str>,
-    /// Outcomes of the motion itself, then of the repetitions.
+    /// Outcome of the motion itself, then those of the repetitions.
     #[serde(skip)]
     pub outcomes: Vec<Outcome>,
-    /// The half cycles of the motion itself that peak at a hundredth of its largest peak or more.
+    /// Half cycles of the motion itself with a peak of at least a hundredth of its largest peak.
     pub half_cycles: Vec<RepeatedHalfCycle>,
-    /// Number of these, from the first on, that are certain.
+    /// Number of half cycles, from the first on, that are certain.
     pub same_until_half_cycle: usize,
-    /// When the first of these that differs begins, in seconds; `None` where none differs.
+    /// Start of the first half cycle that is not certain, in seconds; `None` if all are certain.
     pub parts_at_s: Option<f64>,
-    /// The largest rotation of a block; `None` if one of the motions overturns.
+    /// Largest rotation of a block; `None` if one of the motions overturns.
     #[serde(rename = "largest_rotation_rad")]
     pub largest_rad: Option<RepeatedValue>,
-    /// The first difference that makes the outcome of a row with rigid joints uncertain.
+    /// First difference that makes the outcome of a row with rigid joints uncertain; `None` if there is none.
     #[serde(rename = "early_difference")]
     pub early: Option<EarlyDifference>,
-    /// Slips of the joints at the end; empty if one of the motions overturns, and without slip.
+    /// Slips of the joints at the end; empty without slip, and if one of the motions overturns.
     pub slips_m: Vec<RepeatedValue>,
 }
 
-/// A half cycle before the largest rotation that differs by more than [`SAME_PEAK_RATIO`] in a repetition.
+/// Half cycle before the largest rotation whose peak differs by more than [`SAME_PEAK_RATIO`] in a repetition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EarlyDifference {
-    /// When it peaks, in seconds.
+    /// Time of the peak, in seconds.
     pub peak_time_s: f64,
-    /// Its difference as a fraction of the larger peak; 1 where the repetition has no half cycle to the same side at that time.
+    /// Difference of the peaks over the larger one; 1 if the repetition has no half cycle to the same side at that time.
     pub ratio: f64,
-    /// The repetition.
+    /// Name of the repetition.
     #[serde(serialize_with = "as_key")]
     pub repetition: &'static str,
 }
 
-/// The name of a repetition as a key in results.
+/// Returns the name of a repetition as a key in results.
 #[must_use]
 pub fn key(repetition: &str) -> String {
     repetition.replace(' ', "_")
@@ -77,13 +77,13 @@ fn as_key<S: Serializer>(repetition: &str, serializer: S) -> Result<S::Ok, S::Er
     serializer.serialize_str(&key(repetition))
 }
 
-/// A half cycle of a motion beside its counterparts in the repetitions.
+/// Half cycle of a motion with its counterparts in the repetitions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RepeatedHalfCycle {
-    /// The half cycle of the motion itself; in results, the time of its peak, in seconds.
+    /// Half cycle of the motion itself; in results, the time of its peak, in seconds.
     #[serde(rename = "peak_time_s", serialize_with = "peak_time")]
     pub own: HalfCycle,
-    /// Its peak in all motions; `None` if a repetition has no half cycle to the same side at that time.
+    /// Peaks in all motions, in radians; `None` if a repetition has no half cycle to the same side at that time.
     pub peak_rad: Option<RepeatedValue>,
 }
 
@@ -92,26 +92,26 @@ fn peak_time<S: Serializer>(cycle: &HalfCycle, serializer: S) -> Result<S::Ok, S
 }
 
 impl RepeatedHalfCycle {
-    /// Whether its peak is certain.
+    /// Returns whether the peak is certain.
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.peak_rad.is_some_and(|peak| peak.is_certain())
     }
 }
 
-/// A quantity of a motion beside that of its repetitions.
+/// Value of a quantity in a motion, and its range in the motion and all repetitions.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RepeatedValue {
-    /// In the motion itself.
+    /// Value in the motion itself.
     pub own: f64,
-    /// The least of all.
+    /// Least value of all.
     pub min: f64,
-    /// The largest of all.
+    /// Largest value of all.
     pub max: f64,
 }
 
 impl RepeatedValue {
-    /// The range of the value in the motion itself and of those in its repetitions.
+    /// Returns the range of a value of the motion itself and of its repetitions.
     fn of(own: f64, others: impl IntoIterator<Item = f64>) -> Self {
         let range = Self {
             own,
@@ -125,7 +125,7 @@ impl RepeatedValue {
         })
     }
 
-    /// Whether all peaks agree so well that they are certain to [`SAME_PEAK_RATIO`].
+    /// Returns whether the value is certain to [`SAME_PEAK_RATIO`].
     #[must_use]
     pub fn is_certain(&self) -> bool {
         self.max - self.min <= AGREEMENT * SAME_PEAK_RATIO * self.max
@@ -171,7 +171,7 @@ impl Repeatability {
         }
     }
 
-    /// Whether the outcome is uncertain: a repetition ends otherwise, or differs too early.
+    /// Returns whether the outcome is uncertain: a repetition has another outcome, or differs too early.
     #[must_use]
     pub fn is_uncertain(&self) -> bool {
         let mut verdicts = self.outcomes.iter().map(|outcome| Verdict::from(*outcome));
@@ -179,7 +179,7 @@ impl Repeatability {
         self.early.is_some() || verdicts.any(|other| Some(other) != own)
     }
 
-    /// Whether some joint has slipped in the end.
+    /// Returns whether any joint has slipped at the end.
     #[must_use]
     pub fn has_slipped(&self) -> bool {
         self.most_slip_m() > LEAST_SLIP_M
@@ -190,8 +190,8 @@ impl Repeatability {
         ends_m.fold(0.0, |most_m, end_m| most_m.max(end_m.abs()))
     }
 
-    /// The joint whose slips at the end differ most, if they differ so much that they are not certain to [`SAME_PEAK_RATIO`] of the
-    /// largest slip of any joint.
+    /// Returns the joint whose final slips differ most, if they are not certain to [`SAME_PEAK_RATIO`] of the largest slip of any joint; `None` if
+    /// all are certain.
     #[must_use]
     pub fn uncertain_slip(&self) -> Option<usize> {
         let range_m = |joint: &usize| self.slips_m[*joint].max - self.slips_m[*joint].min;
@@ -201,14 +201,14 @@ impl Repeatability {
         worst.filter(|joint| self.has_slipped() && range_m(joint) > same_m)
     }
 
-    /// Whether all ended alike, to the same side if they overturned.
+    /// Returns whether all outcomes are the same, including the side of overturning.
     #[must_use]
     pub fn same_outcome(&self) -> bool {
         self.outcomes.iter().all(|other| *other == self.outcomes[0])
     }
 }
 
-/// Slips of the joints at the end of all these motions; `None` where joints do not slip.
+/// Returns the final slips of the joints in all these motions; `None` if joints do not slip.
 fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
     let slipped = runs.iter().map(|run| run.row()?.sliding.as_ref());
     let all: Vec<_> = slipped.collect::<Option<_>>()?;
@@ -219,8 +219,8 @@ fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
     (0..all[0].offsets_m.len()).map(joint).collect()
 }
 
-/// The first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for
-/// elastic joints, for motions that are known to stay far from overturning, and for those that ended too early for any verdict.
+/// Returns the first half cycle before the largest rotation whose peak differs in a repetition by more than [`SAME_PEAK_RATIO`]. `None` for elastic
+/// joints, for motions that stay far from overturning, and for incomplete histories.
 fn early_difference(
     own: &Summary,
     repetition: &'static str,
@@ -257,33 +257,33 @@ fn early_difference(
     differences.find(|difference| difference.ratio > SAME_PEAK_RATIO)
 }
 
-/// The repetitions of a motion, computed on threads of their own beside it. If the motion itself fails nobody waits for them: they
-/// end with the program.
+/// Repetitions of a motion, computed on separate threads in parallel with the motion. If the motion itself fails, nobody waits for them, and they end
+/// with the program.
 #[derive(Debug)]
 pub struct Repetitions(Vec<(&'static str, Running)>);
 
-/// A repetition failed, so the repeatability is unknown.
+/// Error if a repetition failed, so that the repeatability is unknown.
 #[derive(Clone, Debug, Error)]
 #[error("the repetition with {name} failed: {error}")]
 pub struct RepeatabilityError {
-    /// The repetition.
+    /// Name of the repetition.
     name: &'static str,
-    /// The reason.
+    /// Reason of the failure.
     error: SimulationError,
 }
 
 impl Repetitions {
-    /// Starts them.
+    /// Starts all repetitions.
     #[must_use]
     pub fn start(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Self {
         let start = |Repetition { name, model }| (name, Running::start(model, ground, request));
         Self(model.repetitions().into_iter().map(start).collect())
     }
 
-    /// Waits for them, and compares the motion with them.
+    /// Waits for all repetitions, and compares the motion with them.
     ///
     /// # Errors
-    /// When one of them failed.
+    /// If a repetition failed.
     pub fn compare(self, own: &Summary) -> Result<Repeatability, RepeatabilityError> {
         let ended = |(name, running): (_, Running)| match running.ended() {
             Ok(summary) => Ok((name, summary)),
@@ -295,14 +295,14 @@ impl Repetitions {
 }
 
 named! {
-    /// Whether a structure overturns, as far as that is known.
+    /// Verdict on whether a structure overturns.
     #[derive(PartialOrd, Ord)]
     pub enum Verdict {
         /// The structure survives.
         Survives = "survives",
-        /// The history ended too early: [`Outcome::Incomplete`].
+        /// The history ends too early: [`Outcome::Incomplete`].
         Incomplete = "incomplete",
-        /// That depends on how it is computed.
+        /// The verdict depends on the numerical settings.
         Uncertain = "uncertain",
         /// The structure overturns.
         Overturns = "overturns",
@@ -330,7 +330,7 @@ impl Verdict {
     }
 }
 
-/// Why a repetition makes the outcome of a history uncertain; `None` if it confirms it.
+/// Returns the reason why a repetition makes the outcome of a history uncertain; `None` if it confirms the outcome.
 pub fn objection(
     own: &Summary,
     name: &'static str,
@@ -353,21 +353,23 @@ pub fn objection(
     ))
 }
 
-/// A history with what studies of many cases ask of it.
+/// History with the results that studies of many cases need.
 pub struct Checked {
-    /// The history.
+    /// Summary of the history.
     pub own: Result<Summary, SimulationError>,
-    /// When it was ended, in seconds, since it cannot overturn any more and comes to rest in time; `None` where it was followed to its end.
+    /// Time in seconds at which the history was ended early, because the structure cannot overturn and comes to rest in time; `None` for complete
+    /// histories.
     pub safe_from_s: Option<f64>,
-    /// Why it is uncertain whether it overturns, if it is.
+    /// Reason why the outcome is uncertain; `None` if it is certain.
     pub doubt: Option<String>,
 }
 
-/// Histories of cases, in their order, repeated where that may matter. Those followed until they have settled count as come to rest.
+/// Computes the histories of cases, in their order, with repetitions where these may change the verdict. Histories with the early end
+/// [`Until::Settled`] count as come to rest.
 pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> {
     let mut checks = Checks::new(model, cases);
     checks.settles = until == Until::Settled;
-    // If the result does not depend on how it is computed, the fast way serves.
+    // Models without repetitions are faster up to the end: an early end needs samples.
     let repeats = !checks.names.is_empty();
     let until = if repeats { until } else { Until::End };
     checks.waiting = (0..cases.len()).map(|case| Job::of(case, until)).collect();
@@ -375,7 +377,7 @@ pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> 
     checks.answers()
 }
 
-/// Histories of cases that are known already, in their order, repeated where that may matter.
+/// Repeats known histories of cases where repetitions may change the verdict. Returns them in the order of the cases.
 pub fn repeated(
     model: &dyn Model,
     cases: &[Case],
@@ -389,14 +391,14 @@ pub fn repeated(
     checks.answers()
 }
 
-/// The histories that are still to be computed, and the answers so far.
+/// Queue of histories to compute, with the results up to now.
 struct Checks<'a> {
     model: &'a dyn Model,
     cases: &'a [Case],
     /// Names of the repetitions.
     names: Vec<&'static str>,
     waiting: VecDeque<Job>,
-    /// Whether histories that were ended early count as come to rest.
+    /// True if histories that were ended early count as come to rest.
     settles: bool,
     own: Vec<Option<Result<Summary, SimulationError>>>,
     doubts: Vec<Option<String>>,
@@ -416,7 +418,7 @@ impl<'a> Checks<'a> {
         }
     }
 
-    /// Keeps the history of a case, and queues its first repetition if that may matter.
+    /// Stores the history of a case, and queues its first repetition if that may change the verdict.
     fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
         let (_, request) = &self.cases[case];
         let matters = |own: &Summary| !is_plain(self.model, request, own);
@@ -426,8 +428,8 @@ impl<'a> Checks<'a> {
         self.own[case] = Some(own);
     }
 
-    /// Queues a repetition, if there is another one. It goes to the front of the queue: the repetitions of a case come one after the
-    /// other, and left to the end the last of them would run with nothing beside it.
+    /// Queues a repetition, if there is one with this index. It goes to the front of the queue: the repetitions of a case follow each other, and at
+    /// the end of the queue the last of them would run without other motions in parallel.
     fn repeat(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
             let job = Job::of(case, Until::Safe);
@@ -480,14 +482,14 @@ impl Jobs for Checks<'_> {
     }
 }
 
-/// If slip and crushing took more than this fraction of the barrier, elastic joints no longer lie as they did when it was found.
+/// Energy dissipated by slip and crushing, over the barrier, above which the barrier of elastic joints is no longer valid.
 pub(super) const GONE: f64 = 0.01;
 
-/// A survivor that never reached this fraction of the energy barrier of its first mechanism is not repeated.
+/// Largest energy, over the energy barrier of the first mechanism, below which survivors are not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
-/// Whether repetitions can be spared: the history is incomplete, the structure never moved, it overturned before its first change of side, up to which
-/// all ways agree, or it survived far from overturning.
+/// Returns whether repetitions can be skipped: the history is incomplete, the structure never moved, it overturned before its first change of side,
+/// or it survived far from overturning. Up to the first change of side all settings agree.
 fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
         Outcome::NeverMoved | Outcome::Incomplete => true,
@@ -509,7 +511,7 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     }
 }
 
-/// Whether the largest potential energy over the barrier is known, and far from it.
+/// Returns whether the ratio of the largest potential energy to the barrier is known and far below one.
 fn is_far(ratio: Option<f64>) -> bool {
     ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
 }

@@ -1,4 +1,4 @@
-//! A row of blocks with elastic joints as a model of motion.
+//! Row of blocks with elastic joints as a model of motion.
 
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
@@ -26,66 +26,66 @@ use crate::mechanics::elastic_joint::{
 use crate::mechanics::settling::Movements;
 use crate::mechanics::sway::Sway;
 
-/// Rigid blocks in a row, an arch or a stack, whose joints carry no tension, deform elastically, slip, and crush.
+/// Row of rigid blocks, as an arch or a stack, whose joints carry no tension, deform elastically, slip and crush.
 ///
-/// It starts from its equilibrium under its own weight. No impact takes energy in an instant, and the hinge of a joint lies inside its
-/// edge: such a row overturns before its twin with rigid joints ([`FreeHinges`](crate::dynamics::free_hinges::FreeHinges)) does.
+/// The motion starts from equilibrium under self-weight. No impact dissipates energy instantaneously, and the hinge of a joint is inside its edge.
+/// Such a row therefore overturns earlier than the same row with rigid joints ([`FreeHinges`](crate::dynamics::free_hinges::FreeHinges)).
 #[readonly::make]
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {
     rigid: RigidRow,
-    /// Properties of its joints.
+    /// Properties of the joints.
     pub properties: ElasticProperties,
     options: ElasticOptions,
     /// Bodies and joints.
     pub structure: ElasticStructure,
-    /// A gravity, and the equilibrium at rest under it.
+    /// Gravity, and the equilibrium under it.
     rest: (f64, Rest),
-    /// A gravity, and the energy beyond which it overturns under it, once requested.
+    /// Gravity, and the energy barrier under it, computed at the first request.
     barrier_j: Arc<OnceLock<(f64, Option<f64>)>>,
-    /// True for a study of many cases: its default steps are longer.
+    /// True in a study of many cases, with longer default steps.
     many_cases: bool,
     /// Factor on the longest step, for a repetition.
     steps_times: f64,
 }
 
-/// Settings of the computation.
+/// Numerical options of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ElasticOptions {
-    /// The longest step, in seconds (1e-9 to 1); if `None`, a quarter (undamped) to a half of what is proved to be stable.
+    /// Longest step, in seconds (1e-9 to 1). `None` selects a quarter (undamped) to a half of the largest step that is proved to be stable.
     pub longest_step_s: Option<f64>,
 }
 
 impl ElasticOptions {
-    /// With shorter steps a run takes forever.
+    /// Range of the longest step, in seconds; shorter steps need too much time.
     pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
-    /// The most steps that a motion may have: some hours of computing.
+    /// Maximum number of steps of a motion: some hours of computing.
     pub const MOST_STEPS: f64 = 1e9;
 }
 
-/// The longest step over the longest stable one: without damping, and with the damping below. Undamped vibration that opens and
-/// shuts joints needs the shorter steps for an energy balance within a hundredth of the barrier.
+/// Longest step over the largest stable one, without damping, and with the damping ratio [`DAMPED`]. Undamped vibration that opens and closes joints
+/// needs the shorter steps for an energy balance within a hundredth of the barrier.
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
-/// Damping of the fastest vibration, as a fraction of the critical one, with which the longer steps are enough.
+/// Damping ratio of the fastest vibration at which the longer steps are sufficient.
 const DAMPED: f64 = 0.3;
-/// Steps of studies of many cases over those of a run.
+/// Ratio of the steps in studies of many cases to those of a single run.
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
-/// Number of histories side by side: eight are slower, since they do not fit into the cache next to the processor.
+/// Number of parallel histories; eight are slower, because they exceed the processor's first-level cache.
 const SIDE_BY_SIDE: usize = 4;
 /// Factor by which variations multiply and divide the stiffness.
 const OTHER_STIFFNESS: f64 = 3.0;
-/// The step that an error of the energy balance proposes, over the longest step.
+/// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.3;
-/// Remedy for too many steps.
+/// Remedy in the message on too many steps.
 const TOO_LONG: &str = "take a smaller damping time or stiffness of the joints, or free hinges, the limit of stiff joints";
-/// Gravity under which the equilibrium at rest is found first.
+/// Gravity of the first equilibrium, in m/s2.
 const GRAVITY_M_S2: f64 = 9.81;
 
 impl ElasticJoints {
-    /// A model of any row that stands, with such joints.
+    /// Returns the model of a stable row with elastic joints.
     ///
     /// # Errors
-    /// When a property is out of range, or the row cannot carry its own weight: with the reason.
+    /// If a property is out of range, or the row does not carry its own weight; with the reason.
     pub fn new(row: Row, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(&row, &properties)?;
         let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
@@ -111,10 +111,10 @@ impl ElasticJoints {
         })
     }
 
-    /// This model on supports that moved slowly before time zero, from where they were built.
+    /// Returns this model on supports that moved slowly before time zero.
     ///
     /// # Errors
-    /// When it falls on the way, with these joints or with rigid ones.
+    /// If the row falls during the movement, with these joints or with rigid ones.
     pub fn on_supports(self, movements: Movements) -> Result<Self, RowModelError> {
         if movements.is_none() {
             return Ok(self);
@@ -126,7 +126,7 @@ impl ElasticJoints {
         Ok(Self { options, ..settled })
     }
 
-    /// This model with other options.
+    /// Returns this model with other options.
     ///
     /// # Errors
     /// When a step is out of range.
@@ -137,24 +137,23 @@ impl ElasticJoints {
         Ok(Self { options, ..self })
     }
 
-    /// This model for a study of many cases: its default steps are longer. Few answers change, and where one does, repetitions
-    /// disagree.
+    /// Returns this model for a study of many cases, with longer default steps. Few results change, and those that do differ between repetitions.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
         self
     }
 
-    /// The blocks.
+    /// Returns the row of blocks.
     #[must_use]
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
 
-    /// Its equilibrium at rest under this gravity.
+    /// Returns the equilibrium under this gravity.
     ///
     /// # Errors
-    /// When it does not rest, with the reason.
+    /// If there is no equilibrium, with the reason.
     pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, RowMotionError> {
         let (known_m_s2, rest) = &self.rest;
         if gravity_m_s2 == *known_m_s2 {
@@ -163,13 +162,13 @@ impl ElasticJoints {
         Ok(self.structure.rest([0.0, -gravity_m_s2])?)
     }
 
-    /// Energy that the first mechanism of the row with rigid joints has to gain to overturn, in J; `None` where it is not known.
+    /// Returns the energy in J that the first mechanism of the row with rigid joints needs to overturn; `None` if unknown.
     #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }
 
-    /// The longest step of a motion, in seconds.
+    /// Returns the longest step of a motion, in seconds.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         let mut default_s = Self::default_step_s(&self.structure);
@@ -179,7 +178,7 @@ impl ElasticJoints {
         self.steps_times * self.options.longest_step_s.unwrap_or(default_s)
     }
 
-    /// The default of the longest step, in seconds.
+    /// Returns the default of the longest step, in seconds.
     pub fn default_step_s(structure: &ElasticStructure) -> f64 {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
@@ -188,7 +187,7 @@ impl ElasticJoints {
         ratio * structure.stable_step_s()
     }
 
-    /// Copies with other steps.
+    /// Returns copies with other steps, for repetitions.
     fn other_steps(&self) -> [(&'static str, Self); 2] {
         let others = if self.many_cases {
             [
@@ -205,7 +204,7 @@ impl ElasticJoints {
         })
     }
 
-    /// Copies with other properties that are equally likely: stiffer, softer, and with the stress summed in another way.
+    /// Returns copies with other plausible properties: lower stiffness, higher stiffness, and another integration of the stress.
     #[must_use]
     pub fn variations(&self) -> Vec<Variation> {
         let softer = 1.0 / OTHER_STIFFNESS;
@@ -289,7 +288,7 @@ impl ElasticJoints {
         let task = self.task(ground, request)?;
         let rest = self.rest(gravity_m_s2)?;
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
-        // A recorder of any lifetime serves for as long as the task.
+        // The cast shortens the lifetime of the recorder to that of the task.
         let recorder = recorder.map(|recorder| recorder as _);
         let start = (&self.structure, &rest);
         let mut group = Group::<1>::new(task.row, start, gravity_m_s2, &barrier_j);
@@ -297,7 +296,7 @@ impl ElasticJoints {
         self.judged(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
-    /// Jobs on cases under one gravity, side by side.
+    /// Computes jobs on cases under one gravity, several in parallel.
     fn together(&self, rest: &Rest, gravity_m_s2: f64, cases: &[Case], jobs: &mut dyn Jobs) {
         let repeated: Vec<Self> = self.other_steps().map(|(_, model)| model).into();
         let model_of = |job: Job| job.repetition.map_or(self, |index| &repeated[index]);
@@ -339,7 +338,10 @@ impl ElasticJoints {
         }
     }
 
-    /// Refuses a motion whose energy does not balance.
+    /// Returns the summary of a motion with the largest eccentricity at rest.
+    ///
+    /// # Errors
+    /// If the energy balance is wrong.
     fn judged(
         &self,
         mut summary: Summary,
@@ -352,7 +354,7 @@ impl ElasticJoints {
         let (joint, ratio) = rest.largest_eccentricity(&self.structure);
         elastic.rest_eccentricity_joint = joint;
         elastic.rest_eccentricity_ratio = ratio;
-        // Stacks have no first mechanism with one degree of freedom and a known barrier; the energy to push them over is known.
+        // Stacks have no first mechanism with one degree of freedom and a known barrier, but the energy to push them over is known.
         if row.energy_error > LARGEST_ENERGY_ERROR
             && self.barrier_j(gravity_m_s2).is_none()
             && let Some(barrier_j) = self.elastic_barrier_j(gravity_m_s2)

@@ -1,4 +1,4 @@
-//! Bodies with elastic joints in motion, several motions side by side: the leapfrog.
+//! Motion of bodies with elastic joints, several motions in parallel, by the leapfrog method.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -8,15 +8,15 @@ use crate::mechanics::elastic_joint::{
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 use crate::mechanics::tie::TieMemory;
 
-/// A body that moves.
+/// Moving body.
 #[derive(Clone, Copy)]
 pub struct Moving<R> {
     pub place: Place<R>,
     pub angle_rad: R,
-    /// Velocity half a step before the place, and rate of rotation.
+    /// Velocity of the centre half a step before, in m/s, and rotation rate.
     velocity_m_s: [R; 2],
     rate_rad_s: R,
-    /// Force and moment at the place.
+    /// Force and moment at the current position.
     force_n: [R; 2],
     moment_n_m: R,
 }
@@ -33,38 +33,38 @@ impl<R: Real> Moving<R> {
     }
 }
 
-/// The bodies of a joint, of which the last two are the supports.
+/// Returns the indices of the bodies of a joint; the supports are the last two bodies.
 #[inline(always)]
 pub fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     let right = structure.bodies.len() + 1;
     both!(end: joint.link.bodies[end].min(right))
 }
 
-/// Motions side by side, each in its lane. No lane depends on another.
+/// Parallel motions, one per lane. Lanes do not affect each other.
 pub struct Motion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
     gravity_m_s2: f64,
     arch: Arch,
-    /// The last two are the left and the right support.
+    /// Bodies, then the left and the right support.
     pub bodies: Vec<Moving<Lanes<L>>>,
-    /// Displacements and rotations of the bodies that count as zero: those at rest of a settled row, else zero.
+    /// Reference displacements and rotations of the bodies: those at rest if the supports have moved, otherwise zero.
     datum: Vec<[f64; 3]>,
-    /// One over the mass, and over the moment of inertia, of each body.
+    /// Inverse of the mass, and of the moment of inertia, of each body.
     inverses: Vec<[f64; 2]>,
     pub memories: Vec<Memory<Lanes<L>>>,
-    /// Forces of the joints that are computed together.
+    /// Gaps and forces of a group of joints.
     bearing: [Bearing<Lanes<L>>; TOGETHER],
-    /// Memories of the places of each joint, joint by joint.
+    /// States of crushing at the positions along the joints, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
     pub ties: Vec<TieMemory<Lanes<L>>>,
     spent: Spent<Lanes<L>>,
 }
 
-/// Number of joints whose forces are computed together: each part of the law for all of them, then the next part. The steps of such
-/// short loops are independent, so the processor computes several at a time; more joints would not fit into its cache.
+/// Number of joints whose forces are computed as a group. Each part of the contact law is computed for the whole group before the next part. The
+/// iterations of such short loops are independent, so the processor executes several in parallel; larger groups exceed its cache.
 const TOGETHER: usize = 12;
 
-/// Gap and forces of a joint at the places of its bodies.
+/// Gap and forces of a joint.
 #[derive(Clone, Copy)]
 struct Bearing<R> {
     gap: Gap<R>,
@@ -74,19 +74,19 @@ struct Bearing<R> {
 
 remembered!(Bearing { shear_n; edges_n; gap: Gap });
 
-/// Energies spent since the beginning, in J.
+/// Energies dissipated and work done since the start, in J.
 #[derive(Clone, Copy, Debug)]
 pub struct Spent<R> {
     pub friction_j: R,
-    /// Energy that the balance misses by slip.
+    /// Energy lost by slip in the balance of the discrete motion, in J.
     pub slip_balance_j: R,
     pub damped_j: R,
     pub crushed_j: R,
-    /// Energy dissipated by yielding and breaking ties.
+    /// Energy dissipated by yield and break of ties, in J.
     pub ties_j: R,
-    /// Work of the moving ground.
+    /// Work of the moving ground, in J.
     pub ground_j: R,
-    /// Work of the right support by its motion relative to the left one.
+    /// Work of the right support due to its motion relative to the left one, in J.
     pub feet_j: R,
 }
 
@@ -100,58 +100,58 @@ remembered!(Spent {
     feet_j
 });
 
-/// A step, by lane. A lane in which all is zero does not change.
+/// Step of all lanes. A lane with zero values does not change.
 #[derive(Clone, Copy)]
 pub struct Step<R> {
-    /// Time from place to place, in s.
+    /// Time between successive positions, in s.
     pub drift_s: R,
-    /// Time from velocity to velocity, in s.
+    /// Time between successive velocities, in s.
     pub kick_s: R,
-    /// Damping time over the time from place to place.
+    /// Damping time over the drift time.
     pub damping: R,
-    /// Velocity that the ground gains in the time of the kick, in m/s.
+    /// Change of the ground velocity during the kick, in m/s.
     pub shift_m_s: [R; 2],
-    /// Displacement of the right support relative to the left one, from place to place, in m.
+    /// Displacement of the right support relative to the left one in the drift, in m.
     pub apart_m: [R; 2],
 }
 
 remembered!(Step { drift_s, kick_s, damping; shift_m_s, apart_m });
 
-/// Movements of the ground in a step of any lane; those that are absent are not computed.
+/// Movements of the ground in a step of any lane. Absent movements are not computed.
 #[derive(Clone, Copy, Default)]
 pub struct Happens {
-    /// The ground shakes.
+    /// True if the ground shakes.
     pub shakes: bool,
-    /// The feet move differently.
+    /// True if the feet move differently.
     pub parts: bool,
 }
 
-/// A support along whose joint the whole structure may slide.
+/// Support along whose joint the whole structure may slide.
 pub struct Slide {
     pub joint: usize,
-    /// 1 where the structure is after the joint, -1 where it is before.
+    /// 1 if the structure is after the joint, -1 if it is before.
     pub sense: f64,
-    /// Whether the support extends beyond the joint.
+    /// True if the support extends beyond the joint.
     pub goes_on: bool,
     /// Displacement of the centre of gravity to the right for a unit slip of the joint.
     pub along_x: f64,
 }
 
-/// Quantities of motions at an instant.
+/// Quantities of the motions at one time.
 #[derive(Clone, Copy)]
 pub struct Observed<R> {
     pub kinetic_j: R,
-    /// Potential energy of gravity, above the undeformed structure.
+    /// Potential energy of gravity above the undeformed structure, in J.
     pub potential_j: R,
     pub elastic_j: R,
     pub spent: Spent<R>,
-    /// Horizontal displacement of the centre of gravity times the mass.
+    /// Horizontal displacement of the centre of gravity times the mass, in kg m.
     pub sway_kg_m: R,
-    /// Square of the largest displacement of a body, apart from the slide of the structure along either support.
+    /// Square of the largest displacement of a body, without the slip of the structure along either support, in m2.
     pub farthest_m2: R,
-    /// Largest rotation.
+    /// Largest rotation of a body, in radians.
     pub turned_rad: R,
-    /// Largest compressive stress over the stiffness, and at which joint.
+    /// Largest compressive stress in Pa, and the index of its joint.
     pub deepest: [R; 2],
 }
 
@@ -201,7 +201,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.spent.set(lane, &Spent::none());
     }
 
-    /// One step of all lanes, with the widest vectors of the processor: these do not change a bit of the result.
+    /// Takes one step of all lanes, with the widest vectors of the processor. The vector width does not change the results.
     pub fn step(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
         let arch = self.arch;
         arch.dispatch(Leap {
@@ -222,7 +222,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// Moves the right support, and finds the forces. Its work is the mean of the forces on it before and after, times its displacement.
+    /// Moves the right support and computes the forces. The work of the support is the mean of its forces before and after times its displacement.
     #[inline(always)]
     fn part(&mut self, step: &Step<Lanes<L>>) {
         let right = self.structure.bodies.len() + 1;
@@ -236,7 +236,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.spent.feet_j -= (work[0] + work[1]) * 0.5;
     }
 
-    /// Takes the velocities to half a step after the places.
+    /// Updates the velocities to half a step after the positions.
     #[inline(always)]
     fn kick(&mut self, step: &Step<Lanes<L>>, shaken: bool) {
         let mut work = Lanes([0.0; L]);
@@ -270,7 +270,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// Forces at the places; updates the memories of the joints.
+    /// Computes the forces at the current positions, and updates the states of the joints.
     #[inline(always)]
     fn press(&mut self, damping: Lanes<L>) {
         let zero = Lanes([0.0; L]);
@@ -328,7 +328,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         self.pull();
     }
 
-    /// Adds the forces of the ties, and updates their memories.
+    /// Adds the forces of the ties, and updates their states.
     #[inline(always)]
     fn pull(&mut self) {
         let ground = self.structure.bodies.len();
@@ -346,7 +346,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         }
     }
 
-    /// Quantities at the places, with the velocities after half a kick more.
+    /// Computes quantities at the positions, with velocities at the same time after another half kick.
     pub fn observe(&self, half: &Step<Lanes<L>>, slides: &[Slide]) -> Observed<Lanes<L>> {
         let arch = self.arch;
         arch.dispatch(
@@ -412,7 +412,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         seen
     }
 
-    /// Displacement of a support (0 left, 1 right) since the beginning, in m.
+    /// Returns the displacement of a support (0 left, 1 right) since the start, in m.
     #[inline(always)]
     fn gone(&self, support: usize) -> [Lanes<L>; 2] {
         let body = &self.bodies[self.structure.bodies.len() + support];
@@ -420,7 +420,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         both!(i: body.place.moved_m[i] - Lanes([rest[i]; L]))
     }
 
-    /// Velocities and rate of rotation of a body after half a kick more.
+    /// Returns the velocity and the rotation rate of a body after another half kick.
     #[inline(always)]
     pub fn velocity(&self, body: usize, half: &Step<Lanes<L>>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
@@ -434,14 +434,14 @@ impl<'a, const L: usize> Motion<'a, L> {
         [x, y, moving.rate_rad_s + turning]
     }
 
-    /// Rotations, of settled rows from those at rest, and their rates half a step before, in a lane.
+    /// Returns the rotations in a lane relative to the reference, and their rates half a step before.
     pub fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
         let bodies = self.bodies.iter().zip(&self.datum);
         bodies
             .map(move |(body, datum)| (body.angle_rad.0[lane] - datum[2], body.rate_rad_s.0[lane]))
     }
 
-    /// Momentum in a lane, half a step before.
+    /// Returns the momentum of a lane half a step before, in kg m/s.
     pub fn momentum(&self, lane: usize) -> [f64; 2] {
         let bodies = self.structure.bodies.iter().zip(&self.bodies);
         bodies.fold([0.0; 2], |sum, (constants, body)| {
@@ -449,7 +449,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         })
     }
 
-    /// The memories of the places along a joint in a lane.
+    /// Returns the states of crushing along a joint in a lane.
     pub fn fibres(&self, joint: usize, lane: usize) -> impl Iterator<Item = Fibre<Lanes<1>>> {
         let each = self.structure.fibres();
         let own = &self.fibres[joint * each..(joint + 1) * each];
@@ -476,7 +476,7 @@ impl<'a> Motion<'a, 1> {
     }
 }
 
-/// A step, to be compiled once for every kind of vectors; a closure instead is a tenth slower.
+/// Step to be compiled once for every vector width; with a closure it is a tenth slower.
 struct Leap<'m, 'a, const L: usize> {
     motion: &'m mut Motion<'a, L>,
     step: &'m Step<Lanes<L>>,
@@ -492,8 +492,8 @@ impl<const L: usize> WithSimd for Leap<'_, '_, L> {
     }
 }
 
-/// Cosine less one, and sine, of an angle that grows. The error of the series is less than rounding for steps below 0.01 rad; larger
-/// ones do not happen to a structure that stands.
+/// Updates the cosine minus one and the sine of an angle that increases by `by`. The truncation error is below the rounding error for increments
+/// below 0.01 rad; structures that have not fallen turn less in a step.
 #[inline(always)]
 fn turned<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {
     let one = Lanes([1.0; L]);

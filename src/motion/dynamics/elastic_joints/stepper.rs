@@ -1,4 +1,4 @@
-//! Steps motions side by side, and reports and judges each of them.
+//! Steps, reports and evaluates parallel motions.
 
 use std::cell::OnceCell;
 
@@ -24,22 +24,22 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
 
-/// Steps from one observation of a motion to the next: one to four periods of the fastest vibration, of structures that rock much slower.
+/// Number of steps between observations of a motion: one to four periods of the fastest vibration. The structure rocks much more slowly.
 const STRIDE: u64 = 16;
-/// At rest a row may still vibrate, with energies below this fraction of the elastic energy under its own weight: by less than a
-/// third of its deflection under it ...
+/// Energy of vibration, over the elastic energy under self-weight, below which a row is at rest. The vibration is then less than a third of the
+/// deflection under self-weight.
 const REST_STRAIN_RATIO: f64 = 0.1;
-/// ... or below this fraction of the barrier of its first mechanism.
+/// Energy of vibration, over the barrier of the first mechanism, below which a row is at rest.
 const REST_BARRIER_RATIO: f64 = 0.03;
-/// On quiet ground a row below this fraction of the barrier cannot overturn any more ...
+/// Energy, over the barrier, below which a row on quiet ground cannot overturn.
 const SAFE: f64 = 0.5;
-/// ... and below this fraction of its largest energy so far no block exceeds its largest rotation so far.
+/// Energy, over the largest one up to now, below which no block exceeds its largest rotation.
 const DECAYED: f64 = 0.25;
-/// Energy is taken to decay this many times slower than it did so far.
+/// Factor by which energy is assumed to decay more slowly than up to now.
 const SLOWER: f64 = 4.0;
-/// Sways within this fraction of the mean displacement under the weight of the structure do not change the side.
+/// Sway, over the mean displacement under self-weight, below which the side of the motion does not change.
 const SIDE_RATIO: f64 = 0.1;
-/// A joint in contact on less than this fraction of its length is drawn as a hinge.
+/// Part of a joint in contact below which the joint is drawn as a hinge.
 const HINGE_RATIO: f64 = 0.5;
 
 /// One motion of a group.
@@ -47,53 +47,53 @@ struct Lane<'a> {
     course: Course<'a>,
     until: Until,
     velocity: GroundVelocity<'a>,
-    /// Rate and size of the distance between feet that move differently.
+    /// Relative motion of the feet, and their current relative displacement; `None` if both feet move alike.
     feet: Option<FeetApart<'a>>,
     apart_m: Vector2<f64>,
     quiet_s: f64,
-    /// Time up to which it steps without pause.
+    /// Time up to which the lane steps without interruption, in seconds.
     until_s: f64,
-    /// True if its present position has been observed.
+    /// True if the current position has been observed.
     is_seen: bool,
-    /// Time up to which the kicks have acted, and the velocity of the ground then.
+    /// Time up to which the kicks have been applied, and ground velocity at this time.
     kicked_s: f64,
     ground_m_s: Vector2<f64>,
-    /// Energy, potential and elastic, at rest.
+    /// Potential and elastic energy at rest, in J; `None` before the first observation.
     rest_j: Option<f64>,
     rest_sway_kg_m: f64,
-    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, which is at rest.
+    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
     opening_m: Vec<[f64; 2]>,
-    /// The largest energies that count as rest.
+    /// Largest energy of a row at rest, in J.
     still_j: f64,
-    /// The barrier with rigid joints; if that is unknown, with elastic joints, once computed.
+    /// Barrier with rigid joints in J, if known; otherwise that with elastic joints, once computed.
     barrier_j: Option<f64>,
-    /// The largest energy so far.
+    /// Largest energy up to now, in J.
     largest_j: f64,
     /// True while the centre of gravity moves back to its position at rest.
     returns: bool,
-    /// Time and energy of the first observation on ground that stays quiet.
+    /// Time and energy of the first observation on quiet ground.
     quiet: Option<(f64, f64)>,
     quiet_since_s: f64,
     /// Last time at which a joint was open beyond its state at rest.
     open_until_s: f64,
     marks: Marks,
-    /// The error that ends it.
+    /// Error that ends the motion.
     lost: Option<RowMotionError>,
     /// Events of ties since the last observation.
     happened: Vec<(usize, EventKind)>,
 }
 
-/// Motions side by side.
+/// Group of parallel motions.
 pub struct Group<'a, const L: usize> {
     row: &'a Row,
     structure: &'a ElasticStructure,
-    /// The start of all motions.
+    /// Equilibrium from which all motions start.
     rest: &'a Rest,
-    /// Finds the least energy above that at rest with which it overturns without slip, if known; it takes time.
+    /// Computes the least energy above that at rest at which the structure overturns without slip, if known. This takes time.
     find_barrier_j: &'a dyn Fn() -> Option<f64>,
     motion: Motion<'a, L>,
     lanes: [Option<Lane<'a>>; L],
-    /// The barrier, once requested.
+    /// Energy barrier, computed at the first request.
     barrier_j: OnceCell<Option<f64>>,
     /// Supports along which the row may slide as a whole.
     slides: Vec<Slide>,
@@ -130,7 +130,7 @@ impl<'a> Lane<'a> {
         }
     }
 
-    /// Its next step.
+    /// Advances the clock by one step, and returns the step.
     fn next(&mut self, damping_time_s: f64) -> Step<Lanes<1>> {
         let step_s = equal_step(self.course.time, self.until_s, self.course.longest_step_s);
         let to_s = self.course.time + 0.5 * step_s;
@@ -138,7 +138,7 @@ impl<'a> Lane<'a> {
         step.drift_s = Lanes([step_s]);
         step.damping = Lanes([damping_time_s / step_s]);
         (self.kicked_s, self.ground_m_s) = (to_s, ground_m_s);
-        // The last of equal steps ends where it should, not within rounding of it.
+        // Set the end of the last of equal steps exactly, without rounding error.
         let left_s = self.until_s - self.course.time;
         self.course.time = if step_s > 0.75 * left_s {
             self.until_s
@@ -156,7 +156,7 @@ impl<'a> Lane<'a> {
         step
     }
 
-    /// A kick that lasts up to a time, and the velocity of the ground then, which is constant once the ground is quiet for good.
+    /// Returns a kick up to `to_s`, and the ground velocity at this time, which is constant once the ground is quiet.
     fn kick(&self, to_s: f64) -> (Step<Lanes<1>>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
             self.velocity.at(to_s)
@@ -194,7 +194,7 @@ impl<'a, const L: usize> Group<'a, L> {
     ) -> Self {
         let [left, right] = row.supports_extend;
         let last = row.joints.len() - 1;
-        // At the right support the block is the left one.
+        // At the right support the block is on the left of the joint.
         let slide = |joint: usize, sense: f64, goes_on: bool, part: f64| Slide {
             joint,
             sense,
@@ -238,13 +238,13 @@ impl<'a, const L: usize> Group<'a, L> {
         self.note(lane, &seen);
     }
 
-    /// Whether motions may begin: where the others, if there are any, end a stride. From there on most are observed together.
+    /// Returns whether motions may start: where all other lanes are between strides. Most lanes are then observed at the same steps.
     pub fn may_begin(&self) -> bool {
         let mut lanes = self.lanes.iter().flatten();
         lanes.all(Lane::ends_stride)
     }
 
-    /// Steps until a motion has been observed.
+    /// Steps all lanes until at least one motion has been observed.
     pub fn stride(&mut self) {
         let damping_time_s = self.structure.damping_time_s;
         loop {
@@ -273,7 +273,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// The half kick from the velocities to the places.
+    /// Returns the half kick from the velocities to the positions.
     fn half_kick(&self) -> Step<Lanes<L>> {
         let mut half = Step::none();
         for (index, lane) in self.lanes.iter().enumerate() {
@@ -284,7 +284,7 @@ impl<'a, const L: usize> Group<'a, L> {
         half
     }
 
-    /// Notes the observed quantities of the motion of a lane.
+    /// Records the observed quantities of the motion of a lane.
     fn note(&mut self, index: usize, seen: &Observed<Lanes<L>>) {
         let (motion, slides) = (&self.motion, &self.slides);
         let Some(lane) = &mut self.lanes[index] else {
@@ -319,7 +319,7 @@ impl<'a, const L: usize> Group<'a, L> {
             let joints_j = course.elastic.damped_j + friction_j + course.elastic.crushed_j;
             joints_j + course.elastic.ties_j
         };
-        // The balance closes with the slip of the discrete motion, of which the work of friction is an estimate.
+        // The energy balance uses the slip of the discrete motion; the work of friction is an estimate of it.
         let taken = taken_with(of(spent.slip_balance_j));
         course.of_row.energy_taken_j = taken_with(course.elastic.friction_j);
         let bound = self.structure.ties.iter().map(|bound| &bound.tie);
@@ -337,7 +337,7 @@ impl<'a, const L: usize> Group<'a, L> {
                 time_s: time,
             };
         }
-        // Between feet that part the middle goes half the way.
+        // The middle between the feet moves half as far as the right foot.
         let slid = lane.note_joints(index, motion, slides) + 0.5 * lane.apart_m.x;
         let course = &mut lane.course;
         let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.row.mass_kg() * slid;
@@ -350,7 +350,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let height = lane.feet.is_none().then_some(potential + taken);
         course.note_height(height);
         let vibrates = kinetic < lane.still_j && potential < lane.still_j;
-        // A row that is still but stands higher than before is held by friction.
+        // A row without motion that stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             lane.quiet_since_s = time;
             course.moved = true;
@@ -365,8 +365,8 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// Continues a lane, or returns its motion if that has ended. The lane steps without a pause up to the next mark of its clock, with
-    /// or without samples.
+    /// Continues a lane, or returns the result of its motion if it has ended. The lane then steps without interruption up to the next mark of its
+    /// clock, with or without samples.
     pub fn go_on(&mut self, index: usize) -> Option<Result<Summary, RowMotionError>> {
         let lane = self.lanes[index].as_mut()?;
         if !lane.is_seen {
@@ -391,7 +391,7 @@ impl<'a, const L: usize> Group<'a, L> {
 }
 
 impl<'a> Lane<'a> {
-    /// Whether a joint is open beyond its state at rest, by more than the weight compresses the most compressed edge.
+    /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
     fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
         if self.opening_m.is_empty() {
             let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
@@ -404,7 +404,7 @@ impl<'a> Lane<'a> {
         joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]))
     }
 
-    /// Notes open and slipped joints of the lane of this index. Returns how far the structure slid along its supports, in m to the right.
+    /// Records open and slipped joints of the lane with this index. Returns the slip of the structure along its supports, in m to the right.
     fn note_joints<const L: usize>(
         &mut self,
         index: usize,
@@ -431,7 +431,7 @@ impl<'a> Lane<'a> {
                 let largest = &mut sliding.largest_offsets_m[joint];
                 *largest = largest.max(slipped_m.abs());
             }
-            // On a face that ends a block slides off: it has fallen once it slipped by the length of the face.
+            // A block can slide off a support that ends at the joint: it has fallen after a slip by the length of the joint.
             let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
             match slides.iter().find(on_support) {
                 Some(slide) => slid += slipped_m * slide.along_x,
@@ -442,7 +442,7 @@ impl<'a> Lane<'a> {
     }
 
     fn rests_since(&self) -> Option<f64> {
-        // A row may rock without more energy than at rest.
+        // A row may rock with no more energy than at rest.
         let since_s = if self.course.moved {
             self.quiet_since_s
         } else {
@@ -452,19 +452,19 @@ impl<'a> Lane<'a> {
         quiet.then_some(since_s)
     }
 
-    /// True if its end can be foreseen from this energy: on ground that stays quiet it gains none.
+    /// Returns whether the outcome is certain at this energy. On quiet ground a structure gains no energy.
     fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
-        // Once the feet have parted, the barrier is unknown.
+        // With feet that move apart, the barrier is unknown.
         if self.feet.is_some() {
             return false;
         }
-        // A row beyond its barrier falls to that side, whatever damping takes.
+        // A row beyond its barrier falls to that side, with any damping.
         if self.until == Until::End || self.course.time < self.quiet_s || !self.returns {
             return false;
         }
         let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
         if self.until == Until::Settled {
-            // From now on it decays at most `SLOWER` times slower.
+            // Assume that the energy decays `SLOWER` times more slowly from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
             let rested_s = self.course.time + rests_s + self.course.rest_time_s();
@@ -479,7 +479,7 @@ impl<'a> Lane<'a> {
     }
 }
 
-/// One motion alone, which may be recorded.
+/// Group of a single motion, which may be recorded.
 impl<'a> Group<'a, 1> {
     fn lane(&self) -> &Lane<'a> {
         self.lanes[0].as_ref().expect("it was begun")
@@ -495,7 +495,7 @@ impl<'a> Group<'a, 1> {
         Pose::about(centre_m, centre_m + moved_m, body.angle_rad.0[0])
     }
 
-    /// Forces and stresses of a joint, by its elastic stress.
+    /// Returns the elastic forces and stresses of a joint.
     fn pressure(&self, index: usize) -> JointPressure {
         let structure = self.structure;
         let joint = &structure.joints[index];
@@ -534,7 +534,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         &mut self.lane_mut().course
     }
 
-    /// Some steps, up to the next observation of the motion.
+    /// Takes steps up to the next observation of the motion.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         let stood = !self.course().moved;
         self.lane_mut().until_s = until;
@@ -591,7 +591,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         memory.penetrations_m.map(|end| (-end.0[0]).max(0.0))
     }
 
-    /// A joint in contact on a small part of its length.
+    /// Returns a joint that is in contact on less than half of its length as a hinge; `None` for other joints.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         let hinge = open_hinge(joint, self.gaps(joint));
         hinge.filter(|_| self.pressure(joint).contact_ratio < HINGE_RATIO)

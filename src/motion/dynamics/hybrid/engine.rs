@@ -1,8 +1,7 @@
-//! The engine: time integration of a hybrid system.
+//! Time integration of a hybrid system.
 //!
-//! A hybrid system moves smoothly in one of several **modes** until a **guard** fires; a **reset** then
-//! puts it into another mode. The engine knows nothing else about it. It restarts at the corners of the
-//! forcing, looks into every step for guards, and lands on the instant of an event.
+//! A hybrid system moves smoothly in one of several **modes** until a **guard** fires; a **reset** then changes the mode. The engine uses no other
+//! property of the system. It restarts at the corners of the forcing, checks the guards in every step, and ends a step at the time of an event.
 
 use std::ops::ControlFlow;
 
@@ -11,7 +10,7 @@ use thiserror::Error;
 use super::integrator::{IntegratorError, State, Step, Task, integrate};
 use crate::dynamics::history::Cost;
 
-/// A system at an instant.
+/// State of a system at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Moment<M, const N: usize> {
     /// Time, in seconds.
@@ -25,7 +24,7 @@ pub struct Moment<M, const N: usize> {
 }
 
 impl<M: Copy, const N: usize> Moment<M, N> {
-    /// Another instant in the same mode, on the same piece.
+    /// Returns another time and state in the same mode and on the same piece.
     #[must_use]
     pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
         Self {
@@ -48,7 +47,7 @@ pub trait HybridSystem<const N: usize> {
     /// End of a piece of the forcing, in seconds; infinite for the last.
     fn piece_end_s(&self, piece: usize) -> f64;
 
-    /// Whether no guard of this mode can fire from this piece on.
+    /// Returns whether no guard of this mode can fire from this piece on.
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool;
 
     /// Whether the state is constant in this mode.
@@ -60,10 +59,10 @@ pub trait HybridSystem<const N: usize> {
     /// State within a step, at least as exact as the step's ends.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
-    /// Magnitudes of the state's components in the motion to come, to which tolerances refer.
+    /// Returns the scales of the state's components in the future motion, to which tolerances refer.
     fn scale(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
-    /// A good first step from here in seconds, and the longest one that the search for guards allows.
+    /// Returns a suitable first step in seconds, and the longest one for which the search for guards is reliable.
     fn step_sizes_s(&self, now: &Moment<Self::Mode, N>, relative_tolerance: f64) -> (f64, f64);
 
     /// The guards of a mode.
@@ -72,7 +71,7 @@ pub trait HybridSystem<const N: usize> {
     /// Value of a guard, which fires when it falls below zero, and its rate of change, per second.
     fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (f64, f64);
 
-    /// The guard that has already fired when a piece begins or a mode is entered, if any.
+    /// Returns the guard that has already fired at the start of a piece or mode, if any.
     fn fired_at_once(&self, now: &Moment<Self::Mode, N>) -> Option<Self::Guard>;
 
     /// Mode and state after the event of a guard.
@@ -98,7 +97,7 @@ pub struct Transition<M, G, const N: usize> {
 
 /// Listener to a simulation. Steps and transitions come in the order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
-    /// A stretch of motion without event, in the mode and on the piece of its beginning.
+    /// Receives a part of the motion without an event, in the mode and on the piece of its start.
     fn step(&mut self, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
@@ -125,16 +124,16 @@ pub struct Settings {
 pub struct Finish<M, const N: usize> {
     /// The last transition, the end of the simulation, or where an observer broke.
     pub now: Moment<M, N>,
-    /// Whether an observer broke.
+    /// True if an observer stopped the simulation.
     pub stopped: bool,
-    /// Work done.
+    /// Computational effort.
     pub cost: Cost,
 }
 
-/// Why a simulation failed.
+/// Reason why a simulation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum EngineError {
-    /// The integration broke down.
+    /// The integration failed.
     #[error(transparent)]
     Integrator(#[from] IntegratorError),
     /// Too many events.
@@ -210,7 +209,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     Ok(finish)
 }
 
-/// Moves on to the next event, which it returns, to the end of the piece, or to where the observer breaks.
+/// Advances to the next event and returns it; `None` at the end of the piece, or if the observer stops the simulation.
 fn advance<S: HybridSystem<N>, const N: usize>(
     system: &S,
     finish: &mut Finish<S::Mode, N>,
@@ -265,7 +264,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     Ok(Some(guard))
 }
 
-/// The integration of the motion from a moment in its mode, on its piece, up to a time.
+/// Returns the integration task from a moment in its mode and on its piece, up to a time.
 pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &Moment<S::Mode, N>,
@@ -285,12 +284,11 @@ pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     }
 }
 
-/// The step again, cut off where the guard fires.
+/// Returns the step shortened to the time at which the guard fires.
 ///
-/// Near the end of the step interpolation is as exact as the end. Elsewhere it gives the instant approximately:
-/// integrating up to there gives the state as accurately as any other step, and a last step along the tangent
-/// brings the guard to zero. It is so short (`d`, about 1e-10 of the step) that its curvature, of order `d^2`,
-/// is below rounding.
+/// Near the end of the step, interpolation is as accurate as the end. Elsewhere the interpolated time is approximate: the integration up to it gives
+/// the state as accurately as any other step, and a last step along the tangent brings the guard to zero. This step is so short (`d`, about 1e-10 of
+/// the step) that its curvature, of order `d^2`, is below rounding error.
 fn land<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &Moment<S::Mode, N>,
@@ -347,7 +345,7 @@ const CLOSED_BY_TANGENT: f64 = 1e-4;
 /// A time, with the value of a guard then and its rate of change.
 type Point = (f64, (f64, f64));
 
-/// The first guard to fire within a step, and when.
+/// Returns the first guard to fire within a step, and its time.
 fn first_event<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &Moment<S::Mode, N>,

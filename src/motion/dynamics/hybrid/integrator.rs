@@ -1,10 +1,9 @@
-//! The one place that deals with [`ode_solvers`].
+//! Interface to the crate [`ode_solvers`].
 //!
-//! Only `Dopri5` with sparse output is used. In `ode_solvers` 0.6.2 `Dop853` evaluates its last two
-//! stages at the wrong time, `OutputType::Dense` can return an extrapolated last point and hands
-//! `solout` a state and a time that do not belong together, and continuous output takes the absolute
-//! value of the time; sparse `Dopri5` has none of these. The solver's `solout` sees every
-//! accepted step and can only stop, so looking inside steps is left to the caller.
+//! Only `Dopri5` with sparse output is used. In `ode_solvers` 0.6.2 `Dop853` evaluates its last two stages at the wrong time, `OutputType::Dense` can
+//! return an extrapolated last point and passes an inconsistent state and time to `solout`, and continuous output takes the absolute value of the
+//! time. Sparse `Dopri5` has none of these errors. The solver's `solout` receives every accepted step and can only stop the integration, so the
+//! caller searches inside steps.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -47,7 +46,7 @@ pub struct Task<const N: usize> {
     pub start: State<N>,
     /// Rate of change of the state at the start, per second.
     pub start_slope: State<N>,
-    /// Magnitudes of the components: what falls below them is held to an absolute error.
+    /// Scales of the components: smaller values have an absolute error tolerance.
     pub scale: State<N>,
     /// Error allowed in a step, relative to the larger of a component and its scale.
     pub relative_tolerance: f64,
@@ -57,7 +56,7 @@ pub struct Task<const N: usize> {
     pub longest_step_s: f64,
 }
 
-/// Why an integration broke down.
+/// Reason why an integration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum IntegratorError {
     /// The right-hand side gave no finite number however short the step.
@@ -74,14 +73,13 @@ pub enum IntegratorError {
     },
 }
 
-/// Largest number of steps of one call of the solver: far more than any stretch of motion needs.
+/// Maximum number of steps of one call of the solver, far more than any part of a motion needs.
 const MAX_STEPS: u32 = 1_000_000;
 
-/// Integrates `slope(time_s, state)` as the task says, and shows every accepted step to `watch`, which
-/// may end the integration. Returns the last state.
+/// Integrates `slope(time_s, state)` for a task, and passes every accepted step to `watch`, which may end the integration. Returns the last state.
 ///
-/// The solver sees time from the start of the task, so that a motion does not depend on when it happens,
-/// and the state in units of its scale, so that one tolerance serves all components.
+/// The solver uses the time since the start of the task, so that a motion does not depend on its absolute time. States are in units of their scale,
+/// so that one tolerance applies to all components.
 ///
 /// # Errors
 /// When the right-hand side is not finite, or the tolerance cannot be met.
@@ -147,7 +145,7 @@ pub fn integrate<const N: usize>(
 /// A task in the form that `ode_solvers` needs.
 struct Problem<'a, F, W, const N: usize> {
     task: &'a Task<N>,
-    /// One over the scale: this is multiplied by much more often than it is computed.
+    /// Inverse of the scale, stored because it is used much more often than it changes.
     per_scale: State<N>,
     slope: F,
     watch: W,
@@ -169,8 +167,8 @@ where
             (self.slope)(self.task.start_s + x, &state)
         };
         *dy = slope.component_mul(&self.per_scale);
-        // A trial step may go too far; its error estimate is then NaN as well, so it is rejected and
-        // shortened. If that never ends, this is the reason to report.
+        // The error estimate of a trial step that goes too far is NaN as well, so the step is rejected and shortened. If this never ends, this flag
+        // gives the reason.
         self.not_finite.set(!dy.sum().is_finite());
     }
 

@@ -75,13 +75,13 @@ pub enum Guard {
 /// The coordinate `q`, its rate, and the work done by the ground since time zero.
 pub type RockingState = State<3>;
 
-/// A push lifts the structure off when it is this many times the incipient one: far enough above rounding
-/// for the mechanism to open. At the very threshold it could close again at once, over and over.
+/// Ratio of the push at uplift to the incipient one: sufficiently above rounding error for the mechanism to open. Exactly at the threshold the
+/// mechanism could close again immediately, without end.
 const UPLIFT_FACTOR: f64 = 1.0 + 1e-12;
 
-/// Likewise for the acceleration at which the equation of motion of the first mechanism changes sign. It
-/// equals the incipient one up to rounding, which grows relative to it as the arch gets thinner, and exceeds
-/// the first factor in arches that hardly stand.
+/// Ratio of the push at uplift to the acceleration at which the equation of motion of the first mechanism changes sign. The latter equals the
+/// incipient acceleration within rounding error. This error increases as the arch gets thinner, and exceeds [`UPLIFT_FACTOR`] in arches that are
+/// hardly stable.
 const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 
 /// A structure on moving ground.
@@ -333,8 +333,8 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let fall_s = self.fall_s(link);
         let (reach_rad, _) = self.reach(link, &now.state);
         let height = reach_rad / link.critical_rad;
-        // Time until q is back at zero if the acceleration stayed as it is. As the weight lessens with q,
-        // it takes longer by up to two thirds of the height; a step should reach just beyond.
+        // Time until q returns to zero at constant acceleration. The weight decreases with q, so the return takes longer by up to two thirds of the
+        // height; a step should end slightly later.
         let (q, rate) = (now.state[0], now.state[1]);
         let acceleration = self.slope(now)[1];
         let back_s = (rate + (rate * rate - 2.0 * acceleration * q).sqrt()) / -acceleration;
@@ -343,9 +343,8 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         } else {
             fall_s
         };
-        // Apart from terms of the relative size of its height, a hop is a parabola: the sixth derivative,
-        // to which the method is sensitive, is of the order of the square of that size. The error of a step
-        // h is taken as height^2 (h/hop)^6.
+        // Except for terms of the relative size of its height, a hop is a parabola. The sixth derivative, which determines the error of the method,
+        // is of the order of the square of that size. The error of a step h is estimated as height^2 (h/hop)^6.
         let part = (relative_tolerance / (height * height)).powf(1.0 / 6.0);
         let longest_s = hop_s.min(self.piece(now.piece).longest_step_s());
         (part.min(1.0) * hop_s, longest_s)

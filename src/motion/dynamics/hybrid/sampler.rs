@@ -1,4 +1,4 @@
-//! Samples of a chain of mechanisms, and of its fall.
+//! Samples of a sequence of mechanisms, and of its fall.
 
 use std::mem;
 use std::ops::ControlFlow;
@@ -16,7 +16,7 @@ use crate::dynamics::thrust::ThrustRecord;
 use crate::mechanics::chain::{Mechanism, MechanismChain};
 use crate::mechanics::geometry::pose::Pose;
 
-/// Error of a step of a fall, which is only drawn, relative to the state.
+/// Relative error tolerance of a step of a fall, which is only drawn.
 const FALL_TOLERANCE: f64 = 1e-6;
 
 /// Takes samples at multiples of the output step.
@@ -32,7 +32,7 @@ pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     /// Positions of the hinges, also reused.
     hinges_m: Vec<Vector2<f64>>,
     pub(super) thrust: ThrustRecord,
-    /// The record up to the last sample before the unstable equilibrium.
+    /// Thrust record up to the last sample before the unstable equilibrium.
     pub(super) thrust_before_critical: ThrustRecord,
     pub(super) recorder: &'r mut dyn Recorder,
 }
@@ -127,11 +127,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         ControlFlow::Continue(())
     }
 
-    /// The last sample, at the end of the simulation.
+    /// Takes the last sample, at the end of the simulation.
     pub(super) fn finish(&mut self, now: &Now<'a, C>) -> ControlFlow<()> {
         let piece = self.rocking.ground.piece_at(now.time_s);
         let last = self.sample(&Moment { piece, ..*now });
-        // A sample that differs from the end by rounding only is replaced.
+        // Replace a sample that differs from the end only by rounding error.
         if let Some(held) = self.held.take()
             && held.time_s < now.time_s - 1e-9 * self.output_step_s
         {
@@ -140,8 +140,8 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         self.emit(&last)
     }
 
-    /// Follows a mechanism that has overturned, if its recorder follows falls: it turns about the same hinges, also beyond the limit
-    /// position, where the first of them begins to close.
+    /// Computes the fall of an overturned mechanism if the recorder wants it. The hinges stay the same, also beyond the limit position, where the
+    /// first of them begins to close.
     pub(super) fn follow_fall(&mut self, from: &Now<'a, C>) {
         let rocking = self.rocking;
         let Phase::Overturned(swing) = from.mode else {

@@ -1,4 +1,4 @@
-//! Every chain of mechanisms is a model; the hybrid engine computes its histories.
+//! Histories of sequences of mechanisms, by the hybrid engine.
 
 use std::ops::ControlFlow;
 
@@ -21,10 +21,9 @@ use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
 
-/// Most transitions of a history: more would mean chatter, which the model should not produce.
+/// Maximum number of transitions of a history; more would be chatter.
 const MAX_TRANSITIONS: usize = 1_000_000;
-/// A chain of mechanisms is a model by itself. It is said of each of them, so that the engine is compiled for them here and not in every
-/// crate that moves one.
+/// Implements the model traits for each sequence of mechanisms, so that the engine is compiled here and not in every crate that uses it.
 macro_rules! models {
     ($($chain:ty),+) => {$(
         impl Model for $chain {
@@ -103,7 +102,7 @@ macro_rules! models {
 
 models!(FourLinks, RockingColumn);
 
-/// The history of a chain of mechanisms.
+/// Computes the history of a sequence of mechanisms.
 fn history_of<C: MechanismChain + MechanismModel>(
     chain: &C,
     ground: &GroundMotion,
@@ -137,7 +136,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     let finish = finish.map_err(SimulationError::computation)?;
     let now = &finish.now;
     if let Some(sampler) = tally.sampler.as_mut().filter(|_| !finish.stopped) {
-        // The history ends here whether the recorder breaks or not.
+        // The history ends here in any case.
         let _ = sampler.finish(now);
         sampler.follow_fall(now);
     }
@@ -179,11 +178,11 @@ fn history_of<C: MechanismChain + MechanismModel>(
     })
 }
 
-/// Time after the end of the ground motion by which the first fall is over, in seconds: near the unstable
-/// equilibrium a motion dwells for some forty of its time scales before rounding decides.
+/// Duration after the end of the ground motion in which the first fall ends, in seconds. Close to the unstable equilibrium a motion may last for some
+/// forty of its time scales.
 const AFTER_S: f64 = 1e6;
 
-/// The side to which a structure at rest is overturned in its first fall, before its hinges ever close; `None` if it is not. It does not
+/// Returns the side to which a structure at rest overturns before its hinges close for the first time; `None` if it does not. The result does not
 /// depend on the impact model.
 fn first_fall<C: MechanismChain + MechanismModel>(
     chain: &C,
@@ -194,7 +193,7 @@ fn first_fall<C: MechanismChain + MechanismModel>(
     let settings = Settings {
         end_s: ground.end_s() + AFTER_S,
         relative_tolerance: request.relative_tolerance,
-        // Uplift, and the event that ends the first fall.
+        // Two transitions: uplift, and the end of the first fall.
         max_transitions: 2,
     };
     let state = RockingState::zeros();
@@ -205,7 +204,7 @@ fn first_fall<C: MechanismChain + MechanismModel>(
     }
 }
 
-/// Breaks when the hinges close.
+/// Observer that stops when the hinges close.
 struct FirstFall;
 
 impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for FirstFall {
@@ -217,7 +216,10 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for FirstFall {
     }
 }
 
-/// The structure on its ground, if the request is valid.
+/// Returns the structure on its ground.
+///
+/// # Errors
+/// If the request is not valid, or the feet move differently.
 fn checked<'a, C: MechanismChain + MechanismModel>(
     chain: &'a C,
     ground: &'a GroundMotion,
@@ -236,19 +238,19 @@ fn checked<'a, C: MechanismChain + MechanismModel>(
 
 type RockingTransition<'a, C> = Transition<Mode<'a, <C as MechanismChain>::Mechanism>, Guard, 3>;
 
-/// A mechanism that closes, and what follows.
+/// Closing of a mechanism, and the mechanism that follows.
 struct Closing<'a, C: MechanismChain> {
     before: Swing<'a, C::Mechanism>,
-    /// `None` if the impact stops the structure because no mechanism can follow.
+    /// Next mechanism; `None` if the impact stops the structure because no mechanism can follow.
     after: Option<&'a Link<C::Mechanism>>,
-    /// Rate of `q` just before, negative.
+    /// Rate of `q` just before the impact, negative, in rad/s.
     rate_before_rad_s: f64,
-    /// Rate of `q` of the new mechanism just after, even where that is so small that the structure comes to rest.
+    /// Rate of `q` of the new mechanism just after the impact, in rad/s; also if the structure then comes to rest.
     rate_after_rad_s: f64,
 }
 
 impl<'a, C: MechanismChain> Closing<'a, C> {
-    /// `None` if the transition is of another kind.
+    /// Returns the closing of a transition; `None` for other transitions.
     fn of(chain: &'a C, transition: &RockingTransition<'a, C>) -> Option<Self> {
         let (Guard::Closing, Phase::Rocking(before)) = (transition.guard, transition.from) else {
             return None;
@@ -264,7 +266,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
         })
     }
 
-    /// Kinetic energies before and after, in the unit of [`Rocking::barrier`].
+    /// Returns the kinetic energies before and after, in the unit of [`Rocking::barrier`].
     fn energies(&self) -> (f64, f64) {
         let kinetic =
             |link: &Link<C::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
@@ -301,23 +303,23 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
     }
 }
 
-/// Collects what a summary needs, and takes samples for a recorder.
+/// Collects the data of a summary, and takes samples for a recorder.
 struct Tally<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
     sampler: Option<Sampler<'r, 'a, C>>,
     impacts: usize,
-    /// The largest rotations of the bodies, and over the critical one.
+    /// Largest rotations of the bodies, and largest rotation over the critical one.
     peaks: (Vec<f64>, f64),
-    /// When it last passed the unstable equilibrium outwards, and the peaks up to then.
+    /// Time of the last outward passage of the unstable equilibrium, and the peaks up to then.
     last_passage: Option<(f64, (Vec<f64>, f64))>,
     last_rest_s: Option<f64>,
-    /// Initial energy minus what the impacts took.
+    /// Initial energy minus the energy dissipated by impacts.
     energy_without_work: f64,
     largest_defect: f64,
 }
 
 impl<C: MechanismChain> Tally<'_, '_, C> {
-    /// All rotations grow with `q`: the largest are at its turning points, at the start or at the end.
+    /// Updates the peaks. All rotations increase with `q`, so the largest occur at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {
             let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
