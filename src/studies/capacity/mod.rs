@@ -18,13 +18,13 @@ use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{Scenario, Structure};
 
-/// Why a scenario has no capacity curves.
+/// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoCapacity {
-    /// It does not move as a mechanism of one degree of freedom.
+    /// The structure does not move as a mechanism of one degree of freedom.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
-    /// It is no row of blocks.
+    /// The structure is not a row of blocks.
     #[error(transparent)]
     Row(#[from] RowError),
     /// The row does not move along one mechanism.
@@ -38,11 +38,11 @@ pub enum NoCapacity {
     Control(#[from] CapacityError),
 }
 
-/// The capacity to the right and to the left. The control point is the given one, or else the crown, or the top of a column. It is in metres: x from the
-/// middle to the right, y as in the drawings, from the centre of a circular arch, otherwise from the springings or the base.
+/// Computes the capacity curves to the right and to the left. The control point `point_m` is in metres: x from the middle to the right; y from
+/// the centre of a circular arch, otherwise from the springings or the base, upwards. `None` chooses the crown, or the top of a column.
 ///
 /// # Errors
-/// When there is no mechanism of one degree of freedom, or the control point is outside it or does not move.
+/// When there is no mechanism of one degree of freedom, or the control point is outside the structure or does not move.
 pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
@@ -67,8 +67,8 @@ pub fn capacity(
     Sides::try_of(side)
 }
 
-/// The blocks of a structure whose first mechanism is followed as a row: one with ties, or a stack on one support that is not
-/// Housner's block. `None` for structures that move as four links or as that block.
+/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, or a stack on one support other than
+/// Housner's block. `None` for structures that move as four links or as Housner's block.
 fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     let is_one_prism = matches!(structure, Structure::Column(column) if column.is_one_prism());
     let is_stack = structure.stands_on_one_support() && !is_one_prism;
@@ -76,7 +76,7 @@ fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     is_held.then(|| structure.row()).transpose()
 }
 
-/// Capacity of a row, whose ties change the push that its first mechanism resists along its way.
+/// Computes the capacity of a row. Ties change the push that its first mechanism resists.
 fn of_row(
     row: &Row,
     point_m: Option<Vector2<f64>>,
@@ -94,7 +94,7 @@ fn of_row(
     Sides::try_of(side)
 }
 
-/// The given point with its place, or else the crown.
+/// Returns the control point with its place along the structure: the given point, or the crown.
 fn control(
     structure: &dyn Parts,
     point_m: Option<Vector2<f64>>,
@@ -115,7 +115,7 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Those of the first mechanism to a side.
+    /// Returns the bodies of the first mechanism of a model to a side.
     pub(super) fn of_model(model: &dyn MechanismModel, sway: Sway) -> Self {
         let hinges = model.hinges_after(0, sway).into_iter();
         let hinges = hinges.map(|hinge| match hinge {
@@ -129,7 +129,7 @@ impl Bodies {
         }
     }
 
-    /// Those of the first mechanism of a row.
+    /// Returns the bodies of the first mechanism of a row.
     pub(super) fn of_row(held: &Held<'_>) -> Self {
         let hinges = held.pins.hinges.iter().map(|hinge| hinge.joint as f64);
         Self {
@@ -138,14 +138,14 @@ impl Bodies {
         }
     }
 
-    /// The body that carries a point; the point is given with its place along the structure.
+    /// Attaches a point, given with its place along the structure, to the body that carries it.
     pub(super) fn carry(&self, (place, at_m): (f64, Vector2<f64>)) -> Carried {
         let before = self.hinges.iter().filter(|hinge| **hinge < place).count();
         let body = before.checked_sub(1).filter(|body| *body < self.count);
         Carried { at_m, body }
     }
 
-    /// The parts of a structure as points, each with its mass.
+    /// Returns the parts of a structure as points with masses.
     fn masses(&self, structure: &dyn Parts) -> Vec<(f64, Carried)> {
         let parts = structure.parts().into_iter();
         let points = parts.map(|part| (part.mass_kg, (part.place, part.centre_m)));

@@ -1,4 +1,4 @@
-//! The report of capacity curves: a table, a picture, and the summary in JSON and words.
+//! Files and words of capacity curves.
 
 use askama::Template;
 use nalgebra::Vector2;
@@ -26,7 +26,7 @@ pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
 pub struct Summary {
     /// The curves to the right and to the left, without their points.
     pub capacity: Sides<CapacitySide>,
-    /// Parts of the structure whose centres carry its masses.
+    /// Parts of the structure whose centres carry the masses, in words.
     pub masses: String,
     /// The scenario with all defaults.
     pub scenario: Value,
@@ -37,13 +37,13 @@ pub struct Summary {
 pub struct CapacitySide {
     /// The control point in the undeformed structure, in metres.
     pub control_point_m: Vector2<f64>,
-    /// `a(0) = A_L`, in units of gravity.
+    /// Acceleration at the onset of motion, `a(0) = A_L`, in units of gravity.
     pub acceleration_g: f64,
     /// Displacement of the control point at the unstable equilibrium, in metres.
     pub ultimate_displacement_m: f64,
     /// The equivalent oscillator.
     pub oscillator: Oscillator,
-    /// Displacements at which ties give way, if there are ties.
+    /// Displacements at which ties yield or break; absent without ties.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieOnTheWay>,
 }
@@ -53,17 +53,17 @@ pub struct CapacitySide {
 pub struct Oscillator {
     /// Participating mass `M*`, in kg.
     pub participating_mass_kg: f64,
-    /// `e*`: the participating mass as a fraction of the mass that moves.
+    /// Participating mass as a fraction of the moving mass, `e*`.
     pub mass_fraction: f64,
-    /// `a0*`, in units of gravity.
+    /// Acceleration at the onset of motion, `a0*`, in units of gravity.
     pub acceleration_g: f64,
-    /// `d0*`, in metres.
+    /// Ultimate displacement, `d0*`, in metres.
     pub ultimate_displacement_m: f64,
-    /// Secant periods in seconds, at parts of `d0*`.
+    /// Secant periods at fractions of `d0*`, in seconds.
     pub secant_period_s_at_part_of_ultimate: SecantPeriods,
 }
 
-/// Secant periods in seconds, at parts of the ultimate displacement; null if ties have no force left.
+/// Secant periods at fractions of the ultimate displacement, in seconds; null if no resistance is left.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SecantPeriods {
     /// At a fifth of the ultimate displacement.
@@ -105,7 +105,7 @@ impl CapacitySide {
     }
 }
 
-/// Files, words and JSON for the curves of a scenario to both sides.
+/// Makes files and words of the capacity curves of a scenario.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -129,7 +129,7 @@ pub fn report(
     Results::new(&FILES, &summary, render(&summary), others)
 }
 
-/// A row for each point of the curves, those to the right first. The secant period is empty at the unstable equilibrium.
+/// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.
 fn table(sides: &Sides<Capacity>) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (Sway, &'a CurvePoint);
     let rows: Vec<Row<'_>> = sides

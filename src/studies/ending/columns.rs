@@ -3,12 +3,12 @@
 use super::{Ending, Outcome};
 use crate::output::table::{Column, column};
 
-/// Outcome if the history could not be computed.
+/// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";
-/// Outcome if it is uncertain whether the structure overturns.
+/// Outcome of a case whose overturning is uncertain.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 
-/// The outcomes that count, by their names in results; the first is overturning.
+/// Names of the outcomes that count, the first is overturning.
 pub(crate) const OUTCOMES: [&str; 6] = [
     "overturned",
     UNCERTAIN,
@@ -19,7 +19,7 @@ pub(crate) const OUTCOMES: [&str; 6] = [
 ];
 
 impl Ending {
-    /// The outcome of a case of a study, by its name in results.
+    /// Returns the name of the outcome of a case.
     #[must_use]
     pub const fn outcome_name(&self) -> &'static str {
         match self.uncertain {
@@ -28,7 +28,7 @@ impl Ending {
         }
     }
 
-    /// The side to which a case overturned; `None` unless that is certain.
+    /// Returns the side to which a case overturned; `None` unless overturning is certain.
     pub(crate) const fn overturning_sway(&self) -> Option<&'static str> {
         match (self.outcome, &self.uncertain) {
             (Outcome::Overturned(sway), None) => Some(sway.name()),
@@ -37,11 +37,11 @@ impl Ending {
     }
 }
 
-/// The ending of a row, or the outcome to report if the row has none.
+/// Returns the ending of a row, or the outcome to report if the row has none.
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
-/// The columns of the ending of a row. Sway and number of impacts before overturning are given only if overturning is certain.
-/// The numbers of an uncertain case are those of the history itself, not of its repetitions.
+/// Returns the columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an
+/// uncertain case are those of the history itself, not of its repetitions.
 pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
     let mut columns = vec![
         column("outcome", move |row| {
@@ -74,12 +74,12 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
     columns
 }
 
-/// A number with the fewest digits that read back as the same `f64`.
+/// Returns a number with the fewest digits that read back as the same `f64`.
 pub(crate) fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A statement that is true or not, as a cell of a table.
+/// Returns a truth value for the cell of a table.
 pub(crate) const fn yes(is_true: bool) -> &'static str {
     if is_true { "yes" } else { "no" }
 }

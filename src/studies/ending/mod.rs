@@ -1,4 +1,4 @@
-//! How a history ended, as studies record it, and whether the ending is [certain](crate::dynamics::repeatability).
+//! The ending of a history, as studies record it, and whether it is [certain](crate::dynamics::repeatability).
 
 pub(crate) mod columns;
 
@@ -16,50 +16,48 @@ use crate::dynamics::until::Until;
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// The longest, in seconds.
+    /// Longest step, in seconds.
     pub longest_s: f64,
-    /// The shortest, in seconds, apart from steps that end at landings.
+    /// Shortest step, in seconds, apart from steps that end at landings.
     pub shortest_s: f64,
 }
 
-/// Outcome of a history, in the numbers that studies compare. All of them are finite.
+/// The ending of a history, in numbers that studies compare. All numbers are finite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
     /// The outcome.
     pub outcome: Outcome,
     /// The time of the outcome, in seconds.
     pub outcome_time_s: f64,
-    /// The time, in seconds, from which the structure can no longer overturn and will come to rest. The history was ended there,
-    /// so later impacts and the time of rest are unknown. `None` if the history was followed to its end.
+    /// Time, in seconds, from which the structure can no longer overturn and will come to rest. The history was stopped at this time, so later
+    /// impacts and the time of rest are unknown. `None` if the history was computed to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe_from_s: Option<f64>,
-    /// Number of impacts; those before overturning if the structure overturns. `None` for elastic joints, which have none.
+    /// Number of impacts; of an overturned structure, those before overturning. `None` for elastic joints, which have no impacts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts: Option<usize>,
-    /// Largest error in the energy balance: for a mechanism relative to its energy barrier, for free hinges relative to
-    /// weight times size.
+    /// Largest error of the energy balance. Reference of a mechanism: its energy barrier. Reference of free hinges: weight times size.
     pub energy_defect_ratio: f64,
     /// The largest rotation.
     pub peak: PeakRotation,
-    /// Largest rotation of any body, in radians, with every model.
+    /// Largest rotation of any body, in radians, for every model.
     #[serde(default)]
     pub peak_rotation_rad: f64,
-    /// The time steps of the computation; `None` for models whose steps follow from a tolerance.
+    /// Time steps of the computation; `None` for models whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
-    /// Why it is uncertain whether the structure overturns: its outcome, and the other outcome of a repetition. `None` if it is certain.
+    /// Reason why overturning is uncertain: the outcome, and the other outcome of a repetition. `None` if the verdict is certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<Box<str>>,
 }
 
-/// The largest rotation, in the measure that the model allows.
+/// The largest rotation, in the measure of the model of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PeakRotation {
-    /// For one mechanism at a time, whose hinges all close at once: relative to the rotation at the unstable equilibrium,
-    /// if that is known.
+    /// Models with one mechanism at a time: relative to the rotation at the unstable equilibrium; `None` if that is unknown.
     OverCritical(Option<f64>),
-    /// For free hinges, which close one by one: the rotation of any block, in radians.
+    /// Free hinges: the largest rotation of a block, in radians.
     Rad(f64),
 }
 
@@ -71,7 +69,7 @@ impl PeakRotation {
         }
     }
 
-    /// Relative to the rotation at the unstable equilibrium, if that is known.
+    /// Returns the rotation relative to that at the unstable equilibrium; `None` if that is unknown, or for free hinges.
     #[must_use]
     pub const fn over_critical(self) -> Option<f64> {
         match self {
@@ -80,7 +78,7 @@ impl PeakRotation {
         }
     }
 
-    /// In radians, for free hinges.
+    /// Returns the rotation in radians for free hinges; `None` for other models.
     #[must_use]
     pub const fn rad(self) -> Option<f64> {
         match self {
@@ -91,30 +89,30 @@ impl PeakRotation {
 }
 
 impl Ending {
-    /// Why a case with [`Outcome::Incomplete`] does not count, and what to do.
+    /// Reason why a case with [`Outcome::Incomplete`] does not count, and the remedy.
     pub const INCOMPLETE: &str = "incomplete: the run ends while the ground still moves, or with too much energy left for a verdict; \
                                   give a longer `duration_s` in [simulation]";
 
-    /// The time of the outcome, in seconds; `None` if it is unknown.
+    /// Returns the time of the outcome, in seconds; `None` if it is unknown.
     #[must_use]
     pub fn known_time_s(&self) -> Option<f64> {
         self.safe_from_s.is_none().then_some(self.outcome_time_s)
     }
 
-    /// Number of all its impacts; `None` if it is unknown.
+    /// Returns the number of all impacts; `None` if it is unknown.
     #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
         self.impacts.filter(|_| self.safe_from_s.is_none())
     }
 
-    /// Number of impacts at which all hinges close at once; `None` for free hinges, which close one by one.
+    /// Returns the number of impacts at which all hinges close together; `None` for free hinges, which close one by one.
     #[must_use]
     pub fn impacts_of_all_hinges(&self) -> Option<usize> {
         let is_of_all = matches!(self.peak, PeakRotation::OverCritical(_));
         self.impacts.filter(|_| is_of_all)
     }
 
-    /// Whether the structure overturns, as far as this is known.
+    /// Returns the verdict on overturning.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match self.uncertain {
@@ -123,7 +121,7 @@ impl Ending {
         }
     }
 
-    /// The ending of the mirror image.
+    /// Returns the ending of the mirrored case.
     pub(super) fn mirrored(&self) -> Self {
         let mut mirrored = self.clone();
         if let Outcome::Overturned(sway) = &mut mirrored.outcome {
@@ -132,21 +130,22 @@ impl Ending {
         mirrored
     }
 
-    /// Simulates a structure, repeats the history in other ways if that may matter, and returns how it ended.
+    /// Simulates a structure, repeats the history if that may matter, and returns the ending.
     ///
     /// # Errors
-    /// Explains why there is no history, or why its numbers cannot be kept.
+    /// The reason why there is no history, or a number is not finite.
     pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
         Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
     }
 
-    /// Simulates several cases, and returns how they ended, in their order. A case without a history, or with one that cannot be kept, has the reason instead.
+    /// Simulates several cases and returns their endings in order. A case without a history, or with a number that is not finite, has the reason
+    /// instead.
     #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         Self::checked(model, cases, Until::End)
     }
 
-    /// Simulates several cases; a history ends once it cannot overturn any more and has ample time to come to rest.
+    /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
     #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
         Self::checked(model, cases, Until::Settled)
@@ -161,10 +160,10 @@ impl Ending {
         checked.map(ending).collect()
     }
 
-    /// The ending of a history, and why it is uncertain, if it is.
+    /// Makes the ending of a history. `uncertain` is the reason if the verdict is uncertain.
     ///
     /// # Errors
-    /// Reports that a number is not finite.
+    /// When a number is not finite.
     pub(super) fn from_summary(
         summary: &Summary,
         safe_from_s: Option<f64>,
@@ -191,7 +190,7 @@ impl Ending {
     }
 }
 
-/// Answers the cases that are valid, and returns all in their order; the others keep their reasons.
+/// Answers the valid cases and returns all in order. Invalid cases keep their errors.
 pub(super) fn answered<C, A, E>(
     cases: impl IntoIterator<Item = Result<C, E>>,
     answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
@@ -206,32 +205,32 @@ pub(super) fn answered<C, A, E>(
     cases.into_iter().map(of).collect()
 }
 
-/// Refuses numbers that are not finite: they are a bug in the program.
+/// Returns an error for numbers that are not finite: they are a bug of the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
     let wrong = "a result is not a finite number: please report the scenario";
     let are_finite = values.iter().all(|value| value.is_finite());
     are_finite.then_some(()).ok_or_else(|| wrong.to_owned())
 }
 
-/// Why a sample has no answer.
+/// Reasons why a sample has no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NoAnswer {
-    /// Its values do not give a structure that stands.
+    /// The values of the sample give no structure that stands.
     Invalid(String),
-    /// Its history could not be computed.
+    /// The history could not be computed.
     Failed(String),
-    /// Its history ended too early for a verdict.
+    /// The history ended too early for a verdict.
     Incomplete,
 }
 
 impl NoAnswer {
-    /// The structure of a sample has no model of motion, for this reason.
+    /// Returns the error of a sample whose structure has no model of motion.
     pub(super) fn invalid(error: impl fmt::Display) -> Self {
         Self::Invalid(error.to_string())
     }
 
-    /// Its name in tables.
+    /// Returns the name of the reason in tables.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -241,7 +240,7 @@ impl NoAnswer {
         }
     }
 
-    /// The reason.
+    /// Returns the reason in words.
     #[must_use]
     pub fn reason(&self) -> &str {
         match self {

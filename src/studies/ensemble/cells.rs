@@ -1,4 +1,4 @@
-//! The ending of every cell of a map in every sample: the probability of overturning in place of an outcome.
+//! A map of every sample: the probability of overturning of each cell, instead of an outcome.
 
 mod report;
 
@@ -14,7 +14,7 @@ use crate::studies::results::{Reported, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
-/// The outcome of a cell of a sample, by its place among the [`OUTCOMES`], or why it has none.
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], or the reason why there is none.
 type CellRow = Result<usize, NoAnswer>;
 
 fn cell_row(result: CellResult) -> CellRow {
@@ -31,12 +31,12 @@ fn cell_row(result: CellResult) -> CellRow {
     }
 }
 
-/// Most histories: their rows must fit into memory.
+/// Largest number of histories; their rows must fit into memory.
 const MAX_HISTORIES: usize = 20_000_000;
-/// Samples whose structures are kept at a time: threads work on neighbours.
+/// Number of samples whose maps are cached. Threads work on neighbouring samples.
 const CACHED: usize = 8;
 
-/// The map of a sample, or why there is none.
+/// The map of a sample, or the reason why there is none.
 type OfSample<'a> = Result<OverturningMap<'a>, String>;
 /// Cached map of a sample, with the number of the sample.
 type Cached<'a> = (usize, Arc<OnceLock<OfSample<'a>>>);
@@ -52,10 +52,10 @@ pub struct CellsOfSamples<'a> {
 }
 
 impl<'a> CellsOfSamples<'a> {
-    /// The cells for a scenario with a map and a table `[uncertain]`.
+    /// Makes the study of a scenario with a map and a table `[uncertain]`.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         let map = OverturningMap::of(scenario)?;
         let uncertain = uncertain(scenario)?;
@@ -84,10 +84,10 @@ impl<'a> CellsOfSamples<'a> {
         })
     }
 
-    /// The map of a sample, counted from 1; 0 is the scenario itself.
+    /// Returns the map of a sample, counted from 1; 0 is the scenario itself. The map is computed at first use.
     fn of_sample(&self, sample: usize) -> Arc<OnceLock<OfSample<'a>>> {
         let found = {
-            // The cache is complete even after a panic of another thread.
+            // The cache is valid even after a panic of another thread.
             let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
             let found = cache.iter().find(|(other, _)| *other == sample).cloned();
             let (_, found) = found.unwrap_or_else(|| {
@@ -111,14 +111,14 @@ impl<'a> CellsOfSamples<'a> {
         found
     }
 
-    /// The numbers of the sample and of the cell within it.
+    /// Returns the number of the sample and the index of the cell within its map.
     fn place(&self, index: usize) -> [usize; 2] {
         let cells = self.map.count();
         [index / cells, index % cells]
     }
 }
 
-/// Whether an uncertain key sets the quantity of an axis.
+/// Returns true if an uncertain key sets the quantity of an axis.
 fn sets_the_quantity_of(axis: &Axis, key: &UncertainKey) -> bool {
     let parts =
         |key: &str| -> Vec<String> { key.split('.').map(|part| part.trim().to_owned()).collect() };
@@ -143,7 +143,7 @@ impl Study for CellsOfSamples<'_> {
         self.map.count() * (1 + self.uncertain.cases())
     }
 
-    /// Cells of one sample with one structure.
+    /// Returns the family of cells of one sample with one structure.
     fn family(&self, index: usize) -> Option<usize> {
         let [sample, cell] = self.place(index);
         let family = self.map.family(cell)?;
@@ -166,17 +166,17 @@ impl Study for CellsOfSamples<'_> {
     }
 }
 
-/// The endings of a cell over all samples.
+/// The outcomes of a cell in all samples.
 struct CellCounts {
-    /// Values of x and y.
+    /// Values of x and y of the cell.
     at: [f64; 2],
-    /// Number of samples with an ending here.
+    /// Number of samples with an outcome of this cell.
     samples: usize,
-    /// Share of those that certainly overturn; `None` without any.
+    /// Share of these samples that certainly overturn; `None` without samples.
     overturned: Option<Share>,
     /// Number of samples with each of the [`OUTCOMES`].
     outcomes: [usize; OUTCOMES.len()],
-    /// Number of samples without an ending because of their values, because of a failure, and because they ended too early.
+    /// Number of samples without an outcome: because of their values, because of a failure, and because their histories ended too early.
     without: [usize; 3],
 }
 
@@ -201,38 +201,37 @@ impl CellCounts {
         }
     }
 
-    /// The part of the samples that certainly overturn.
+    /// Returns the share of samples that certainly overturn; `None` without samples.
     fn probability(&self) -> Option<f64> {
         self.overturned.map(|share| share.share)
     }
 
-    /// The part of the samples with one of the [`OUTCOMES`].
+    /// Returns the share of samples with this index of [`OUTCOMES`]; `None` without samples.
     fn part(&self, outcome: usize) -> Option<f64> {
         (self.samples > 0).then(|| self.outcomes[outcome] as f64 / self.samples as f64)
     }
 }
 
-/// The probabilities whose lines are drawn on the map.
+/// The probabilities whose contour lines are drawn on the map.
 const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 
-/// The values of y on a column of the map, upwards, at which the probability first reaches the [`LEVELS`].
+/// The lowest values of y in a column of the map at which the probability reaches the [`LEVELS`].
 struct Crossing {
     /// The value of x.
     x: f64,
-    /// The values of y, interpolated between cells; the value of the lowest cell if it reaches the level already, and `None` if no
-    /// cell does.
+    /// The values of y, interpolated between cells. The lowest cell of the column if it already reaches the level; `None` if no cell reaches it.
     y: [Option<f64>; 3],
-    /// Whether the lowest cell reaches the level already, so that it may be reached below the map.
+    /// True if the lowest cell already reaches the level, so that the level may be reached below the map.
     at_most: [bool; 3],
 }
 
 impl Crossing {
-    /// The value of y at which a level is reached, if that is inside the map.
+    /// Returns the value of y at which a level is reached; `None` if it is not inside the map.
     fn inside(&self, level: usize) -> Option<f64> {
         self.y[level].filter(|_| !self.at_most[level])
     }
 
-    /// The crossings on a column, whose cells go up.
+    /// Finds the crossings in a column of cells with ascending y.
     fn of(column: &[CellCounts], logarithmic: bool) -> Self {
         let known = column.iter();
         let known = known.filter_map(|cell| Some([cell.at[1], cell.probability()?]));
@@ -260,7 +259,7 @@ impl Crossing {
 }
 
 impl CellsOfSamples<'_> {
-    /// The endings of each cell over these samples.
+    /// Counts the outcomes of each cell in these samples.
     fn counts(&self, samples: &[CellRow]) -> Vec<CellCounts> {
         let cells = self.map.count();
         let of = |cell: usize| {
@@ -270,7 +269,7 @@ impl CellsOfSamples<'_> {
         (0..cells).map(of).collect()
     }
 
-    /// The crossings of all columns.
+    /// Finds the crossings of all columns.
     fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
         let [_, y] = self.map.axes;
         let values = &self.map.values[1];
@@ -280,7 +279,7 @@ impl CellsOfSamples<'_> {
         counts.chunks(values.len()).map(crossing).collect()
     }
 
-    /// The part of the cells that certainly overturn, as the answer of each sample; the scenario itself comes first.
+    /// Returns the share of cells that certainly overturn as the answer of each sample; the scenario itself comes first.
     fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
         let part = |(sample, cells): (usize, &[CellRow])| {

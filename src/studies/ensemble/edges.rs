@@ -1,4 +1,5 @@
-//! The factor on its ground motion from which every sample overturns: searched upwards, up to the first edge only.
+//! The first edge of every sample: the factor on its ground motion from which the sample overturns. The search goes upwards and ends at the
+//! first edge.
 
 use serde::Serialize;
 
@@ -15,30 +16,30 @@ use crate::studies::statistics::{BAND, Share, ascending, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
 
-/// The factors to try, in ascending order.
+/// The question for the first edge of each sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstEdges {
-    /// The factors of a threshold.
+    /// The factors that are tried.
     pub factors: Factors,
 }
 
-/// A fractile of the strengths that first overturn.
+/// A fractile of the strengths at which cases first overturn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FirstStrength {
     /// The strength; infinite if too few cases overturn.
     pub strength: f64,
-    /// Whether the fractile may be lower, because cases overturn at the least strength tried already.
+    /// True if the fractile may be lower, because cases overturn at the smallest strength already.
     pub at_most: bool,
 }
 
 impl FirstStrength {
-    /// The fractile for a `part` of these cases; `None` if there are none.
+    /// Computes the fractile for a `part` of these cases; `None` without cases.
     pub(super) fn of<'e>(
         edges: impl Iterator<Item = &'e FirstEdge> + Clone,
         part: f64,
     ) -> Option<Self> {
         let sorted = |strength: fn(&FirstEdge) -> f64| ascending(edges.clone().map(strength));
-        // A bound counts as 0, so that every fractile that depends on it is 0.
+        // An upper bound counts as 0, so that all fractiles that depend on it are 0.
         let lowest = sorted(|edge| if edge.at_most { 0.0 } else { edge.strength() });
         Some(Self {
             strength: fractile(&sorted(FirstEdge::strength), part)?,
@@ -46,7 +47,7 @@ impl FirstStrength {
         })
     }
 
-    /// In words, after `at`: `at 0.5028`, `at or below 0.2000`, or `beyond`.
+    /// Returns words that follow `at`: `at 0.5028`, `at or below 0.2000`, or `beyond`.
     pub(super) fn in_words(self, at: &str, beyond: &str) -> String {
         let Self { strength, at_most } = self;
         if !strength.is_finite() {
@@ -58,10 +59,10 @@ impl FirstStrength {
 }
 
 impl FirstEdges {
-    /// The question about a scenario.
+    /// Makes the question for a scenario.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
         check(scenario)?;
         Ok(Self { factors })
@@ -86,7 +87,7 @@ impl Question for FirstEdges {
         samples: &Samples<'a, FirstEdge>,
         figure: Figure,
     ) -> Result<Findings<'a, FirstEdge, impl Serialize>, OutputError> {
-        // A sample that never overturns counts with the largest factor tried.
+        // A sample that never overturns counts with the largest factor.
         let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
         let answer = ["first_factor", "the first factor that overturns"];
         let [low, median, high] = BAND.map(|part| FirstStrength::of(samples.answers(), part));
@@ -133,25 +134,25 @@ impl Question for FirstEdges {
     }
 }
 
-/// The part of the summary that only first edges have.
+/// The part of the summary that is specific to first edges.
 #[derive(Serialize)]
 struct Details {
-    /// The least factor that overturns a sample.
+    /// The first factor that overturns a sample.
     first_factor: Band,
-    /// Number of samples whose first factor is only known to be at most the smallest one tried.
+    /// Number of samples that overturn at the smallest factor already.
     at_smallest_factor: usize,
-    /// Number of samples whose first factor is beyond the largest one tried.
+    /// Number of samples that do not overturn up to the largest factor.
     beyond_largest_factor: usize,
-    /// The first factor of the scenario itself.
+    /// The first factor of the scenario itself; null if no factor overturns it.
     own_first_factor: Option<f64>,
-    /// Share of the samples that overturn up to the factor 1; null if that factor was not tried.
+    /// Share of the samples that overturn up to factor 1; null if the factors do not determine the share.
     overturned_up_to_factor_1: Option<Share>,
 }
 
 /// A factor at which a sample first overturns, and the share of samples that overturn up to it.
 type ProbabilityAt = (f64, Share);
 
-/// The distribution of the factors at which samples overturn, ascending.
+/// Returns the distribution of the first factors of the samples, ascending.
 fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
     let factors = ascending(samples.answers().filter_map(|edge| edge.factor));
     let all = samples.answers().count();
@@ -159,7 +160,7 @@ fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
     (1..).zip(factors).filter_map(at).collect()
 }
 
-/// The share of samples that overturn at this factor or below it; `None` if the factors that were tried do not decide that.
+/// Computes the share of samples that overturn up to this factor; `None` if the tried factors do not determine the share.
 fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
     let mut answers = samples.answers();
     let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
@@ -194,7 +195,7 @@ const BAND_FILL: &str = "#cfe3f1";
 const SHARE: Stroke = Stroke::new(color::BLUE, 1.6, "");
 const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
 
-/// Draws the probability of overturning against the factor, with its interval, and the factor of the scenario itself.
+/// Draws the probability of overturning against the factor, with its interval, and the first factor of the scenario itself.
 fn draw(
     figure: Figure,
     samples: &Samples<'_, FirstEdge>,
@@ -206,7 +207,7 @@ fn draw(
     let ends = factors.flat_map(|factor| [0.97 * factor, 1.03 * factor]);
     let x = Scale::around(ends, figure.ticks(8));
     let y = Scale::exactly(0.0, 1.0, 5);
-    // The share rises at each factor at which a sample overturns.
+    // The share rises at the first factor of each sample.
     let steps = |name, of: fn(&Share) -> f64, first: f64| {
         let rises = probabilities.iter().map(|at| (at.0, of(&at.1)));
         Mark::staircase(name, SHARE, (x, first), rises)

@@ -1,4 +1,4 @@
-//! Ending, largest rotation and course of the history of every sample.
+//! The history of every sample: ending, largest rotation and rotation over time.
 
 use std::ops::ControlFlow;
 
@@ -22,47 +22,48 @@ use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::ending::{Ending, Verdict};
 use crate::studies::statistics::{band, fractile, quantile};
 
-/// Largest number of times in the bands over time.
+/// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
 
-/// A history, and the times at which its samples are compared.
+/// The question for the history of each sample, with the times at which samples are compared.
 #[derive(Debug)]
 pub struct Histories {
-    /// The body whose rotation is followed, from 0: the one that rotates most in the history of the scenario itself.
+    /// Index of the body whose rotation is recorded, from 0: the body with the largest rotation in the history of the scenario itself.
     pub body: usize,
-    /// Time between the instants at which the rotation is recorded.
+    /// Interval between recorded rotations, in seconds.
     pub step_s: f64,
-    /// Number of these instants, from time zero.
+    /// Number of recorded rotations, the first at time zero.
     pub times: usize,
-    /// Structure, motion and model of the scenario itself. Samples that differ in neither share the model, because finding its
-    /// mechanisms after impacts takes much longer than a history.
+    /// Structure, motion and model of the scenario itself. Samples with the same structure and motion use this model, because finding mechanisms
+    /// after impacts takes much longer than a history.
     own: (Structure, Motion, Box<dyn Model>),
 }
 
-/// Course and ending of the history of a sample.
+/// Rotation over time and ending of the history of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryAnswer {
     /// Outcome of the history.
     pub ending: Ending,
-    /// Largest rotation of any body, in radians; if it overturned, the largest until overturning was certain.
+    /// Largest rotation of any body, in radians; of an overturned sample, the largest until overturning was certain.
     pub peak_rotation_rad: f64,
-    /// For a row of blocks, its largest potential energy over the barrier, if that is known.
+    /// Largest potential energy of a row of blocks over the barrier; `None` if the barrier is unknown.
     pub potential_over_barrier: Option<f64>,
-    /// Rotation of the body at the instants, in radians, until the end of the history; then it stays constant, or has overturned.
+    /// Recorded rotations of the body, in radians, until the end of the history. After it the rotation is constant, or the sample has
+    /// overturned.
     pub course_rad: Vec<f32>,
 }
 
-/// The model of a scenario for a study of many cases.
+/// Makes the model of a scenario for a study of many cases.
 fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
     let model = scenario.motion.model_for_many_cases(&scenario.structure);
     model.map_err(|error| error.to_string())
 }
 
 impl Histories {
-    /// The question about a scenario.
+    /// Makes the question for a scenario. Computes the history of the scenario itself.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
@@ -71,7 +72,7 @@ impl Histories {
         let summary = summary.map_err(|error| error.to_string())?;
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
-        // A history that ends early may last longer in another sample.
+        // Other samples may come to rest later than the scenario itself.
         let end_s = request.end_s.min(2.0 * summary.end_s);
         let samples = (end_s / request.output_step_s).floor().max(1.0);
         let stride = (samples / MOST_TIMES as f64).ceil();
@@ -104,7 +105,7 @@ impl Question for Histories {
         samples: &Samples<'a, HistoryAnswer>,
         figure: Figure,
     ) -> Result<Findings<'a, HistoryAnswer, impl Serialize>, OutputError> {
-        // A sample that overturned has no largest rotation, but it ranks above all others.
+        // Overturned samples have no largest rotation, but rank above all others.
         let names = [
             ["overturning", "whether it overturns"],
             ["peak_rotation_rank", "how far it rocks"],
@@ -165,7 +166,7 @@ impl Question for Histories {
         self.history(scenario, &*model)
     }
 
-    /// With the steps of a run.
+    /// Computes the answer of the scenario itself with the steps of `run`.
     fn own_answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         self.history(scenario, &*model)
@@ -173,16 +174,16 @@ impl Question for Histories {
 }
 
 impl Histories {
-    /// Simulates the history of a scenario.
+    /// Computes the history of a scenario.
     fn history(&self, scenario: &Scenario, model: &dyn Model) -> Result<HistoryAnswer, NoAnswer> {
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());
-        // Output times do not influence the motion of mechanisms; for rows of blocks, steps may end at output times.
+        // Output times do not affect mechanisms, but steps of rows may end at output times.
         if model.as_mechanisms().is_some() {
             request.output_step_s = self.step_s;
         }
         let mut course_rad: Vec<f32> = Vec::with_capacity(self.times);
         let mut record = WithoutDemand(|sample: &Sample| {
-            // The rounding error of times is far below half an output step.
+            // Rounding errors of times are far below half an output step.
             let wanted = self.step_s * course_rad.len() as f64 - 0.5 * request.output_step_s;
             if sample.time_s >= wanted && course_rad.len() < self.times {
                 let rotation = sample.rotations_rad.get(self.body).copied();
@@ -209,13 +210,13 @@ impl Histories {
 }
 
 impl HistoryAnswer {
-    /// Whether the history itself overturned, whether certain or not.
+    /// Returns true if the history itself overturned, even if the verdict is uncertain.
     #[must_use]
     pub const fn overturned_itself(&self) -> bool {
         matches!(self.ending.outcome, Outcome::Overturned(_))
     }
 
-    /// The largest rotation; infinite if it overturned.
+    /// Returns the largest rotation, in radians; infinite if the history overturned.
     #[must_use]
     pub fn peak_rad(&self) -> f64 {
         match self.overturned_itself() {
@@ -224,18 +225,18 @@ impl HistoryAnswer {
         }
     }
 
-    /// The weight with which it counts as overturned: a half if that is uncertain.
+    /// Returns the weight of the sample as overturned: 1 or 0, and one half if overturning is uncertain.
     #[must_use]
     pub fn overturned(&self) -> f64 {
         match self.ending.verdict() {
             Verdict::Survives => 0.0,
-            // No sample answers with an incomplete history.
+            // A sample with an incomplete history has no answer.
             Verdict::Incomplete | Verdict::Uncertain => 0.5,
             Verdict::Overturns => 1.0,
         }
     }
 
-    /// The rotation at an instant; infinite, with its sign, once it has overturned.
+    /// Returns the rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
     fn rotation_rad(&self, time: usize) -> f64 {
         let last = self.course_rad.last().copied().map_or(0.0, f64::from);
         match self.course_rad.get(time) {
@@ -246,25 +247,25 @@ impl HistoryAnswer {
     }
 }
 
-/// The part of the summary that only histories have.
+/// The part of the summary that is specific to histories.
 #[derive(Serialize)]
 struct Details {
     /// Share of the samples with each outcome.
     outcomes: Map<String, Value>,
-    /// Largest rotation, in radians; quantiles among overturned samples are null.
+    /// Largest rotation, in radians; quantiles in the range of overturned samples are null.
     peak_rotation_rad: Band,
-    /// The body whose rotation is followed, from 0.
+    /// Index of the body whose rotation is recorded, from 0.
     followed_body: usize,
 }
 
-/// The rotation at an instant, over all samples.
+/// The rotations of all samples at a time.
 struct BandAt {
     time_s: f64,
-    /// The rotation of the scenario itself; `None` once it has overturned.
+    /// Rotation of the scenario itself, in radians; `None` after it has overturned.
     own_rad: Option<f64>,
-    /// The 5 % quantile, the median and the 95 % quantile of the samples; infinite if enough of them have overturned.
+    /// The 5 % quantile, the median and the 95 % quantile of the samples, in radians; infinite in the range of overturned samples.
     band_rad: [f64; 3],
-    /// The number of samples that have overturned by then.
+    /// Number of samples that have overturned before this time.
     overturned: usize,
 }
 
@@ -280,7 +281,7 @@ fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
     csv(columns, bands)
 }
 
-/// The probability of overturning, and the ending of the scenario itself; `None` if no sample has an answer.
+/// Returns the probability of overturning, and the ending of the scenario itself, in words; `None` if no sample has an answer.
 fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
     let share = samples.share(|answer| answer.ending.verdict() == Verdict::Overturns)?;
     let own = match samples.own.as_ref().map(|own| (own, own.ending.verdict())) {
@@ -291,7 +292,7 @@ fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
             let rotation = own.ending.peak.over_critical();
             let rotation = rotation.map(|part| (part, "rotation"));
             let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
-            // Rounded down, as in `run`, so that a value just below 100 % does not read as 100 %.
+            // Rounded down as in `run`: a value just below 100 % must not be printed as 100 %.
             margin.map_or("survives".to_owned(), |(part, what)| {
                 let percent = (1000.0 * part).floor() / 10.0;
                 format!("survives, at {percent:.1} % of the {what} from which it would overturn")
@@ -316,7 +317,7 @@ const BAND: &str = "#cfe3f1";
 const MEDIAN: Stroke = Stroke::new(color::BLUE, 1.6, "");
 
 impl Histories {
-    /// The bands of the rotation over time.
+    /// Computes the bands of the rotation over time.
     fn bands(&self, samples: &Samples<'_, HistoryAnswer>) -> Vec<BandAt> {
         let at = |time: usize| {
             let answers = samples.answers();
@@ -360,7 +361,7 @@ impl Histories {
             format!("of {} ", name.replace('_', " "))
         });
         let label = format!("Rotation {of_body}(rad)");
-        // Values of samples that overturned are outside the picture.
+        // Overturned samples are outside the picture.
         let at = |which: usize| {
             let points = bands.iter().map(move |at| (at.time_s, at.band_rad[which]));
             points.map(move |(time_s, rad)| (time_s, rad.clamp(y.low, y.high)))

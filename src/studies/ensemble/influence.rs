@@ -1,4 +1,4 @@
-//! The influence of each uncertain number on an answer: in words, as JSON, and as bars.
+//! The influence of each uncertain number on an answer: words, JSON and bars.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -13,18 +13,18 @@ use crate::scenario::Uncertain;
 
 /// The influence of the uncertain numbers on an answer.
 pub struct Influence<'a> {
-    /// The name of the answer in JSON.
+    /// Name of the answer in JSON.
     pub(super) name: &'static str,
-    /// The answer, in words that follow "decides 60 % of".
+    /// The answer in words that follow "decides 60 % of".
     answer: &'static str,
-    /// The numbers, in the order of the keys; `None` if the samples are alike or too few.
+    /// The influence of each number, in the order of the keys; `None` if the samples do not differ or are too few.
     pub(super) numbers: Option<Vec<Number<'a>>>,
 }
 
 /// The influence of an uncertain number.
 #[derive(Serialize)]
 pub(super) struct Number<'a> {
-    /// Its key.
+    /// Key of the number.
     key: &'a str,
     #[serde(skip)]
     spoken: String,
@@ -51,8 +51,8 @@ impl<'a> Influence<'a> {
         }
     }
 
-    /// `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness ratio 25 % (...)`. The
-    /// rest is decided by several numbers together, or by chance if the intervals allow that nothing is left.
+    /// Returns the influence in words: `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first factor that overturns, thickness
+    /// ratio 25 % (...)`. The rest is due to several numbers together, or, if the intervals allow that no rest is left, perhaps to chance.
     pub(super) fn in_words(&self) -> String {
         const LEAST: f64 = 0.05;
         let answer = self.answer;
@@ -95,7 +95,7 @@ impl<'a> Influence<'a> {
     }
 }
 
-/// A key in spoken form: `thickness ratio` for `arch.thickness_ratio`, if no other key has the same last part.
+/// Returns a key in words: `thickness ratio` for `arch.thickness_ratio`; the key itself if another key has the same last part.
 fn spoken(key: &str, uncertain: &Uncertain) -> String {
     const UNITS: [&str; 12] = [
         "_m_s2", "_kg_m3", "_gpa_m", "_mpa", "_gpa", "_rad", "_deg", "_hz", "_kn", "_m", "_s", "_g",
@@ -111,7 +111,7 @@ fn spoken(key: &str, uncertain: &Uncertain) -> String {
     if is_shared { key.to_owned() } else { own }
 }
 
-/// A share in percent, with a decimal close to 0 and to 100 %.
+/// Returns a share in percent, with one decimal near 0 and near 100 %.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let decimals =
@@ -124,7 +124,7 @@ const ROW_PX: f64 = 42.0;
 const BAR_PX: f64 = 14.0;
 const INTERVAL: Stroke = Stroke::new(color::BLACK, 1.4, "");
 
-/// Draws the influence on each answer: a bar with its interval for each number.
+/// Draws the influence of each number on each answer: a bar with its interval.
 pub(super) fn draw(figure: Figure, title: &str, influences: &[Influence<'_>]) -> String {
     let mut sheet = Sheet::new(figure, title);
     sheet.gap(10.0);

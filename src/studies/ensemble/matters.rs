@@ -1,10 +1,9 @@
-//! The influence of uncertain numbers: the share of the variance of an answer that each of them explains.
+//! The influence of uncertain numbers: the share of the variance of an answer that is due to each number.
 //!
-//! Sobol's first-order index of a number is the part of the variance of the answer that would vanish, on average, if that
-//! number were known: `Var(E[Y | X]) / Var(Y)`. It is estimated from the existing samples, without further ones: the
-//! answer is expanded in cosines of the rank of the number. They are orthogonal for uniformly distributed ranks, and
-//! the squares of the coefficients add up to that variance (Plischke, Rel. Eng. Syst. Safety 107, 2012). The mean
-//! contribution of the other numbers to these squares, which is noise, is subtracted.
+//! Sobol's first-order index of a number is the part of the variance of the answer that would vanish, on average, if that number were known:
+//! `Var(E[Y | X]) / Var(Y)`. It is estimated from the existing samples: the answer is expanded in cosines of the rank of the number. The cosines
+//! are orthogonal for uniformly distributed ranks, and the squares of the coefficients add up to the numerator (Plischke, Rel. Eng. Syst. Safety
+//! 107, 2012). The mean contribution of the other numbers to these squares is noise and is subtracted.
 
 use serde::Serialize;
 
@@ -13,32 +12,35 @@ use crate::studies::statistics::{bootstrap, correlation, interval, moments, rank
 /// The influence of an uncertain number on an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Matters {
-    /// Its first-order index, from 0 to 1.
+    /// First-order index, from 0 to 1.
     pub first_order: f64,
-    /// Its 95 % interval, by bootstrap.
+    /// 95 % interval of the first-order index, by bootstrap.
     pub first_order_interval: [f64; 2],
-    /// Spearman's rank correlation with the answer: above 0 if larger numbers give larger answers.
+    /// Spearman's rank correlation with the answer: positive if larger numbers give larger answers.
     pub rank_correlation: f64,
-    /// Its 95 % interval, by bootstrap with the original ranks.
+    /// 95 % interval of the rank correlation, by bootstrap with the original ranks.
     pub rank_correlation_interval: [f64; 2],
-    /// Its total index, with `total_indices` in the scenario.
+    /// Total index; `None` without `total_indices` in the scenario.
     #[serde(flatten)]
     pub total: Option<Total>,
 }
 
-/// The total index of a number: the part of the variance of the answer that would be left, on average, if all other numbers were
-/// known, `E[Var(Y | all others)] / Var(Y)`.
+/// The total index of a number: the part of the variance of the answer that would remain, on average, if all other numbers were known, `E[Var(Y
+/// | all others)] / Var(Y)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Total {
-    /// The index, from 0 to 1.
+    /// Total index, from 0 to 1.
     pub total: f64,
-    /// Its 95 % interval, by bootstrap.
+    /// 95 % interval of the total index, by bootstrap.
     pub total_interval: [f64; 2],
 }
 
-/// The total index of each number, by the estimator of Jansen (Computer Physics Communications 117, 1999) with the design of Saltelli and
-/// others (Computer Physics Communications 181, 2010): `answers` of the samples, and behind each other, for every sample and number,
-/// the answers `moved` where that number alone has another value. `None` stands for no answer. `None` if the answers do not vary.
+/// Computes the total index of each number, by the estimator of Jansen (Computer Physics Communications 117, 1999) with the design of Saltelli
+/// and others (Computer Physics Communications 181, 2010).
+///
+/// `answers` has the answer of each sample. `moved` has, for each sample in turn, one answer per number: that of the sample with another value
+/// of this number alone. `None` in either list means no answer. Returns `None` if the answers do not vary, or there are fewer than
+/// [`LEAST_SAMPLES`].
 #[must_use]
 pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<Vec<Total>> {
     let numbers = moved.len() / answers.len().max(1);
@@ -75,16 +77,16 @@ pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<V
     (0..numbers).map(of).collect()
 }
 
-/// With fewer samples than these, nothing is reported.
+/// Smallest number of samples for which an influence is computed.
 pub const LEAST_SAMPLES: usize = 16;
 
-/// Largest number of cosines: enough for an answer that turns three times, and few enough that their noise is small.
+/// Largest number of cosines: enough for an answer with three extremes, and few enough to keep the noise small.
 const MOST_HARMONICS: usize = 8;
 /// Number of samples needed for each cosine.
 const SAMPLES_PER_HARMONIC: usize = 16;
 
-/// The influence of each number on the answers of the samples: `values[sample][number]`, `answers[sample]`. `None` if the
-/// answer does not vary, or there are fewer than [`LEAST_SAMPLES`].
+/// Computes the influence of each number on the answers of the samples, from `values[sample][number]` and `answers[sample]`. `None` if the
+/// answers do not vary, or there are fewer than [`LEAST_SAMPLES`].
 #[must_use]
 pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>> {
     let count = answers.len();
@@ -101,7 +103,7 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
         let all: Vec<usize> = (0..count).collect();
         let raw = expansion.index(&all, answers)?;
         let first_order = unbiased(raw, expansion.bias());
-        // Resampling adds the same noise a second time.
+        // Resampling adds noise of the same size again.
         let drawn = resampled
             .iter()
             .filter_map(|drawn| expansion.index(drawn, answers))
@@ -124,12 +126,12 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
     (0..numbers).map(of).collect()
 }
 
-/// Corrects an index for noise, which raises it by `bias` times the unexplained part.
+/// Corrects an index for noise. Noise increases the index by `bias` times the unexplained part.
 fn unbiased(raw: f64, bias: f64) -> f64 {
     ((raw - bias) / (1.0 - bias)).clamp(0.0, 1.0)
 }
 
-/// Cosines of the ranks of a number: one list for each harmonic.
+/// Cosines of the ranks of a number: a list of samples for each harmonic.
 struct Expansion(Vec<Vec<f64>>);
 
 impl Expansion {
@@ -146,13 +148,13 @@ impl Expansion {
         Self(cosines.collect())
     }
 
-    /// The index that noise alone would give on average.
+    /// Returns the mean index of pure noise.
     fn bias(&self) -> f64 {
         let samples = self.0.first().map_or(1, Vec::len);
         self.0.len() as f64 / samples as f64
     }
 
-    /// The part of the variance of the answers of these samples that is a function of the number.
+    /// Computes the part of the variance of the answers of these samples that the expansion explains; `None` if the answers do not vary.
     fn index(&self, samples: &[usize], answers: &[f64]) -> Option<f64> {
         let chosen: Vec<f64> = samples.iter().map(|index| answers[*index]).collect();
         let [mean, variance] = moments(&chosen);

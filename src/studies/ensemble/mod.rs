@@ -1,10 +1,9 @@
-//! The consequences of uncertain numbers: a question answered for every sample of a scenario.
+//! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
 //!
-//! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is
-//! answered for each case: the ending and course of its history ([`histories`]), the factor that first overturns it ([`edges`]), or the
-//! records that overturn it ([`records`]). The study knows only the answers, so shards, resuming and threads work alike for all questions;
-//! so do the shares, the influence of each number and the files.
-//! The cells of a map ([`cells`]) are a study of their own, whose cases are cells of samples.
+//! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
+//! each case: the history of the sample ([`histories`]), the first factor that overturns it ([`edges`]), or the intensity of each record that
+//! overturns it ([`records`]). Shards, resuming, threads, shares, influences and files are common to all questions. The cells of a map
+//! ([`cells`]) are a separate study, whose cases are cells of samples.
 
 pub mod cells;
 pub mod edges;
@@ -31,13 +30,13 @@ pub trait Question: Sync {
     /// The answer for a sample.
     type Answer: Serialize + DeserializeOwned + Send;
 
-    /// Name of the study in the files of its parts.
+    /// Name of the study, in part files and in their names.
     const NAME: &'static str;
 
-    /// Names of the files of its findings, the summary last.
+    /// Names of the files of the findings, the summary last.
     const FILES: &'static [&'static str];
 
-    /// The findings from all answers.
+    /// Computes the findings from all answers.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -47,13 +46,13 @@ pub trait Question: Sync {
         figure: Figure,
     ) -> Result<Findings<'a, Self::Answer, impl Serialize>, OutputError>;
 
-    /// The answer for a scenario that has the values of the sample.
+    /// Computes the answer of a scenario that has the values of a sample.
     ///
     /// # Errors
-    /// Explains why there is none.
+    /// The reason why there is no answer.
     fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer>;
 
-    /// The answer for the scenario itself, which may be computed more accurately than those of its samples.
+    /// Computes the answer of the scenario itself, which may be more accurate than those of the samples.
     ///
     /// # Errors
     /// As [`Question::answer`].
@@ -61,13 +60,13 @@ pub trait Question: Sync {
         self.answer(scenario)
     }
 
-    /// Other settings on which the answers depend, in words.
+    /// Returns other settings on which the answers depend, in words.
     fn settings(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// The samples of a scenario and the question about each. The first case is the scenario itself.
+/// A study that answers a question for every sample of a scenario. The first case is the scenario itself.
 #[derive(Debug)]
 pub struct Ensemble<'a, Q> {
     scenario: &'a Scenario,
@@ -76,10 +75,10 @@ pub struct Ensemble<'a, Q> {
 }
 
 impl<'a, Q: Question> Ensemble<'a, Q> {
-    /// The ensemble of a scenario with a table `[uncertain]`, unless the question does not fit the scenario.
+    /// Makes the ensemble of a scenario with a table `[uncertain]`.
     ///
     /// # Errors
-    /// Explains that the question does not fit, or that the scenario has no such table.
+    /// When the question does not fit the scenario, or the scenario has no table `[uncertain]`.
     pub fn new(scenario: &'a Scenario, question: Result<Q, String>) -> Result<Self, String> {
         Ok(Self {
             question: question?,
@@ -89,7 +88,7 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
     }
 }
 
-/// The uncertain numbers of a scenario, or an explanation that it has none.
+/// Returns the uncertain numbers of a scenario, or the error that the scenario has none.
 fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
     Ok(scenario.uncertain.as_ref().ok_or(
         "the scenario has no [uncertain]: give it a table such as\n\n\

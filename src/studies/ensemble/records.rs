@@ -1,4 +1,5 @@
-//! The intensity from which each record of a suite overturns each sample: fragility due to the records, to uncertain numbers, and to both.
+//! Fragility of an uncertain structure: the intensity from which each record of a suite overturns each sample. It separates scatter due to
+//! records from scatter due to uncertain numbers.
 
 use serde::Serialize;
 
@@ -18,24 +19,24 @@ use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{rounded, rounded_range};
 
-/// Relative width to which an intensity is bisected: far less than the scatter between records.
+/// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
 
-/// The records of a suite, and its levels in ascending order.
+/// The question for the capacities of each sample under the records of a suite.
 #[derive(Clone, Debug)]
 pub struct Capacities {
     suite: Suite,
     levels: Vec<f64>,
 }
 
-/// The intensity from which each record overturns a sample; the mirrored record follows each record.
+/// The first edge of a sample under each record; with both signs, the mirrored record follows its record.
 type Edges = Vec<FirstEdge>;
 
 impl Capacities {
-    /// The question about a scenario.
+    /// Makes the question for a scenario.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario.suite.as_ref();
@@ -50,7 +51,7 @@ impl Capacities {
         if self.suite.both_signs { 2 } else { 1 }
     }
 
-    /// The file of each record, and its sign, in the order of the answers.
+    /// Returns the file and the sign of each record, in the order of the answers.
     fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
         let signs = &["1", "-1"][..self.signs()];
         let records = self.suite.records.iter();
@@ -94,7 +95,7 @@ impl Question for Capacities {
                 counted.of_samples().count()
             )
         }));
-        // The median over the records for each sample; the largest level if half of the records do not overturn the sample.
+        // Influence on the median over the records of a sample; the largest level if fewer than half of the records overturn the sample.
         let most = self.levels.last().copied().unwrap_or(1.0);
         let median = |edges: &Edges| {
             let median = FirstStrength::of(edges.iter(), 0.5);
@@ -134,38 +135,38 @@ impl Question for Capacities {
     }
 }
 
-/// The part of the summary that only suites have.
+/// The part of the summary that is specific to suites.
 #[derive(Serialize)]
 struct Details {
     /// The measure of the intensities.
     intensity: &'static str,
-    /// Median and dispersion of the intensities that overturn.
+    /// Median and dispersion of the overturning intensities.
     fragility: Fragilities,
     /// Number of records and samples that overturn at the lowest level already.
     at_lowest_level: usize,
 }
 
-/// The three distributions.
+/// The three distributions of overturning intensities.
 #[derive(Serialize)]
 struct Fragilities {
-    /// Due to the records: for the scenario itself.
+    /// Scatter due to the records: the scenario itself under all records.
     record_to_record: Estimated,
-    /// Due to the uncertain numbers: for the median over the records of each sample.
+    /// Scatter due to the uncertain numbers: the median over the records of each sample.
     uncertain_data: Estimated,
-    /// Due to both: for all samples under all records.
+    /// Scatter due to both: all samples under all records.
     both: Estimated,
 }
 
 /// A distribution, with 95 % intervals by bootstrap over the records.
 #[derive(Serialize)]
 struct Estimated {
-    /// The median; `None` if fewer than half of the cases overturn.
+    /// Median; `None` if fewer than half of the cases overturn.
     median: Option<f64>,
-    /// Ends of its interval.
+    /// Ends of the interval of the median; `None` if a draw has no median.
     median_interval: Option<[f64; 2]>,
-    /// The dispersion; `None` if the upper fractile is not reached.
+    /// Dispersion; `None` if too few cases overturn for the 84 % fractile.
     dispersion: Option<f64>,
-    /// Ends of its interval.
+    /// Ends of the interval of the dispersion; `None` if a draw has no dispersion.
     dispersion_interval: Option<[f64; 2]>,
 }
 
@@ -193,9 +194,9 @@ fn rounded_or_unknown(number: Option<f64>) -> String {
     number.map_or("not known".to_owned(), rounded)
 }
 
-/// Median and dispersion of the intensities that overturn, from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of
-/// the ratio of the outer two, which for a lognormal distribution is the standard deviation of the logarithm. Infinite intensities mean
-/// that nothing overturned.
+/// Computes median and dispersion of overturning intensities from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the
+/// ratio of the outer fractiles; for a lognormal distribution this is the standard deviation of the logarithm. Infinite intensities are cases
+/// that do not overturn.
 fn distribution(intensities: Vec<f64>) -> [Option<f64>; 2] {
     let intensities = ascending(intensities);
     let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
@@ -204,11 +205,11 @@ fn distribution(intensities: Vec<f64>) -> [Option<f64>; 2] {
     [median, dispersion]
 }
 
-/// The edges that count. Mirrored records do not count if each has exactly the edges of the record itself, as with four links of a
-/// symmetric structure.
+/// The edges that count. Mirrored records do not count if all have exactly the edges of the original records, as with four links of a symmetric
+/// structure.
 struct Counted<'a> {
     question: &'a Capacities,
-    /// For the scenario itself and for each sample, the edges of each record.
+    /// The edges of each record, for the scenario itself; `samples` has them for each sample.
     own: Vec<&'a [FirstEdge]>,
     samples: Vec<Vec<&'a [FirstEdge]>>,
 }
@@ -249,7 +250,7 @@ impl<'a> Counted<'a> {
         let drawn: Vec<_> = draws.map(|drawn| self.distributions(&drawn)).collect();
         let estimated = |which: usize| {
             let of = |number: usize| {
-                // If any draw lacks the number, there is no interval.
+                // There is no interval if a draw lacks the number.
                 let numbers = drawn.iter().map(|drawn| drawn[which][number]);
                 interval(numbers.collect::<Option<_>>()?)
             };
@@ -268,8 +269,7 @@ impl<'a> Counted<'a> {
         }
     }
 
-    /// The distributions due to the records, to the uncertain numbers and to both, for these records, some of which may occur more than
-    /// once.
+    /// Computes the distributions due to the records, to the uncertain numbers and to both, for a list of records with repetitions.
     fn distributions(&self, records: &[usize]) -> [[Option<f64>; 2]; 3] {
         let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<f64> {
             let edges = records.iter().filter_map(|record| of.get(*record).copied());
@@ -283,7 +283,7 @@ impl<'a> Counted<'a> {
         ]
     }
 
-    /// The table of the shares that overturn up to each level: for the records that shake the scenario itself, and for all samples.
+    /// Makes the table of the shares that overturn up to each level: of the records with the scenario itself, and of all samples.
     fn at_levels(&self) -> Result<Vec<u8>, OutputError> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
             let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
@@ -299,7 +299,7 @@ impl<'a> Counted<'a> {
         csv(columns, &self.question.levels)
     }
 
-    /// The intensities that overturn 5 % and half of the cases.
+    /// Returns the intensities that overturn 5 % and half of the cases, in words.
     fn first_words(&self, samples: usize, fragilities: &Fragilities) -> String {
         let column = format!("{} ", self.question.suite.measure.column());
         let at = |of: Vec<&FirstEdge>, part: f64, column: &str| {
@@ -322,7 +322,7 @@ impl<'a> Counted<'a> {
 }
 
 impl Capacities {
-    /// The table of all edges.
+    /// Makes the table of all edges.
     fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
         type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
@@ -339,7 +339,7 @@ impl Capacities {
         csv(columns, &rows)
     }
 
-    /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all
+    /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all samples
     /// together.
     fn draw(&self, figure: Figure, samples: &Samples<'_, Edges>) -> String {
         const MOST_FAINT: usize = 20;

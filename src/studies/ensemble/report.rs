@@ -1,4 +1,4 @@
-//! The report of an ensemble: files, JSON and words of any question.
+//! Files, JSON and words of an ensemble, for any question.
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -14,34 +14,34 @@ use crate::studies::statistics::Share;
 
 /// The findings about the answers to a question.
 pub struct Findings<'a, A, D> {
-    /// The first sentence, before the influence of the uncertain numbers; `None` if no sample has an answer.
+    /// First sentence of the words, before the influence of the uncertain numbers; `None` if no sample has an answer.
     pub(super) first: Option<String>,
-    /// The lines after that.
+    /// Further lines of the words.
     pub(super) lines: Vec<String>,
-    /// The influence of the uncertain numbers. The first sentence has the first that is known.
+    /// The influences of the uncertain numbers. The words show the first known influence.
     pub(super) influences: Vec<Influence<'a>>,
-    /// The number of histories without a verdict, and the remedy.
+    /// Number of histories without a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) no_verdict: Option<String>,
-    /// The part of the summary that only this question has.
+    /// The part of the summary that is specific to the question.
     pub(super) details: D,
     /// Pictures and pages.
     pub(super) pictures: Vec<String>,
-    /// Tables that precede the table of the samples.
+    /// Tables before the table of samples.
     pub(super) tables: Vec<Vec<u8>>,
-    /// The columns of the table of samples; without columns there is no such table.
+    /// Columns of the table of samples; without columns there is no such table.
     pub(super) columns: Vec<Column<'a, Line<'a, A>>>,
-    /// As in [`Results`].
+    /// Largest rotations, as in [`Results`].
     pub(super) peaks: Vec<f64>,
 }
 
-/// A row of the table of samples: its number, from 1, or 0 for the scenario itself; its values; and its answer.
+/// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; its values; and its answer.
 pub(super) struct Line<'a, A> {
     pub(super) number: usize,
     values: Vec<Option<f64>>,
     pub(super) answer: &'a Result<A, NoAnswer>,
 }
 
-/// The scenario itself, then all samples.
+/// Returns the rows of the table of samples: the scenario itself, then all samples.
 pub(super) fn lines<'a, A>(samples: &Samples<'a, A>) -> Vec<Line<'a, A>> {
     let own = Line {
         number: 0,
@@ -56,7 +56,7 @@ pub(super) fn lines<'a, A>(samples: &Samples<'a, A>) -> Vec<Line<'a, A>> {
     [own].into_iter().chain(rows).collect()
 }
 
-/// The columns with the numbers of the samples and their values.
+/// Returns the columns with the numbers of the samples and their values.
 fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A>>> {
     let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
     vec![
@@ -65,7 +65,7 @@ fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A
     ]
 }
 
-/// A column of the answers; it is empty for samples without one.
+/// Returns a column of the answers; it is empty for samples without an answer.
 pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&A) -> C + 'a,
@@ -75,7 +75,7 @@ pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
     })
 }
 
-/// The column with the reasons of samples without an answer.
+/// Returns the column with the reasons of samples without an answer.
 pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
     column("why_not", |line: &Line<'_, A>| {
         line.answer.as_ref().err().map(NoAnswer::name)
@@ -90,33 +90,33 @@ const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not 
 struct SampleSummary<'a, D> {
     /// Name of the program.
     program: &'static str,
-    /// Its version.
+    /// Version of the program.
     version: &'static str,
     /// The scenario with all defaults.
     scenario: Value,
-    /// Unlikely numbers, limits of the model, histories without a verdict.
+    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
     /// Number of samples.
     samples: usize,
     /// Number of samples with an answer.
     answered: usize,
-    /// Number of samples whose values make no valid structure.
+    /// Number of samples whose values give no valid structure.
     invalid: usize,
     /// Number of samples that could not be computed.
     failed: usize,
-    /// Number of samples that ended too early for a verdict.
+    /// Number of samples whose histories ended too early for a verdict.
     incomplete: usize,
-    /// The samples without an answer, and the reasons.
+    /// The samples without an answer, with the reasons.
     without_answer: Vec<Value>,
     /// The uncertainty that samples do not cover.
     not_considered: &'static str,
     #[serde(flatten)]
     details: &'a D,
-    /// Influence of each uncertain number, for each answer.
+    /// Influence of each uncertain number on each answer.
     what_matters: Map<String, Value>,
 }
 
-/// Quantiles of the answers; `None` if unknown.
+/// Quantiles of the answers; null if they are unknown or infinite.
 #[derive(Serialize)]
 pub(super) struct Band {
     quantile_05: Option<f64>,
@@ -207,7 +207,7 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
     }
 }
 
-/// A share with its interval.
+/// Returns a share with its interval in words.
 pub(super) fn share_in_words(share: &Share) -> String {
     let [part, low, high] = share.numbers().map(percent);
     let Share { count, of, .. } = share;

@@ -1,4 +1,4 @@
-//! The answers of all samples side by side.
+//! The answers of all samples.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,13 +12,13 @@ use crate::studies::statistics::{Share, ranks};
 /// A sample and its answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SampleRow<A> {
-    /// Its values, in the order of the keys; empty for the scenario itself.
+    /// Values of the sample, in the order of the keys; empty for the scenario itself.
     pub values: Vec<f64>,
-    /// Its answer.
+    /// Answer of the sample, or the reason why there is none.
     pub answer: Result<A, NoAnswer>,
 }
 
-/// The rows of an ensemble, with a separate answer of the scenario itself.
+/// The answers of an ensemble, with the answer of the scenario itself separate.
 pub struct Samples<'a, A> {
     /// The scenario.
     pub(crate) scenario: &'a Scenario,
@@ -27,7 +27,7 @@ pub struct Samples<'a, A> {
     pub(crate) own: &'a Result<A, NoAnswer>,
     /// The samples, in their order.
     pub(crate) rows: &'a [SampleRow<A>],
-    /// Samples in which one number has another value, as [`Uncertain::cases`] describes; empty without total indices.
+    /// Samples in which a single number has another value (see [`Uncertain::cases`]); empty without total indices.
     moved: &'a [SampleRow<A>],
 }
 
@@ -48,29 +48,29 @@ impl<'a, A> Samples<'a, A> {
         }
     }
 
-    /// The title of the scenario, or `otherwise` without one.
+    /// Returns the title of the scenario, or `otherwise` without one.
     pub(crate) fn title(&self, otherwise: &'a str) -> &'a str {
         self.scenario.title.as_deref().unwrap_or(otherwise)
     }
 
-    /// The answers, without the samples that have none.
+    /// Returns the answers of all samples that have one.
     pub(crate) fn answers(&self) -> impl Iterator<Item = &'a A> + Clone + use<'a, A> {
         self.rows.iter().filter_map(|row| row.answer.as_ref().ok())
     }
 
-    /// The samples without an answer: their numbers, from 1, and the reasons.
+    /// Returns the numbers of the samples without an answer, from 1, and the reasons.
     pub(super) fn without(&self) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
         let rows = (1..).zip(self.rows);
         rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
     }
 
-    /// The share of the answers that fulfil a condition; `None` without answers.
+    /// Returns the share of answers that satisfy a condition; `None` without answers.
     pub(crate) fn share(&self, condition: impl Fn(&A) -> bool) -> Option<Share> {
         let count = self.answers().filter(|answer| condition(answer)).count();
         Share::of(count, self.answers().count())
     }
 
-    /// The number of samples that ended too early for a verdict, and the remedy; `None` if none did.
+    /// Returns the number of samples whose histories ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) fn no_verdict(&self) -> Option<String> {
         let incomplete = self
             .without()
@@ -78,7 +78,7 @@ impl<'a, A> Samples<'a, A> {
         no_verdict(incomplete.count(), self.rows.len(), "samples")
     }
 
-    /// The influence of the uncertain numbers on a number of each sample, or on its rank.
+    /// Computes the influence of the uncertain numbers on a number of each sample, or on the rank of that number.
     pub(super) fn influence(
         &self,
         names: [&'static str; 2],
@@ -110,7 +110,7 @@ impl<'a, A> Samples<'a, A> {
     }
 }
 
-/// The known numbers, or their ranks.
+/// Returns the known numbers, or their ranks.
 fn numbers(of: Vec<Option<f64>>, by_rank: bool) -> Vec<Option<f64>> {
     if !by_rank {
         return of;

@@ -1,4 +1,4 @@
-//! Impacts of the structure of a scenario: the chain of mechanisms after them, and one impact in detail.
+//! Impacts of the structure of a scenario: the chain of mechanisms, and one impact in detail.
 
 mod report;
 
@@ -21,43 +21,43 @@ use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
 use crate::scenario::Scenario;
 
-/// The impact that leads to a link of the chain of four links, for a first sway to a given side.
+/// The impact that leads to a link of the chain of four links, after a first sway to a given side.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkImpact<'a> {
     /// The model of the structure.
     pub model: &'a FourLinks,
     /// The first sway.
     pub first: Sway,
-    /// Number of the impact, from 1, and of the link to which it leads.
+    /// Number of the impact, from 1, and of the link after the impact.
     pub index: usize,
 }
 
 impl<'a> LinkImpact<'a> {
-    /// The chain.
+    /// Returns the chain of mechanisms.
     #[must_use]
     pub fn chain(&self) -> &'a Chain {
         self.model.chain_from(self.first)
     }
 
-    /// The mechanism that closes; `None` when an impact before this one stops the structure.
+    /// Returns the mechanism before the impact; `None` if an earlier impact stops the structure.
     #[must_use]
     pub fn before(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index.checked_sub(1)?)
     }
 
-    /// The mechanism that follows; `None` when none can.
+    /// Returns the mechanism after the impact; `None` if no mechanism can follow.
     #[must_use]
     pub fn after(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index)
     }
 
-    /// The impulses; `None` also if the restitution coefficient is prescribed.
+    /// Returns the impulse line; `None` if no mechanism can follow, or the restitution coefficient is prescribed.
     #[must_use]
     pub fn line(&self) -> Option<&'a ImpulseLine> {
         self.after()?.impulse_line.as_ref()
     }
 
-    /// Words that follow the number of the impact; empty for a first sway to the right, the usual case.
+    /// Returns words that follow the number of the impact; empty for a first sway to the right.
     #[must_use]
     pub const fn after_first(&self) -> &'static str {
         match self.first {
@@ -66,19 +66,19 @@ impl<'a> LinkImpact<'a> {
         }
     }
 
-    /// The side to which the structure sways after it.
+    /// Returns the side to which the structure sways after the impact.
     #[must_use]
     pub const fn sway(&self) -> Sway {
         self.first.before(self.index)
     }
 
-    /// The profile in the frame in which that sway is to the right.
+    /// Returns the profile in the frame in which the sway after the impact is to the right.
     #[must_use]
     pub fn profile(&self) -> &'a dyn Profile {
         self.chain().profile(self.index)
     }
 
-    /// The impulse line as a table; `None` if there is none.
+    /// Returns the impulse line as a table; `None` if there is no impulse line.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -87,7 +87,7 @@ impl<'a> LinkImpact<'a> {
         Some(report::line_table(self, &self.after()?.mechanism, line))
     }
 
-    /// This impact by the models that obey the momentum theorems, and by the model of the scenario.
+    /// Computes this impact by the models that obey the momentum theorems, and by the model of the scenario.
     fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
         use ImpactModel::{MaxRestitution, Mirrored, SameSections};
         let known = [MaxRestitution, SameSections, Mirrored];
@@ -99,7 +99,7 @@ impl<'a> LinkImpact<'a> {
             .collect()
     }
 
-    /// The largest restitution of any admissible motion.
+    /// Computes the largest restitution of all admissible motions.
     fn certified(
         &self,
         before: &FourLink,
@@ -116,17 +116,17 @@ impl<'a> LinkImpact<'a> {
 /// A question about the impacts of four links.
 #[derive(Clone, Copy, Debug)]
 pub struct Question {
-    /// The number of impacts.
+    /// Number of impacts.
     pub count: usize,
-    /// Whether the impact models are compared.
+    /// True to compare the impact models.
     pub models: bool,
-    /// Whether the restitution is certified.
+    /// True to certify the restitution.
     pub certificate: bool,
-    /// Number of parts into which a ring without joints is cut for the certificate; `None`: the usual number.
+    /// Number of parts into which a ring without joints is divided for the certificate; `None` for the default.
     pub joints: Option<usize>,
 }
 
-/// The chain of mechanisms of any structure after a first sway to this side.
+/// Computes the chain of mechanisms of a structure after a first sway to this side.
 ///
 /// # Errors
 /// When a number is not finite.
@@ -141,7 +141,7 @@ pub fn chain_answer(
     Ok(Answer::of(&summary)?)
 }
 
-/// The chain of four links with its impulses, and the requested details of one impact.
+/// Computes the chain of four links with its impulses, and the requested details of one impact.
 ///
 /// # Errors
 /// When no certificate is found, or a number is not finite.
@@ -151,7 +151,7 @@ pub fn four_links_answer(
     question: &Question,
 ) -> Result<Answer, StudyError> {
     let (model, count) = (impact.model, question.count);
-    // An arch of equal voussoirs, or of none, is symmetric, so both chains are mirror images.
+    // An arch of equal voussoirs, or without voussoirs, is symmetric: both chains are mirror images.
     let sides = match scenario.structure.is_symmetric() {
         true => &[impact.first][..],
         false => Sway::ALL,

@@ -1,7 +1,7 @@
-//! The report of impacts: the chain, its impulses and their certificate as the summary from which words follow, and the impulse line as
-//! a table.
+//! The report of impacts: the chain, its impulses and their certificate as a summary, from which the words follow, and the impulse line as a
+//! table.
 //!
-//! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before.
+//! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before the impact.
 
 use askama::Template;
 use serde::Serialize;
@@ -27,15 +27,15 @@ use crate::scenario::Scenario;
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
 #[template(path = "studies/impact/words.txt")]
 pub struct Summary {
-    /// The impacts after a first sway to the right, or for a symmetric structure to the chosen side.
+    /// Impacts after a first sway to the right; of a symmetric structure, after a first sway to the chosen side.
     pub impacts: Vec<ChainImpact>,
-    /// The impacts after a first sway to the left, for an arch of four links that is not symmetric.
+    /// Impacts after a first sway to the left; absent unless the structure is an arch of four links that is not symmetric.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub impacts_after_left: Option<Vec<ChainImpact>>,
-    /// One impact by all impact models.
+    /// One impact by all impact models; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub models: Option<Vec<ByModel>>,
-    /// The largest restitution of any admissible motion.
+    /// The largest restitution of all admissible motions; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// The mechanism before the first impact of each chain.
@@ -44,7 +44,7 @@ pub struct Summary {
     /// The requested number of impacts.
     #[serde(skip)]
     pub(super) count: usize,
-    /// The impact that `models` and `certificate` are about, in words.
+    /// The impact of `models` and `certificate`, in words.
     #[serde(skip)]
     pub(super) chosen: String,
     /// The impact model of the scenario.
@@ -57,15 +57,15 @@ pub struct Summary {
 /// An impact of a chain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChainImpact {
-    /// Its number, from 1.
+    /// Number of the impact, from 1.
     pub index: usize,
-    /// Kinetic energy after it over that before.
+    /// Kinetic energy after the impact over that before.
     pub restitution: f64,
-    /// The mechanism that closes.
+    /// The mechanism before the impact.
     pub before: Stance,
-    /// The mechanism that follows.
+    /// The mechanism after the impact.
     pub after: Stance,
-    /// Present for four links.
+    /// Impulses; absent unless the structure moves as four links.
     #[serde(flatten)]
     pub impulses: Option<Impulses>,
 }
@@ -79,12 +79,12 @@ pub struct Impulses {
     pub impulse_line: Option<LineExtremes>,
 }
 
-/// A mechanism by its sway and hinges.
+/// A mechanism, given by its sway and hinges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Stance {
-    /// The side to which it sways.
+    /// The side to which the mechanism sways.
     pub sway: Sway,
-    /// Its hinges from left to right.
+    /// Hinges of the mechanism from left to right.
     pub hinges: Vec<Hinge>,
 }
 
@@ -93,27 +93,27 @@ pub struct Stance {
 pub struct HingeImpulse {
     /// The hinge, from `a` on the left.
     pub hinge: &'static str,
-    /// To the right, in N s per metre.
+    /// Horizontal impulse, to the right, in N s per metre.
     pub x_n_s_per_m: f64,
-    /// Upwards, in N s per metre.
+    /// Vertical impulse, upwards, in N s per metre.
     pub y_n_s_per_m: f64,
 }
 
-/// The place of a section, counted from the left.
+/// The position of a section.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Place {
-    /// The joint of a row.
+    /// Joint of a row, counted from the left; absent for a ring.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint: Option<usize>,
-    /// The angle of a ring, in degrees.
+    /// Angle of a ring from the left, in degrees; absent for a row.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
 }
 
-/// Extremes of an impulse line; infinite ones, which mean tension, are null.
+/// Extremes of an impulse line. Infinite values, which mean tension, are null.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LineExtremes {
-    /// Whether the line is compressive and stays inside the structure.
+    /// True if the line is compressive and stays inside the structure.
     pub admissible: bool,
     /// The largest eccentricity over the thickness: 0.5 at the edges.
     pub largest_eccentricity_ratio: Option<f64>,
@@ -162,24 +162,24 @@ pub struct ModelImpact {
     pub impulses: Impulses,
 }
 
-/// The largest restitution of any admissible motion, compared with the link that the chain takes.
+/// The largest restitution of all admissible motions, compared with that of the chain.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Certificate {
     /// Number of the impact.
     pub index: usize,
     /// Number of joints that may open.
     pub joints: usize,
-    /// Restitution of the four hinges; zero if no mechanism can follow.
+    /// Restitution of the four-link mechanism; zero if no mechanism can follow.
     pub restitution_four_link: f64,
-    /// The largest restitution of any admissible motion.
+    /// The largest restitution of all admissible motions.
     pub restitution_all_fields: f64,
-    /// The largest restitution of any admissible motion less that of the four hinges.
+    /// The largest restitution of all admissible motions minus that of the four-link mechanism.
     pub gap: f64,
-    /// Whether the impulse line of the four hinges is admissible; null without one.
+    /// True if the impulse line of the four-link mechanism is admissible; null without an impulse line.
     pub impulse_line_admissible: Option<bool>,
     /// Joints that open in the motion that keeps the most energy.
     pub opened_joints: Vec<OpenedJoint>,
-    /// The impulse line of the four hinges.
+    /// Extremes of the impulse line of the four-link mechanism.
     #[serde(skip)]
     line: Option<LineExtremes>,
     /// Neighbouring joints that open, from the left springing.
@@ -192,22 +192,22 @@ pub struct Certificate {
 /// A joint that opens.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OpenedJoint {
-    /// Its place.
+    /// Position of the joint.
     #[serde(flatten)]
     pub place: Place,
     /// The edge about which it opens.
     pub edge: Edge,
-    /// Its rotation rate over the closing rate.
+    /// Opening rate over the closing rate.
     pub opening_rate_ratio: f64,
 }
 
-/// Neighbouring joints of a continuous ring that open about the same edge, or one joint.
+/// Adjacent joints of a continuous ring that open about the same edge, or one joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Zone {
     edge: Edge,
-    /// Their first and last section.
+    /// The first and the last section of the zone.
     ends: [f64; 2],
-    /// Sum of their rotation rates.
+    /// Sum of the opening rates.
     rate: f64,
 }
 
@@ -219,7 +219,7 @@ impl Stance {
     }
 }
 
-/// The first `count` impacts after a first sway to this side; fewer if one stops the structure.
+/// Computes the first `count` impacts after a first sway to this side; fewer if an impact stops the structure.
 #[must_use]
 pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<ChainImpact> {
     let impacts = (1..=count).map_while(|index| {
@@ -234,7 +234,7 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Chain
     impacts.collect()
 }
 
-/// Those of four links, with their impulses.
+/// Computes the first `count` impacts of four links, with their impulses; fewer if an impact stops the structure.
 pub(super) fn chain_of_four_links(one: &LinkImpact<'_>, count: usize) -> Vec<ChainImpact> {
     let mut impacts = chain(one.model, one.first, count);
     for (index, impact) in (1..).zip(&mut impacts) {
@@ -274,7 +274,7 @@ impl Place {
     }
 }
 
-/// A section in tables: its angle in degrees, or the number of its joint.
+/// Returns a section for tables: its angle in degrees, or the number of its joint.
 fn cell(joint: &Option<usize>, angle_deg: &Option<f64>) -> String {
     match (joint, angle_deg) {
         (Some(joint), _) => joint.to_string(),
@@ -304,7 +304,7 @@ impl LineExtremes {
         }
     }
 
-    /// Whether some normal impulse is not compressive.
+    /// Returns true if a normal impulse is not compressive.
     fn is_in_tension(&self) -> bool {
         self.least_normal_n_s_per_m.is_none_or(|least| least <= 0.0)
     }
@@ -385,7 +385,7 @@ impl Certificate {
         }
     }
 
-    /// The sections of a zone.
+    /// Returns the sections of a zone in words.
     fn sections(&self, zone: &Zone) -> String {
         let section = |section: f64| match self.is_row {
             true => section.to_string(),
@@ -420,14 +420,14 @@ impl Summary {
         }
     }
 
-    /// One or two chains, with the mechanisms before them.
+    /// Returns the chains, each with the mechanism before its first impact.
     fn chains(&self) -> impl Iterator<Item = (&Stance, &[ChainImpact])> {
         let left = self.impacts_after_left.as_deref();
         let chains = [Some(&*self.impacts), left].into_iter().flatten();
         self.starts.iter().zip(chains)
     }
 
-    /// Impacts with an impulse line, and that line with its impulses.
+    /// Returns the impacts with an impulse line: number, impulses at the hinges, and extremes of the line.
     fn lines<'a>(
         &self,
         chain: &'a [ChainImpact],
@@ -447,12 +447,12 @@ impl Summary {
         }
     }
 
-    /// Distance of a line beyond the structure, in per cent of the thickness.
+    /// Returns the distance of a line outside the structure, in per cent of the thickness.
     fn beyond_percent(&self, eccentricity_ratio: &f64) -> f64 {
         100.0 * (eccentricity_ratio - 0.5)
     }
 
-    /// A hinge in a column of a table.
+    /// Returns a hinge for the column of a table.
     fn hinge(&self, hinge: &Hinge) -> String {
         match hinge {
             Hinge::Section { angle_rad, edge } => {
@@ -466,11 +466,11 @@ impl Summary {
         }
     }
 }
-/// Smallest number of parts of a ring between the rows of an impulse line.
+/// Smallest number of parts of a ring in the table of an impulse line.
 const LINE_PARTS: usize = 720;
 
-/// The impulse line of an impact as CSV, from the left springing. A ring has a row at each section of a fine division, at every
-/// joint of voussoirs and at every hinge; a row of blocks has one at every joint. The eccentricity is empty if no impulse crosses the section.
+/// Makes the table of the impulse line of an impact, from the left springing. A ring has rows at the sections of a fine division, at joints of
+/// voussoirs and at hinges; a row of blocks has a row at each joint. The eccentricity is empty if no impulse crosses the section.
 pub(super) fn line_table(
     impact: &LinkImpact<'_>,
     mechanism: &FourLink,

@@ -22,11 +22,11 @@ use crate::mechanics::stability::{
 use crate::mechanics::sway::Sway;
 use crate::scenario::Scenario;
 
-/// The onset of motion of a scenario's structure, to either side; if joints may slip, also with their coefficient of friction. For
-/// moved springings: the hinges on which the structure stands, and also the push at which it falls.
+/// Computes the onset of motion of the structure of a scenario, to both sides; with slipping joints, also for their coefficient of friction.
+/// With moved springings, also the hinges on which the structure stands, and the push at which it collapses.
 ///
 /// # Errors
-/// When the structure does not stand, or the analysis does not apply to it or fails.
+/// When the structure cannot stand, or the analysis does not apply or fails.
 pub fn limit(scenario: &Scenario) -> Result<Answer, StudyError> {
     let summary = summary(scenario).map_err(|error| match error.downcast_ref() {
         Some(FrictionError::NotSolved(_)) => StudyError::failed(error),
@@ -54,7 +54,7 @@ fn summary(scenario: &Scenario) -> Found {
     Ok(summary)
 }
 
-/// Limit analysis of an undeformed row by the static programme.
+/// Computes the onset of an undeformed row by the static theorem of limit analysis.
 fn of_row(scenario: &Scenario, row: &Row) -> Found {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = Sides::try_of(|sway| onset(row, sway))?;
@@ -70,7 +70,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Found {
         return Ok(summary);
     }
     summary.four_links = Some(match scenario.mechanisms() {
-        // Limit analysis of the row is complete without them.
+        // Limit analysis of the row does not need four links.
         Err(error) => FourLinks::None {
             none_because: match error {
                 FourLinkError::Ties => "four links take no ties, so there is no unstable equilibrium and no equivalent block".to_owned(),
@@ -89,7 +89,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Found {
     Ok(summary)
 }
 
-/// Forces of ties at rest, and the pushes without ties and with yielding ties, for a row that stands with its ties.
+/// Computes the tie forces at rest, and the pushes without ties and with yielding ties, of a row that stands with its ties.
 fn ties(row: &Row) -> Result<Ties, StabilityError> {
     let untied = row.clone().without_ties();
     let without = Sides::try_of(|sway| onset(&untied, sway));
@@ -118,7 +118,7 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
     })
 }
 
-/// The onset of motion of an undeformed row whose joints slip.
+/// Computes the onset of motion of an undeformed row whose joints slip.
 fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
     let sides = Sides::try_of(|sway| {
         let onset = friction::onset(row, coefficient, sway)?;
@@ -143,8 +143,7 @@ fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError>
     })
 }
 
-/// The push of the first motion and the push at which a row falls whose springings have moved: see
-/// [`crate::mechanics::settling`].
+/// Computes the push of the first motion and the push at collapse of a row with moved springings: see [`crate::mechanics::settling`].
 fn of_moved_row(
     scenario: &Scenario,
     row: &Row,
@@ -152,7 +151,7 @@ fn of_moved_row(
     coefficient: Option<f64>,
 ) -> Found {
     let mut follower = Follower::new(row)?;
-    // The reader of the scenario has checked that the row follows these movements.
+    // The reader of the scenario has checked that the row can follow these movements.
     follower.move_supports(|part| *movements * part, 0.0, 1.0)?;
     let stance = &follower.stance;
     let starts_g =
@@ -189,8 +188,8 @@ fn of_moved_row(
     Ok(summary)
 }
 
-/// The mechanism in which the hinges of a row on moved springings give way to a push; `None` if any push moves it, because ties hold
-/// it on more than three hinges or it is about to fall.
+/// Returns the mechanism of a row on moved springings under a push. `None` if any push moves the row, because ties hold it on more than three
+/// hinges or it is about to collapse.
 fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
     if follower.is_held_by_ties() {
         return None;

@@ -1,4 +1,4 @@
-//! The report of limit analysis: the summary as JSON, from which its words follow.
+//! The report of limit analysis: the summary as JSON, from which the words follow.
 
 use askama::Template;
 use serde::Serialize;
@@ -21,45 +21,45 @@ use crate::output::template::filters;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]
 #[template(path = "studies/limit/words/words.txt")]
 pub struct Summary {
-    /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion if its springings have
-    /// moved. Null if no push starts it.
+    /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion with moved springings. Null if no push
+    /// starts the structure.
     pub incipient_acceleration_g: Sides<Option<f64>>,
-    /// Ground acceleration that starts the structure, in m/s2.
+    /// Ground acceleration that starts the structure, in m/s2; null if no push starts it.
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
     /// Hinges of the mechanism that starts, from left to right.
     pub mechanism: Sides<Vec<OpenHinge>>,
-    /// Rotations of the bodies at the unstable equilibrium of the first mechanism that sways right, in radians. Present for four links
-    /// and columns.
+    /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, in radians; absent unless the structure moves as
+    /// four links or as a column.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unstable_rotations: Option<Named<f64>>,
-    /// Equivalent free-standing blocks. Present for four links and columns.
+    /// Equivalent free-standing blocks; absent unless the structure moves as four links or as a column.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub equivalent_block: Option<Equivalent>,
-    /// The push at which a structure on moved springings falls, in units of gravity.
+    /// The push at which a structure on moved springings collapses, in units of gravity; absent without moved springings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capacity_g: Option<Sides<Option<f64>>>,
-    /// Why the push at which it falls was not found; null if it was found, or if there is none.
+    /// The reason why the push at collapse was not found; null if it was found, or if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub capacity_not_found: Option<Sides<Option<String>>>,
-    /// Hinges on which a structure on moved springings stands.
+    /// Hinges on which a structure on moved springings stands; absent without moved springings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hinges: Option<Vec<Pin>>,
-    /// Forces of the ties, and the pushes that they change. Present for a structure with ties.
+    /// Tie forces, and the pushes that depend on ties; absent without ties.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ties: Option<Ties>,
-    /// The first mechanism of a row as four links. Present for an arch of blocks.
+    /// The first mechanism of a row as four links; absent unless the structure is an arch of blocks.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub four_links: Option<FourLinks>,
-    /// The onset of motion with slipping joints. Present if joints may slip.
+    /// The onset of motion with slipping joints; absent unless joints may slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
     /// Names of the bodies of the first mechanism.
     #[serde(skip)]
     pub(super) bodies: Vec<String>,
-    /// Frame of reference, and the place of each tie.
+    /// Frame of reference, and the position of each tie, in words.
     #[serde(skip)]
     pub(super) tie_places: Vec<String>,
-    /// Whether a row is a stack on its base, and no arch.
+    /// True if a row is a stack on its base.
     #[serde(skip)]
     pub(super) is_stack: bool,
 }
@@ -74,24 +74,24 @@ pub enum OpenHinge {
     Joint {
         /// The joint, from 0 at the left springing or the base.
         joint: usize,
-        /// The edge about which it opens; null where both edges open.
+        /// Edge about which the joint opens; null if both edges open.
         edge: Option<Edge>,
-        /// Position of that edge in metres.
+        /// Horizontal position of that edge, in metres.
         x_m: f64,
-        /// Position of that edge in metres.
+        /// Vertical position of that edge, in metres.
         y_m: f64,
     },
 }
 
-/// Forces of ties, and the pushes that they change.
+/// Tie forces, and the pushes that depend on ties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ties {
     /// Force of each tie at rest, in N.
     pub forces_at_rest_n: Vec<f64>,
-    /// Limit analysis without ties and with yielding ties. Absent if springings have moved.
+    /// Limit analysis without ties and with yielding ties; absent with moved springings.
     #[serde(flatten)]
     pub limits: Option<TieLimits>,
-    /// Whether a structure on moved springings is a mechanism without its ties.
+    /// True if a structure on moved springings is a mechanism without its ties.
     #[serde(skip)]
     pub(super) hold: bool,
 }
@@ -99,20 +99,20 @@ pub struct Ties {
 /// Limit analysis without ties and with yielding ties.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieLimits {
-    /// Whether the structure stands without its ties.
+    /// True if the structure stands without its ties.
     pub stands_without: bool,
-    /// The push that starts the structure without its ties, in units of gravity.
+    /// The push that starts the structure without its ties, in units of gravity; null if no push starts it, or the structure cannot stand.
     pub without: Sides<Option<f64>>,
-    /// The largest push while each tie pulls with the best force up to yielding.
+    /// Plastic limit: the largest push for all tie forces up to yield.
     pub yielding: Sides<YieldingTies>,
 }
 
-/// The largest push to one side while each tie pulls with the best force up to yielding.
+/// Plastic limit to one side: the largest push for all tie forces up to yield.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct YieldingTies {
-    /// The push in units of gravity; null if there is no limit while ties hold.
+    /// The push, in units of gravity; null if there is no limit while ties hold.
     pub incipient_acceleration_g: Option<f64>,
-    /// Force of each tie in N: the smallest forces that give this push; null if there is no limit while ties hold.
+    /// The smallest tie forces that give this push, in N; null if there is no limit while ties hold.
     pub forces_n: Option<Vec<f64>>,
     /// Hinges of the mechanism.
     pub mechanism: Vec<OpenHinge>,
@@ -122,7 +122,7 @@ pub struct YieldingTies {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FourLinks {
-    /// It does not move as four links.
+    /// The row does not move as four links.
     None {
         /// The reason.
         none_because: String,
@@ -158,7 +158,7 @@ pub struct Friction {
 pub enum FrictionLimit {
     /// The undeformed row.
     Undeformed {
-        /// The least coefficient with which the row stands.
+        /// The smallest coefficient with which the row stands.
         least_coefficient: f64,
         /// The mechanisms to the right and to the left.
         #[serde(flatten)]
@@ -166,7 +166,7 @@ pub enum FrictionLimit {
     },
     /// A row on moved springings.
     Moved {
-        /// The push of the first motion in units of gravity; null if no push starts it.
+        /// The push of the first motion, in units of gravity; null if no push starts the row.
         incipient_acceleration_g: Sides<Option<f64>>,
     },
 }
@@ -174,11 +174,11 @@ pub enum FrictionLimit {
 /// The onset to one side of a row whose joints slip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FrictionSide {
-    /// The push in units of gravity, an upper bound if sliding governs; null if no push starts it.
+    /// The push, in units of gravity, an upper bound if sliding governs; null if no push starts the row.
     pub incipient_acceleration_g: Option<f64>,
-    /// Whether a joint of the mechanism slips.
+    /// True if a joint of the mechanism slips.
     pub sliding_governs: bool,
-    /// Joints of the mechanism; null if no push starts it.
+    /// Joints of the mechanism; null if no push starts the row.
     pub mechanism: Option<Vec<YieldingJoint>>,
 }
 
@@ -187,16 +187,16 @@ pub struct FrictionSide {
 pub struct YieldingJoint {
     /// The joint, from 0 at the left springing or the base.
     pub joint: usize,
-    /// Whether the joint opens at the intrados, by more than slipping causes.
+    /// True if the joint opens at the intrados by more than dilatancy due to slipping.
     pub opens_intrados: bool,
-    /// Whether the joint opens at the extrados, by more than slipping causes.
+    /// True if the joint opens at the extrados by more than dilatancy due to slipping.
     pub opens_extrados: bool,
-    /// The edge towards which the right block slips, if it does.
+    /// The edge towards which the right block slips; `None` if the joint does not slip.
     pub slips_towards: Option<Edge>,
 }
 
 impl Summary {
-    /// A summary with the push that starts the structure and its mechanism alone.
+    /// Makes a summary of the push that starts the structure and its mechanism.
     pub(super) fn new(
         incipient_acceleration_g: Sides<Option<f64>>,
         mechanism: Sides<Vec<OpenHinge>>,
@@ -211,7 +211,7 @@ impl Summary {
         }
     }
 
-    /// The summary of a structure that starts as a mechanism of one degree of freedom.
+    /// Makes the summary of a structure that starts as a mechanism of one degree of freedom.
     pub(super) fn of_mechanism(model: &dyn MechanismModel, gravity_m_s2: f64) -> Self {
         let bodies = model.bodies();
         let unstable_rad = model.critical_rotations_rad(Sway::Right);
@@ -229,29 +229,29 @@ impl Summary {
         }
     }
 
-    /// Why the push at which the structure falls was not found.
+    /// Returns the reason why the push at collapse was not found.
     fn not_found(&self, sway: &Sway) -> Option<&String> {
         self.capacity_not_found.as_ref()?.to(*sway).as_ref()
     }
 
-    /// The push at which the structure falls.
+    /// Returns the push at collapse, in units of gravity.
     fn falls_g(&self, sway: &Sway) -> Option<f64> {
         *self.capacity_g.as_ref()?.to(*sway)
     }
 
-    /// Rotations with the names of their bodies.
+    /// Returns rotations with the names of their bodies.
     fn by_body(&self, rotations_rad: &[f64]) -> String {
         by_body(&self.bodies, rotations_rad)
     }
 
-    /// Rotations at the unstable equilibrium with the names of their bodies.
+    /// Returns the rotations at the unstable equilibrium with the names of their bodies.
     fn unstable_by_body(&self, Named(rotations_rad): &Named<f64>) -> String {
         let rotations_rad = rotations_rad.iter().map(|(_, value)| *value);
         self.by_body(&rotations_rad.collect::<Vec<_>>())
     }
 }
 
-/// The joints of a row that open in a mechanism.
+/// Returns the joints of a row that open in a mechanism.
 pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge> {
     let openings = onset.into_iter().flat_map(|onset| &onset.openings);
     let open = openings.map(|opening| {
@@ -268,7 +268,7 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge>
 }
 
 impl OpenHinge {
-    /// A line about the hinge at this position in the mechanism, from 0.
+    /// Returns a line about the hinge at this position in the mechanism, from 0.
     fn words(&self, position: &usize) -> String {
         let named = |edge: &Option<Edge>, otherwise| edge.map_or(otherwise, Edge::name);
         match self {
@@ -298,9 +298,9 @@ impl OpenHinge {
 }
 
 impl YieldingJoint {
-    /// Words for the motion of the joint.
+    /// Returns the motion of the joint in words.
     fn words(&self) -> String {
-        // Named by the edge about which it turns.
+        // Hinges are named by the edge about which the joint turns.
         let opens = match (self.opens_intrados, self.opens_extrados) {
             (true, true) => Some("parts at both edges".to_owned()),
             (true, false) => Some("opens with its hinge at the extrados".to_owned()),

@@ -31,13 +31,13 @@ use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scena
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CellResult {
-    /// Its history ended.
+    /// The history of the cell ended.
     Ended(Ending),
-    /// There is no such arch: it cannot carry its own weight.
+    /// The structure cannot carry its own weight.
     CannotStand,
     /// The arch is too thick for four links.
     NotFourLinks,
-    /// Its history could not be computed, for this reason.
+    /// The history could not be computed, for this reason.
     Failed(String),
 }
 
@@ -57,7 +57,7 @@ impl From<ModelError> for CellResult {
 }
 
 impl CellResult {
-    /// The outcome, as in the table.
+    /// Returns the outcome by its name in tables.
     #[must_use]
     pub const fn outcome_name(&self) -> &'static str {
         match self {
@@ -78,21 +78,21 @@ pub struct CellRow {
     pub y: f64,
     /// The result.
     pub result: CellResult,
-    /// The number of different outcomes of the history and all its repetitions: one, if the outcome does not depend on the
-    /// computation. The side of overturning does not count, but coming to rest does. Or why a repetition failed. `None` if
-    /// repetitions were not requested, or there is no history.
+    /// Number of different outcomes of the history and all its repetitions: one if the outcome does not depend on the computation. Overturning
+    /// to either side is one outcome; rest and still rocking are two. The error is the failure of a repetition. `None` if repetitions were not
+    /// requested, or there is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcomes: Option<Result<usize, String>>,
 }
 
 impl CellRow {
-    /// Whether its outcome depends on how it is computed.
+    /// Returns true if the outcome depends on the computation.
     pub(super) const fn is_doubtful(&self) -> bool {
         matches!(self.outcomes, Some(Ok(2..)))
     }
 }
 
-/// The cells of a map: cell `i` has the `i / m`-th value of x and the `i % m`-th value of y, where y has `m` values.
+/// The cells of a map. Cell `i` has value `i / m` of x and value `i % m` of y, where `m` is the number of values of y.
 #[derive(Debug)]
 pub struct OverturningMap<'a> {
     /// The scenario that has the map.
@@ -101,27 +101,27 @@ pub struct OverturningMap<'a> {
     pub axes: [&'a Axis; 2],
     /// Values along x and y.
     pub values: [Vec<f64>; 2],
-    /// Whether each cell is repeated in other ways, to count its outcomes.
+    /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
-    /// The structures and pulses that several cells share.
+    /// Models that several cells share.
     structures: Shared<Result<Standing, ModelError>>,
     pulses: Shared<PulseShape>,
-    /// The scenario, or a sample of it, and its variants with other values for keys of other tables.
+    /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
 
-/// An axis in a scenario and in pictures.
+/// The keys of an axis in a scenario, and its label in pictures.
 pub(super) struct Described<'a> {
-    /// Its label.
+    /// Label of the axis.
     pub(super) label: &'a str,
-    /// The table whose keys set its quantity; `ground` stands for the pulse or the record there.
+    /// The table whose keys set the quantity; `ground` stands for the table of the pulse or record.
     pub(super) table: &'static str,
-    /// The keys there; empty for a quantity that is named by its key.
+    /// The keys in that table; empty for a quantity that is named by its key.
     pub(super) keys: &'static [&'static str],
 }
 
-/// The description of an axis.
+/// Returns the keys and the label of an axis.
 pub(super) fn described(axis: &Axis) -> Described<'_> {
     const PULSE: &[&str] = &["duration_s", "frequency_hz"];
     const RECORD: &[&str] = &["scale", "peak_g"];
@@ -140,7 +140,7 @@ pub(super) fn described(axis: &Axis) -> Described<'_> {
     Described { label, table, keys }
 }
 
-/// The model of a cell.
+/// The model of motion of a cell.
 #[derive(Clone, Debug)]
 enum Standing {
     /// An arch of four links, of any size.
@@ -157,7 +157,7 @@ impl Standing {
     }
 }
 
-/// Values that depend on one axis or on none. Each is computed when first needed.
+/// Values that depend on one axis or on none. Each value is computed at its first use.
 #[derive(Debug)]
 struct Shared<T> {
     axis: Option<usize>,
@@ -170,7 +170,7 @@ impl<T: Clone> Shared<T> {
             [false, false] => (None, 1),
             [true, false] => (Some(0), counts[0]),
             [false, true] => (Some(1), counts[1]),
-            // Every value would serve a single cell, so none is kept.
+            // Each value would serve a single cell, so values are not kept.
             [true, true] => (None, 0),
         };
         Self {
@@ -179,7 +179,7 @@ impl<T: Clone> Shared<T> {
         }
     }
 
-    /// The index of the value for a cell; `None` if values are not shared.
+    /// Returns the index of the value for a cell; `None` if values are not shared.
     fn place(&self, place: [usize; 2]) -> Option<usize> {
         let index = self.axis.map_or(0, |axis| place[axis]);
         (index < self.values.len()).then_some(index)
@@ -194,10 +194,10 @@ impl<T: Clone> Shared<T> {
 }
 
 impl<'a> OverturningMap<'a> {
-    /// The map of a scenario that starts from rest; at least one cell must be valid.
+    /// Makes the map of a scenario that starts from rest. At least one cell must be valid.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
         if let Some(map) = &scenario.map {
@@ -209,7 +209,7 @@ impl<'a> OverturningMap<'a> {
              duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
              amplitude_g = { from = 0.1, to = 1.5, count = 40 }",
         )?;
-        // Keys of other tables may not exist, or not allow any of the values.
+        // Keys of other tables may not exist, or may allow none of the values.
         let faults = (0..map.count()).map(|index| map.variant(index).err());
         match faults.collect::<Option<Vec<String>>>().as_deref() {
             Some([fault, ..]) => Err(format!("no cell of [map] makes a valid scenario: {fault}")),
@@ -217,7 +217,7 @@ impl<'a> OverturningMap<'a> {
         }
     }
 
-    /// The cells of the map of a scenario. All values that its axes do not vary are those of `sample`.
+    /// Makes the map of a scenario whose other values are those of `sample`. `None` if the scenario has no map or no ground motion.
     pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
         let (Some(map), Some(_)) = (&scenario.map, scenario.ground.as_ref()) else {
             return None;
@@ -250,7 +250,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The scenario of a cell, without the quantities that are keys of `[map]` itself.
+    /// Returns the scenario of a cell, with the values of keys outside `[map]`.
     fn variant(&self, index: usize) -> Result<Arc<Scenario>, String> {
         let Some(variants) = &self.variants else {
             return Ok(Arc::clone(&self.base));
@@ -266,27 +266,27 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Indices along x and y.
+    /// Returns the indices of a cell along x and y.
     fn place(&self, index: usize) -> [usize; 2] {
         let rows = self.values[1].len();
         [index / rows, index % rows]
     }
 
-    /// Values of x and y.
+    /// Returns the values of x and y of a cell.
     #[must_use]
     pub fn coordinates(&self, index: usize) -> [f64; 2] {
         let [x, y] = self.place(index);
         [self.values[0][x], self.values[1][y]]
     }
 
-    /// The value of a quantity in a cell, if it varies.
+    /// Returns the value of a quantity in a cell; `None` if no axis varies the quantity.
     fn value(&self, index: usize, quantity: Quantity) -> Option<f64> {
         let mut axes = self.axes.iter();
         let axis = axes.position(|axis| axis.quantity == quantity)?;
         Some(self.coordinates(index)[axis])
     }
 
-    /// The model of a cell.
+    /// Returns the model of motion of a cell.
     fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
         let make = || {
             let structure = self.structure(index, scenario);
@@ -313,7 +313,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The structure of a cell.
+    /// Returns the structure of a cell.
     fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
         let Some(mut arch) = scenario.structure.circular().cloned() else {
             return Ok(scenario.structure.clone());
@@ -324,14 +324,14 @@ impl<'a> OverturningMap<'a> {
         if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
             arch = arch.with_embrace_deg(embrace_deg)?;
         }
-        // Arches of one shape share their limit analysis.
+        // Arches of one shape use the same limit analysis.
         if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
             arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
         Ok(Structure::Arch(arch))
     }
 
-    /// The model of motion of a cell.
+    /// Returns the parameters of motion of a cell.
     fn moves(&self, index: usize, scenario: &Scenario) -> Motion {
         let mut motion = scenario.motion;
         if let (Motion::FourLinks(law), Some(varied)) =
@@ -343,7 +343,7 @@ impl<'a> OverturningMap<'a> {
         motion
     }
 
-    /// The ground motion of a cell, or why it has none.
+    /// Returns the ground motion of a cell.
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
         let gravity_m_s2 = scenario.gravity_m_s2();
         let value = |quantity| self.value(index, quantity);
@@ -375,7 +375,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// The model of a cell, with its ground motion and request.
+    /// Returns the model of a cell, with its ground motion and request.
     fn case(&self, index: usize) -> Result<(Standing, Case), CellResult> {
         let scenario = self.variant(index).map_err(CellResult::Failed)?;
         let standing = self.standing(index, &scenario)?;
@@ -386,7 +386,7 @@ impl<'a> OverturningMap<'a> {
         Ok((standing, (ground, request)))
     }
 
-    /// The endings of cells with the same structure, and the number of outcomes of each with its repetitions, if requested.
+    /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
     fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, CellResult>> {
         let ended = match self.repeat {
             true => all_outcomes(model, cases),
@@ -400,10 +400,10 @@ impl<'a> OverturningMap<'a> {
     }
 }
 
-/// The ending of the history of a cell; and, if requested, its number of outcomes with its repetitions, or why that is unknown.
+/// The ending of the history of a cell, and, if requested, the number of outcomes with its repetitions, or the reason why it is unknown.
 type Ended = (Ending, Option<Result<usize, String>>);
 
-/// The endings of histories, and the number of outcomes of each with all its repetitions, every one followed to its end.
+/// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
 fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, String>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
@@ -441,7 +441,7 @@ impl Study for OverturningMap<'_> {
         self.values[0].len() * self.values[1].len()
     }
 
-    /// Cells with the same structure, if its model computes several motions faster together.
+    /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion.is_faster_together();
         together.then(|| self.structures.place(self.place(index)))?

@@ -1,4 +1,4 @@
-//! `map.html`: a map with a cursor that shows the numbers of a cell, and the command that runs it.
+//! `map.html`: a map with a cursor. It shows the numbers of a cell, and the command that runs the cell.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -13,7 +13,7 @@ use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
 use crate::studies::results::Style;
 
-/// The page.
+/// Makes the page of a map.
 #[must_use]
 pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
     let style = Style {
@@ -37,18 +37,18 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
 
 /// The cells of the page.
 pub(crate) struct Cells<'c> {
-    /// All kinds.
+    /// All kinds of cells.
     pub(crate) palette: &'c [Kind],
     /// The kind of each cell.
     pub(crate) kinds: Vec<Kind>,
-    /// The numbers of the uncertain cells, with the reasons.
+    /// Indices of the uncertain cells, with the reasons.
     pub(crate) doubts: Vec<(usize, Box<str>)>,
-    /// Columns by their names, with the number of each cell; `None` if a cell has none.
+    /// Columns with a number for each cell: name and values; `None` for a cell without a value.
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
 
 impl Cells<'_> {
-    /// The page with this picture, which is for the screen.
+    /// Makes the page from a picture for the screen.
     pub(crate) fn page(&self, title: &str, map: &OverturningMap<'_>, drawn: &Drawn) -> String {
         let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         filled(
@@ -71,7 +71,7 @@ impl Cells<'_> {
         };
         let kinds: Vec<u8> = self.kinds.iter().map(index).collect();
         let columns = self.columns.iter().map(|(name, values)| {
-            // NaN stands for a missing value, which the page does not show.
+            // NaN marks a missing value.
             let values = values.iter().map(|value| value.unwrap_or(f64::NAN));
             let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
             json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
@@ -102,7 +102,7 @@ impl Cells<'_> {
     }
 }
 
-/// Outcome of the history of a cell, if it has one.
+/// Returns the ending of the history of a cell; `None` without a history.
 const fn ended(row: &CellRow) -> Option<&Ending> {
     match &row.result {
         CellResult::Ended(ending) => Some(ending),
@@ -110,7 +110,7 @@ const fn ended(row: &CellRow) -> Option<&Ending> {
     }
 }
 
-/// The numbers of a cell, by their names.
+/// Returns the columns with numbers of the cells.
 fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
     type Of = fn(&CellRow) -> Option<f64>;
     let all: [(&str, Of); 5] = [
@@ -130,11 +130,11 @@ fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
         .collect()
 }
 
-/// The command that runs a cell, with placeholders for its two values. Its standard input is the whole
-/// scenario, so it depends neither on the place of the page nor on the keys that define the dimensions in the scenario file.
+/// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
+/// the location of the page nor on the keys of the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     let scenario = map.scenario;
-    // A cell alone, without samples.
+    // A command of one cell has no samples.
     let mut table = scenario.clone().without_uncertain().resolved();
     let mut remove = |outer: &str, key: &str| {
         let inner = table.pointer_mut(outer).and_then(Value::as_object_mut);

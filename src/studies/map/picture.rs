@@ -12,7 +12,7 @@ use crate::scenario::{Axis, Quantity, Spacing};
 use crate::studies::kind::{self, Kind};
 use crate::studies::results::Style;
 
-/// The kind by which a cell is coloured.
+/// Returns the kind of a cell, which sets its colour.
 pub(super) fn kind_of(result: &CellResult, style: Style) -> Kind {
     if let (true, CellResult::Ended(ending)) = (style.by_peak, result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
@@ -27,7 +27,7 @@ pub(super) fn kind_of(result: &CellResult, style: Style) -> Kind {
     Kind::of(result.outcome_name(), impacts)
 }
 
-/// The scale of an axis and the edges of its cells, halfway between the values; the values are multiplied by `factor`.
+/// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
@@ -37,7 +37,7 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let from = |place: f64| if logarithmic { place.exp() } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();
     let (first, last) = (places[0], places[places.len() - 1]);
-    // A single value gets a cell as wide as the value itself.
+    // A single value has a cell as wide as the value itself.
     let [before, after] = match places[..] {
         [only] => [0.5 * only.abs().max(1e-9); 2],
         [first, second, ..] => [
@@ -53,7 +53,7 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         .chain([last + after]);
     let edges: Vec<_> = edges.map(from).collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
-    // Half a cell beyond the ends there may be impossible values.
+    // Half a cell beyond the ends may contain invalid values.
     let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
     let high = match axis.quantity {
         Quantity::Embrace => high.min(180.0),
@@ -73,22 +73,22 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
 pub(crate) struct Drawn {
     pub(crate) picture: String,
     pub(crate) height_px: f64,
-    /// Edges of the columns from the left, and of the rows from below.
+    /// Edges of the columns from left to right, and of the rows from bottom to top, in pixels.
     pub(crate) edges_px: [Vec<f64>; 2],
 }
 
-/// The cells of a map and its axes, whatever fills the cells.
+/// Axes and cells of a map, for any kinds of cells.
 pub(crate) struct Sheet<'s> {
     title: &'s str,
     map: &'s OverturningMap<'s>,
     style: Style,
     scales: [Scale; 2],
-    /// The edges of the columns and of the rows.
+    /// Edges of the columns and of the rows, in the units of the axes.
     edges: [Vec<f64>; 2],
 }
 
 impl<'s> Sheet<'s> {
-    /// A map with this title.
+    /// Makes the sheet of a map.
     pub(crate) fn new(title: &'s str, map: &'s OverturningMap<'s>, style: Style) -> Self {
         let factors = style.factors.unwrap_or([1.0; 2]);
         let [x, y] = [0, 1].map(|i: usize| scale(map.axes[i], factors[i], style.figure));
@@ -101,13 +101,13 @@ impl<'s> Sheet<'s> {
         }
     }
 
-    /// A point of the map, whose axes may be dimensionless.
+    /// Returns a point of the map in the units of the axes, which may be dimensionless.
     pub(crate) fn point(&self, x: f64, y: f64) -> (f64, f64) {
         let factors = self.style.factors.unwrap_or([1.0; 2]);
         (factors[0] * x, factors[1] * y)
     }
 
-    /// Fills the cells by their kinds, which are in the palette, and draws marks over them.
+    /// Fills the cells by their kinds, which the palette must contain, and draws marks over them.
     pub(crate) fn draw(
         self,
         palette: &[Kind],
@@ -128,7 +128,7 @@ impl<'s> Sheet<'s> {
             None => map.axes.map(|axis| described(axis).label),
         };
         let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
-        // The stroke closes the seams between cells.
+        // The stroke closes gaps between cells.
         let fills = palette.iter().map(|kind| {
             let cells = runs(edges, kinds).filter(|(own, _)| own == kind);
             let boxes = Shape::Boxes(cells.map(|(_, corners)| corners).collect());
@@ -160,7 +160,7 @@ impl<'s> Sheet<'s> {
     }
 }
 
-/// Cells of a kind one above the other in a column: their kind and two opposite corners.
+/// Returns runs of equal cells in each column: their kind and two opposite corners.
 fn runs<'c>(
     [x_edges, y_edges]: &'c [Vec<f64>; 2],
     kinds: &'c [Kind],
@@ -182,7 +182,7 @@ pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
     drawn(title, map, rows, style).picture
 }
 
-/// The picture of a map, with the positions of its cells.
+/// Returns the picture of a map, with the positions of its cells.
 pub(super) fn drawn(
     title: &str,
     map: &OverturningMap<'_>,
@@ -195,7 +195,7 @@ pub(super) fn drawn(
     sheet.draw(&Kind::ALL, &kinds, legend(map, &kinds), vec![hatch])
 }
 
-/// Hatches the cells whose outcome depends on how they are computed.
+/// Hatches the cells whose outcome depends on the computation.
 fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
     let count = y_edges.len() - 1;
     let doubtful = (0..).zip(rows).filter(|(_, row)| row.is_doubtful());
@@ -211,11 +211,11 @@ fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
     Mark::curve("doubtful", DOUBTFUL, diagonals)
 }
 
-/// Light, as most cells: lines are drawn on cells, so the legend draws them on this.
+/// Background of lines in the legend: light, as most cells.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 
-/// The legend of the colours, and of the hatching if cells are repeated.
+/// Returns the legend of the colours, and of the hatching if cells are repeated.
 fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key> {
     let mut keys = kind::keys(kinds);
     if map.repeat {

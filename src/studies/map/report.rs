@@ -1,4 +1,4 @@
-//! The report of an overturning map: its table and its words.
+//! Files and words of an overturning map.
 
 use super::{CellResult, CellRow, OverturningMap, page, picture};
 use crate::argument::plain;
@@ -32,7 +32,7 @@ impl Reported for OverturningMap<'_> {
 }
 
 impl OverturningMap<'_> {
-    /// The columns for one row per cell: x varies slowly, y fast.
+    /// Returns the columns of `map.csv`, one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes.map(|axis| axis.key.as_str());
         let mut all = vec![
@@ -59,7 +59,7 @@ impl OverturningMap<'_> {
     }
 }
 
-/// The remarks on the cells: those that failed, those with a failed repetition, and those that are uncertain.
+/// Returns failed cells, cells with a failed repetition, and uncertain cells.
 fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let [x_name, y_name] = map.axes.map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
@@ -77,7 +77,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     remarks
 }
 
-/// The number of cells with each outcome, and remarks on doubtful and failed cells.
+/// Returns the number of cells with each outcome, and remarks on doubtful and failed cells, in words.
 fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
     let words = |cell: &CellRow| match &cell.result {
         CellResult::Ended(ending)
@@ -106,10 +106,10 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
 }
 
 impl Style {
-    /// The factors that turn durations into p t_p, and amplitudes into a / A_L.
+    /// Returns the factors that convert durations to p t_p, and amplitudes to a / A_L.
     ///
     /// # Errors
-    /// Explains what the map lacks for that.
+    /// Returns the property that the map lacks, in words.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
         let map = scenario.map.as_ref().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {

@@ -1,4 +1,4 @@
-//! The movement of a springing at which the arch falls, and the pushes that it resists on the way: see [`crate::mechanics::settling`].
+//! The movement of a springing at which the arch collapses, and the pushes that the arch resists before: see [`crate::mechanics::settling`].
 
 mod picture;
 mod report;
@@ -24,31 +24,31 @@ use crate::mechanics::sway::Sway;
 use crate::output::template::filters;
 use crate::scenario::Scenario;
 
-/// Number of equal parts of a way, with a stage at the end of each.
+/// Number of equal parts of a movement, with a stage at the end of each.
 const STEPS: u32 = 20;
-/// Stages that words show.
+/// Indices of the stages that words show.
 const PARTS: [usize; 5] = [0, 5, 10, 15, 20];
-/// Largest thrust with a meaning, over the weight of the arch.
+/// Largest meaningful thrust, over the weight of the arch: beyond it three hinges are on one line.
 const LARGEST_THRUST: f64 = 1e5;
-/// The reason why a stage with a larger thrust has no pushes.
+/// Reason why a stage with a larger thrust has no pushes.
 const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows beyond all bounds";
-/// Length of the longest way, in clear spans.
+/// Largest movement, in clear spans.
 const LONGEST: f64 = 1.0;
 
 /// Direction in which a springing moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Way {
-    /// The springing that moves; the other stands still.
+    /// The springing that moves; the other one is fixed.
     pub springing: Sway,
-    /// From outwards (0) over down (90) to inwards (180); up is -90.
+    /// Angle in degrees: outwards (0), down (90), inwards (180), up (-90).
     pub angle_deg: f64,
 }
 
 impl Way {
-    /// Outwards, inwards and down.
+    /// Default directions: outwards, inwards and down.
     pub const USUAL_DEG: [f64; 3] = [0.0, 180.0, 90.0];
 
-    /// Its name for people.
+    /// Returns the name of the direction in words.
     #[must_use]
     pub fn words(&self) -> String {
         match self.angle_deg {
@@ -60,11 +60,11 @@ impl Way {
         }
     }
 
-    /// The movements of both springings after this distance along it, in metres.
+    /// Returns the movements of both springings for a distance along this direction, in metres.
     #[must_use]
     pub fn movements(&self, movement_m: f64) -> Movements {
         let (sin, cos) = self.angle_deg.to_radians().sin_cos();
-        // Quarters of a turn have no rounding.
+        // Removes rounding errors of right angles.
         let is_quarter = self.angle_deg % 90.0 == 0.0;
         let [outwards, down] = [cos, sin].map(|part| if is_quarter { part.round() } else { part });
         let movement = Movement {
@@ -85,27 +85,27 @@ impl Way {
 pub struct Stage {
     /// Movement of the springing, in metres.
     pub movement_m: f64,
-    /// Hinges; none before the first movement.
+    /// Open hinges; none before the first movement.
     pub hinges: Vec<OpenHinge>,
-    /// Horizontal force between springings and arch, in N. `None` before the first movement, because it is not determined, and with
-    /// three hinges on one line, because it grows beyond all bounds.
+    /// Horizontal force between springings and arch, in N. `None` before the first movement, because it is not determined, and with three hinges
+    /// on one line, because it is infinite.
     pub thrust_n: Option<f64>,
-    /// Horizontal force between springings and arch, over the weight of the arch.
+    /// Horizontal force between springings and arch, over the weight of the arch; `None` as `thrust_n`.
     pub thrust_ratio: Option<f64>,
-    /// Force of the right support on the arch, in N.
+    /// Force of the right support on the arch, in N; `None` as `thrust_n`.
     pub right_support_force_n: Option<Vector2<f64>>,
-    /// Coefficient of friction below which a joint slides.
+    /// Smallest coefficient of friction with which no joint slides; `None` before the first movement.
     pub friction_demand: Option<f64>,
     /// Drop of the crown from its undeformed position, in metres.
     pub crown_drop_m: f64,
-    /// The horizontal ground acceleration, in units of gravity, that makes hinges give way; `None` if none does. With three hinges open it
-    /// is small, and is not a safety margin.
+    /// The horizontal ground acceleration at which the arch first moves, in units of gravity; `None` if no acceleration moves it. With three
+    /// open hinges it is small, and is not a safety margin.
     pub first_motion_g: Sides<Option<f64>>,
-    /// The horizontal ground acceleration that makes the arch fall, in units of gravity.
+    /// The horizontal ground acceleration at which the arch collapses, in units of gravity; `None` if no acceleration moves the arch.
     pub capacity_g: Sides<Option<f64>>,
-    /// Pushes that are `None` because they were not found.
+    /// Pushes that were not found; their values are `None`.
     pub not_found: Vec<NotFound>,
-    /// Forces and rotations.
+    /// Forces and rotations; `None` before the first movement.
     #[serde(skip)]
     pub state: Option<State>,
     /// Positions of the blocks.
@@ -116,19 +116,19 @@ pub struct Stage {
 /// An open hinge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct OpenHinge {
-    /// Its place.
+    /// Position of the hinge.
     #[serde(flatten)]
     pub hinge: Pin,
-    /// Rotation of the part on its right against that on its left, anticlockwise, in radians.
+    /// Relative rotation of the part on its right to the part on its left, anticlockwise, in radians.
     pub rotation_rad: f64,
 }
 
 named! {
-    /// One of the two pushes to a side.
+    /// One of the two pushes of a stage to a side.
     pub enum Push {
-        /// The one that makes hinges give way.
+        /// The push at which the arch first moves.
         FirstMotion = "first motion",
-        /// The one that makes the arch fall.
+        /// The push at which the arch collapses.
         Capacity = "capacity",
     }
 }
@@ -138,30 +138,30 @@ named! {
 pub struct NotFound {
     /// The push.
     pub push: Push,
-    /// Its direction.
+    /// Direction of the push.
     #[serde(rename = "side")]
     pub sway: Sway,
     /// The reason.
     pub reason: String,
 }
 
-/// The arch while a springing moves one way.
+/// The arch while a springing moves in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Path {
-    /// The way.
+    /// The direction of the movement.
     #[serde(flatten)]
     pub way: Way,
-    /// Movement at which the arch falls, in metres; `None` if that is beyond the clear span or unknown.
+    /// Movement at which the arch collapses, in metres; `None` if it exceeds the clear span or is unknown.
     pub falls_at_m: Option<f64>,
-    /// Movement at which the arch falls, over the clear span.
+    /// Movement at which the arch collapses, over the clear span; `None` as `falls_at_m`.
     pub falls_at_part_of_clear_span: Option<f64>,
-    /// Joints whose line of thrust reaches an edge at the fall, or that shut.
+    /// Joints at which the thrust line reaches an edge at collapse, or which close.
     pub falls_by: Vec<Pin>,
-    /// Why the path ends at its last stage, if the arch neither falls there nor reaches the end of its way.
+    /// Reason why the path could not be computed to collapse or to the full movement.
     pub lost: Option<String>,
-    /// The changes from hinges to others; the last one may be its fall.
+    /// Snaps: changes to other hinges. The last one may be the collapse.
     pub snaps: Vec<Snap>,
-    /// The arch at equal parts of the way.
+    /// The arch at equal parts of the movement.
     pub stages: Vec<Stage>,
 }
 
@@ -169,37 +169,38 @@ pub struct Path {
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
 #[template(path = "studies/spread/words.txt")]
 pub struct Summary {
-    /// Distance of the springings at the intrados, in metres.
+    /// Distance between the springings at the intrados, in metres.
     pub clear_span_m: f64,
     /// Weight of the arch, in N.
     pub weight_n: f64,
-    /// The path along each way.
+    /// The path for each direction.
     pub paths: Vec<Path>,
     /// The scenario with all defaults.
     pub scenario: Value,
     /// The blocks of the arch.
     #[serde(skip)]
     pub row: Row,
-    /// The coefficient of friction of the scenario, if its joints may slip.
+    /// Coefficient of friction of the scenario; `None` if joints cannot slip.
     #[serde(skip)]
     pub friction_coefficient: Option<f64>,
 }
 
-/// Why there are no such paths.
+/// Errors of moved springings.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoSpread {
-    /// It is no row of blocks.
+    /// The structure is not a row of blocks.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// It cannot be followed.
+    /// The movement cannot be computed.
     #[error(transparent)]
     Settling(#[from] SettlingError),
 }
 
-/// Moves a springing of the arch of a scenario along each of these ways, from its position as built or as `[supports]` moves it.
+/// Moves a springing of the arch of a scenario in each of these directions, from the undeformed position or the position of `[supports]`.
 ///
 /// # Errors
-/// When it is no row of blocks between two supports, or does not stand. A path ends where the arch cannot be followed.
+/// When the structure is not a row of blocks between two supports, or cannot stand. If a movement cannot be computed further, its path ends
+/// there.
 pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     let row = scenario.structure.row()?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
@@ -220,7 +221,7 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     })
 }
 
-/// Finds the end of the path first, then its stages.
+/// Computes a path: first its end, then its stages.
 fn path(
     row: &Row,
     settled: Movements,
@@ -230,14 +231,14 @@ fn path(
     let longest_m = LONGEST * clear_span_m;
     let movements = |movement_m: f64| settled + way.movements(movement_m);
     let mut start = Follower::new(row)?;
-    // The reader of the scenario has checked that it stands there.
+    // The reader of the scenario has checked that the arch stands on the moved springings.
     start.move_supports(|part| settled * part, 0.0, 1.0)?;
     let before = start.snaps.len();
     let mut scout = start.clone();
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
         Ok(Reached::Falls(at_m)) => (at_m, Some(at_m), None),
         Ok(Reached::End) => (longest_m, None, None),
-        // If that is unknown, the stages below end before it.
+        // If the end is unknown, the loop below ends before it.
         Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
     };
     let mut follower = start;
@@ -256,13 +257,13 @@ fn path(
             }
         };
         places.push((follower.clone(), next_m));
-        // Rounding may let it fall just before its end.
+        // Due to rounding errors the arch may collapse just before its end.
         if reached != Reached::End {
             break;
         }
         here_m = next_m;
     }
-    // The pushes of one place do not depend on those of another.
+    // The pushes of one stage do not depend on those of another.
     let stages = places.par_iter().with_max_len(1);
     let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m, weight_n));
     let snaps = scout.snaps[before..].to_vec();
@@ -283,7 +284,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     let poses = &follower.stance.placement.poses;
     let state = follower.state();
     let reaction = state.as_ref().map(|state| state.right_reaction.linear);
-    // A larger force is one over the height of three hinges on one line, which is rounding.
+    // A larger force is due to rounding errors of the height of three hinges on one line.
     let is_aligned = reaction.is_some_and(|force| force.x.abs() > LARGEST_THRUST);
     let reaction = reaction.filter(|_| !is_aligned);
     let mut not_found = Vec::new();
@@ -330,9 +331,9 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
 }
 
 impl Stage {
-    /// The lesser of a push to the right and one to the left; `None` if none moves the arch, or one of them was not found.
+    /// Returns the smaller push of both sides; `None` if no push moves the arch, or one of the pushes was not found.
     fn least(&self, push: Push) -> Option<f64> {
-        // Without its first motion a capacity is not sought.
+        // A capacity is not searched for if the first motion was not found.
         let mut missing = self.not_found.iter();
         if missing.any(|missing| missing.push == push || missing.push == Push::FirstMotion) {
             return None;
@@ -344,7 +345,7 @@ impl Stage {
         <[_; 2]>::from(sides).into_iter().flatten().reduce(f64::min)
     }
 
-    /// The hinges by their joints and the letters of their edges.
+    /// Returns the hinges as numbers of joints with the initials of their edges.
     fn hinges_in_letters(&self) -> String {
         let letters = self.hinges.iter().map(|OpenHinge { hinge, .. }| {
             let edge = &hinge.edge.name()[..1];
@@ -355,13 +356,13 @@ impl Stage {
 }
 
 impl Path {
-    /// The stages that words show.
+    /// Returns the stages that words show.
     fn shown(&self) -> impl Iterator<Item = &Stage> {
         let last = self.stages.len() - 1;
         PARTS.iter().map(move |part| &self.stages[*part.min(&last)])
     }
 
-    /// Each push that was not found at some stages, with their number and the movement at the first of them.
+    /// Returns each push that was not found, with the number of stages and the movement of the first stage.
     fn missing(&self) -> Vec<(usize, f64, &NotFound)> {
         let mut missing: Vec<(usize, f64, &NotFound)> = Vec::new();
         for stage in &self.stages {
@@ -379,7 +380,7 @@ impl Path {
         missing
     }
 
-    /// The coefficient of friction that this way needs.
+    /// Returns the largest coefficient of friction that this path needs.
     fn friction_demand(&self) -> f64 {
         let demands = self.stages.iter().filter_map(|stage| stage.friction_demand);
         demands.fold(0.0, f64::max)

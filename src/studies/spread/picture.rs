@@ -1,4 +1,4 @@
-//! `spread.svg`: the pushes that the arch resists against the movement, and the arch at the end of each way.
+//! `spread.svg`: the pushes that the arch resists against the movement, and the arch at the end of each path.
 
 use nalgebra::Vector2;
 
@@ -13,12 +13,12 @@ use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 
 /// Largest number of pictures of the arch side by side.
 const COLUMNS: usize = 3;
-/// Least width of a picture.
+/// Smallest width of a picture.
 const LEAST_PX: f64 = 180.0;
-/// First motions are drawn thinner and dashed.
+/// Width of the dashed lines of first motions.
 const FIRST_MOTION_PX: f64 = 1.0;
 
-/// The picture.
+/// Draws pushes and arches.
 pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene) -> String {
     let mut sheet = Sheet::new(figure, title);
     pushes(figure, spread).add_to(&mut sheet);
@@ -51,7 +51,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene)
     sheet.finish()
 }
 
-/// Capacity and first motion against the movement, to the weaker side.
+/// Draws the smaller push of both sides against the movement: capacity and first motion.
 fn pushes(figure: Figure, spread: &Summary) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
@@ -77,13 +77,13 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
     }
 }
 
-/// The arch at the end of a way.
+/// The arch at the end of a path.
 struct Cell<'a> {
     row: &'a Row,
     scene: &'a Scene,
     path: &'a Path,
     stage: &'a Stage,
-    /// Lower left and upper right corner, as built and moved.
+    /// Lower left and upper right corner of the undeformed and the moved arch, in metres.
     bounds_m: [Vector2<f64>; 2],
     height_px: f64,
 }
@@ -107,7 +107,7 @@ impl<'a> Cell<'a> {
         })
     }
 
-    /// Draws it around this middle above the lower side of a part, squeezed to this share.
+    /// Draws the arch around `middle` at the bottom of a part, with its height multiplied by `squeezed`.
     fn draw(&self, drawing: &mut Drawing, middle: f64, part: Frame, squeezed: f64) {
         let height = squeezed * self.height_px;
         let top = part.top + part.height - height;
@@ -147,7 +147,7 @@ impl<'a> Cell<'a> {
         drawing.label(below, Anchor::Middle, 0.0, text);
     }
 
-    /// A point of the body whose face a joint lies on: the block after it, or the last block.
+    /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
     fn mark(&self, joint: usize, at_m: Vector2<f64>) -> SceneMark {
         let body = Some(joint.min(self.stage.poses.len() - 1));
         SceneMark { body, at_m }

@@ -1,4 +1,4 @@
-//! The report of springings that move: a table, a picture, and the summary in JSON and words.
+//! Files and words of moved springings.
 
 use super::picture::draw;
 use super::{Path, Stage, Summary};
@@ -13,7 +13,7 @@ use crate::studies::results::Results;
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["spread.svg", "spread.csv", "spread.json"];
 
-/// Files, words and JSON for all ways.
+/// Makes files and words of all paths.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -29,14 +29,14 @@ pub fn report(
     Results::new(&FILES, spread, render(spread), others)
 }
 
-/// A row for each stage of every way.
+/// Makes the table of all stages of all paths.
 fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a Path, &'a Stage);
     let paths = spread.paths.iter();
     let rows: Vec<Row<'_>> = paths
         .flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
         .collect();
-    // Ties may hold it on more.
+    // Arches with ties may have more than three hinges.
     let most = rows
         .iter()
         .map(|row| row.1.hinges.len())

@@ -1,15 +1,13 @@
-//! The factors on a ground motion that a search for thresholds tries.
+//! The factors on a ground motion that the search for thresholds tries.
 
 use serde::{Deserialize, Serialize};
 
 use crate::argument::{ArgumentError, above, within};
 
-/// Relative width to which an edge is bisected: far less than the uncertainty of any ground motion,
-/// and wide enough that integration errors do not decide.
+/// Relative width to which bisection encloses an edge: far less than the uncertainty of a ground motion, and more than the integration error.
 pub const EDGE_WIDTH: f64 = 1e-4;
 
-/// The factors to sample, from the first to the last. Each is larger than the one before by a stride, or by
-/// less if that reaches the last.
+/// A geometric sequence of factors: each is larger than the previous one by a stride; the last step may be shorter.
 #[readonly::make]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factors {
@@ -17,12 +15,12 @@ pub struct Factors {
     pub from: f64,
     /// The last factor.
     pub to: f64,
-    /// The relative step from one factor to the next.
+    /// The relative step between factors.
     pub stride: f64,
 }
 
 impl Default for Factors {
-    /// From 0.1 to 10, in strides of 2 %.
+    /// Returns factors from 0.1 to 10 in strides of 2 %.
     fn default() -> Self {
         Self {
             from: 0.1,
@@ -33,8 +31,8 @@ impl Default for Factors {
 }
 
 impl Factors {
-    /// Factors from `from`, at least 1e-6, to `to`, which is larger and at most 1e6. Each stride is `stride`, 1e-4 to 1,
-    /// times the factor.
+    /// Makes factors from `from`, at least 1e-6, to `to`, which is larger and at most 1e6. Each step is `stride` times the factor; `stride` is
+    /// between 1e-4 and 1.
     ///
     /// # Errors
     /// When a number is not allowed.
@@ -46,10 +44,10 @@ impl Factors {
         })
     }
 
-    /// All factors, ascending.
+    /// Returns all factors, ascending.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
-        // A last stride that is due to rounding only is dropped.
+        // Drops a last step that is due to rounding errors only.
         let end = self.to * (1.0 - 1e-9);
         let next = |factor: &f64| Some(factor * (1.0 + self.stride));
         let mut values: Vec<f64> = std::iter::successors(Some(self.from), next)

@@ -1,4 +1,4 @@
-//! The strength from which a structure first overturns: searched upwards, up to the first edge only.
+//! The first edge: the strength from which a structure overturns. The search goes upwards and ends at the first edge.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,25 +9,25 @@ use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, Verdict};
 
-/// The least strength of a ground motion that overturns a structure.
+/// The smallest strength of a ground motion that overturns a structure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FirstEdge {
-    /// The least factor that certainly overturns; `None` if none does.
+    /// The smallest factor that certainly overturns the structure; `None` if no factor does.
     pub factor: Option<f64>,
-    /// Whether that is also the least factor tried, so that a smaller one may overturn too.
+    /// True if `factor` is the smallest tried factor, so that a smaller one may overturn the structure too.
     #[serde(default)]
     pub at_most: bool,
-    /// The greatest factor tried.
+    /// The largest tried factor.
     pub tried_to: f64,
-    /// The least factor below that for which overturning is uncertain, if there is one.
+    /// The smallest factor below `factor` with an uncertain verdict; `None` without uncertain verdicts.
     pub uncertain_from: Option<f64>,
 }
 
 impl FirstEdge {
-    /// The first edge of a scenario that starts from rest, among these factors on its ground motion.
+    /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion.
     ///
     /// # Errors
-    /// Explains why there is none.
+    /// The reason why there is no answer.
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let request = scenario.request_from_rest();
@@ -40,8 +40,8 @@ impl FirstEdge {
         Self::search(&factors.values(), EDGE_WIDTH, verdict)
     }
 
-    /// The first edge among strengths that are tried in ascending order. Bisection narrows the edge between two of them to this
-    /// relative width.
+    /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
+    /// width.
     pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
@@ -52,7 +52,7 @@ impl FirstEdge {
             let found = match verdict(strength) {
                 Ok(Verdict::Incomplete) => return Err(NoAnswer::Incomplete),
                 Ok(found) => found,
-                // A stronger motion may exceed what the model allows: the ground may fall freely.
+                // The model may not allow a stronger motion: the ground may fall freely.
                 Err(_) if edge.tried_to > 0.0 => break,
                 Err(reason) => return Err(NoAnswer::Failed(reason)),
             };
@@ -79,7 +79,7 @@ impl FirstEdge {
         Ok(edge)
     }
 
-    /// The columns of an edge in the table of rows that have one; the factor has another name in each table.
+    /// Returns the columns of an edge in a table; the name of the factor depends on the table.
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
@@ -92,13 +92,13 @@ impl FirstEdge {
         ]
     }
 
-    /// The factor; infinite if none overturns.
+    /// Returns the factor; infinite if no factor overturns the structure.
     #[must_use]
     pub fn strength(&self) -> f64 {
         self.factor.unwrap_or(f64::INFINITY)
     }
 
-    /// True if it overturns up to this factor; `None` if no tried factor decides that.
+    /// Returns true if the structure overturns up to this factor; `None` if the tried factors do not determine this.
     pub(in crate::studies) fn overturns_up_to(&self, factor: f64) -> Option<bool> {
         match self.factor {
             Some(first) if first <= factor => Some(true),

@@ -1,9 +1,8 @@
 //! Thresholds: the factors on a ground motion at which structures overturn.
 //!
-//! A stronger motion need not be a worse one: after impacts there are **bands** of factors that overturn, with
-//! safe **gaps** between them. Where repetitions disagree there are **uncertain** ranges. So factors are sampled upwards in equal
-//! strides, and bisection only finds the edge between two neighbours with different verdicts. Ranges narrower than a
-//! stride may be missed.
+//! A stronger motion is not always more dangerous. After impacts there are **bands** of factors that overturn the structure, with safe **gaps**
+//! between them, and **uncertain** ranges in which repetitions disagree. So factors are sampled upwards in equal strides, and bisection only
+//! finds the edge between two neighbours with different verdicts. Ranges narrower than a stride may be missed.
 
 pub mod along;
 mod digits;
@@ -38,7 +37,7 @@ use crate::dynamics::until::Until;
 use crate::output::Figure;
 use crate::scenario::Scenario;
 
-/// Number of bisection steps whose histories, seven, are computed together if the model is faster that way.
+/// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
 const STEPS_AHEAD: usize = 3;
 
 /// The history under the ground motion multiplied by a factor.
@@ -46,11 +45,11 @@ const STEPS_AHEAD: usize = 3;
 pub struct FactorSample {
     /// The factor.
     pub factor: f64,
-    /// Its outcome, or the reason for which there is no history.
+    /// Ending of the history, or the reason why there is none.
     pub result: Result<Ending, NoHistory>,
 }
 
-/// Why there is no history at a factor.
+/// Reasons why there is no history at a factor.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum NoHistory {
     /// The ground accelerates downwards as fast as a free fall, which the model does not cover.
@@ -62,7 +61,7 @@ pub enum NoHistory {
 }
 
 impl FactorSample {
-    /// Histories for several factors, in their order.
+    /// Computes the histories for several factors, in their order.
     fn all_of(
         model: &dyn Model,
         ground: &GroundMotion,
@@ -95,7 +94,7 @@ impl FactorSample {
         Self { factor, result }
     }
 
-    /// The outcome, or its replacement if there is no history.
+    /// Returns the outcome by its name in results, or the reason why there is no history.
     #[must_use]
     pub const fn outcome_name(&self) -> &'static str {
         match &self.result {
@@ -105,7 +104,7 @@ impl FactorSample {
         }
     }
 
-    /// Whether the structure overturns, as far as this is known; `None` if there is no history.
+    /// Returns the verdict; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
@@ -113,46 +112,45 @@ impl FactorSample {
 }
 
 named! {
-    /// Why a range of factors ends where it does.
+    /// Reason why a range of factors ends.
     pub enum RangeEnd {
-        /// Beyond it the verdict differs.
+        /// The verdict changes.
         Edge = "edge",
-        /// Factors beyond it were not requested.
+        /// It is the first or the last sampled factor.
         Sampled = "sampled",
-        /// Beyond it there are no histories.
+        /// There is no history beyond.
         Unknown = "unknown",
     }
 }
 
-/// A range of factors with one verdict. The histories at both ends were simulated, and have that verdict.
+/// A range of factors with one verdict. The histories at both ends were computed and have that verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FactorRange {
-    /// Its least factor.
+    /// Smallest factor of the range.
     pub from: f64,
-    /// Its largest factor.
+    /// Largest factor of the range.
     pub to: f64,
-    /// Why it begins there.
+    /// Reason why the range begins at `from`.
     pub from_end: RangeEnd,
-    /// Why it ends there.
+    /// Reason why the range ends at `to`.
     pub to_end: RangeEnd,
 }
 
-/// The result of a model of motion for all factors.
+/// The threshold of a model of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Threshold {
     /// Name of the model.
     pub model: String,
-    /// The histories for all factors, ascending. If the search for an edge failed or met the third verdict, its last history
-    /// is included.
+    /// The histories for all factors, ascending. They include the last history of a bisection that failed or met the third verdict.
     pub samples: Vec<FactorSample>,
-    /// The ranges of one verdict, ascending.
+    /// The ranges of equal verdicts, ascending.
     pub ranges: Vec<(Verdict, FactorRange)>,
-    /// The lowest factors of structures with other properties, if they were requested.
+    /// The lowest factors of structures with other stiffness and contact; empty unless requested.
     pub varied: Vec<VariedThreshold>,
 }
 
 impl Threshold {
-    /// The ranges of a verdict, ascending.
+    /// Returns the ranges with a verdict, ascending.
     #[must_use]
     pub fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
         let ranges = self.ranges.iter();
@@ -161,13 +159,13 @@ impl Threshold {
             .collect()
     }
 
-    /// The ranges that overturn, ascending.
+    /// Returns the ranges that overturn the structure, ascending.
     #[must_use]
     pub fn bands(&self) -> Vec<FactorRange> {
         self.of(Verdict::Overturns)
     }
 
-    /// The ranges between bands that survive, ascending.
+    /// Returns the safe ranges between bands, ascending.
     #[must_use]
     pub fn gaps(&self) -> Vec<FactorRange> {
         let bands = self.bands();
@@ -180,20 +178,19 @@ impl Threshold {
         gaps
     }
 
-    /// The least factor that certainly overturns; `None` if none does.
+    /// Returns the smallest factor that certainly overturns the structure; `None` if no factor does.
     #[must_use]
     pub fn lowest_factor(&self) -> Option<f64> {
         self.bands().first().map(|band| band.from)
     }
 }
 
-/// The factors on the ground motion by which each of the named models overturns.
+/// Computes the factors on the ground motion by which each of the named models overturns.
 ///
 /// `watch` receives the progress as in [`Runner::rows`]: first over all factors, then over the edges as well.
 ///
 /// # Errors
-/// When `watch` breaks, threads cannot be started, or the request is not valid. Histories that fail are
-/// among the results.
+/// When `watch` returns `Break`, threads cannot be started, or the request is not valid. Failed histories are part of the results.
 pub fn thresholds(
     models: &[(&str, &dyn Model)],
     ground: &GroundMotion,
@@ -209,14 +206,14 @@ pub fn thresholds(
         ground,
         request,
     };
-    // The cases of one model follow those of another.
+    // Cases are ordered by model, then by factor.
     let sampled = models.len() * factors.len();
     let model_of = |index: usize| index / factors.len();
     let family = |index| {
         let together = models[model_of(index)].1.is_faster_together();
         together.then_some(model_of(index))
     };
-    // A case without a family comes alone.
+    // A case without a family is computed alone.
     let samples_of = |indices: &[usize]| {
         let of_them = indices.iter().map(|index| factors[index % factors.len()]);
         shaking.samples(model_of(indices[0]), &of_them.collect::<Vec<_>>())
@@ -259,7 +256,7 @@ pub fn thresholds(
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
 ///
 /// # Errors
-/// Explains what to change.
+/// Returns the change that the scenario needs, in words.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
     scenario.ground.as_ref().ok_or(
@@ -271,15 +268,15 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
     Ok(())
 }
 
-/// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+/// Returns the largest horizontal acceleration of the ground at factor 1, in units of gravity.
 fn peak_g(scenario: &Scenario) -> f64 {
     scenario.ground_motion().peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
 
-/// The results for scenarios that differ only in their models of motion, with the thresholds of variations.
+/// Computes results of scenarios that differ only in their models of motion, with the thresholds of variations.
 ///
 /// # Errors
-/// When a scenario has no threshold, no history can be computed, or `watch` breaks.
+/// When a scenario has no threshold, no history can be computed, or `watch` returns `Break`.
 pub fn results(
     scenarios: &[Scenario],
     factors: &Factors,
@@ -307,7 +304,7 @@ pub fn results(
     Ok(report::report(scenarios, factors, &found, figure)?)
 }
 
-/// The models and the ground motion.
+/// The models, the ground motion and the request.
 #[derive(Clone, Copy)]
 struct Shaking<'a> {
     models: &'a [(&'a str, &'a dyn Model)],
@@ -320,8 +317,8 @@ impl Shaking<'_> {
         FactorSample::all_of(self.models[model].1, self.ground, self.request, factors)
     }
 
-    /// The edge between neighbours with different verdicts. If the search meets a history with the third verdict, that history and
-    /// the two edges on either side of it; if a history fails, that history.
+    /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
+    /// on both sides of it; if a history fails, returns that history.
     fn search(&self, (model, below, above): Change<'_>) -> Vec<Found> {
         let width = Width::Relative(EDGE_WIDTH);
         let together = self.models[model].1.is_faster_together();
@@ -332,7 +329,7 @@ impl Shaking<'_> {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
                 ahead = self.samples(model, &next_middles(low, high, width, steps));
-                // The first of them is needed now.
+                // The first history ahead is the one that is needed now.
                 0
             });
             match ahead[place].verdict() {
@@ -361,14 +358,14 @@ impl Shaking<'_> {
     }
 }
 
-/// Neighbouring samples of a model, given by its index, with different verdicts.
+/// Neighbouring samples with different verdicts, with the index of their model.
 type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
 
-/// Two close factors with different verdicts, or a history between such factors.
+/// Two close factors with different verdicts, or a history between the factors.
 type Found = Result<(f64, f64), FactorSample>;
 
 impl Threshold {
-    /// Refuses a threshold if not a single history could be computed.
+    /// Returns an error if no history could be computed.
     fn check_known(&self) -> Result<(), StudyError> {
         let mut results = self.samples.iter().map(|sample| &sample.result);
         match results.clone().find_map(|result| result.as_ref().err()) {
@@ -381,7 +378,7 @@ impl Threshold {
     }
 
     fn new(model: String, samples: Vec<FactorSample>, edges: &[(f64, f64)]) -> Self {
-        // The edge at an end of a range, if there is one, and why the range ends there.
+        // The edge at an end of a range, if there is one, and the reason why the range ends.
         let end = |below: Option<&FactorSample>, above: Option<&FactorSample>| {
             let Some((below, above)) = below.zip(above) else {
                 return (None, RangeEnd::Sampled);

@@ -12,22 +12,22 @@ use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::kind::{self, Kind};
 
-/// Height of the labels of the edges above a strip.
+/// Height of the labels of edges above a strip.
 const EDGE_LABELS: f64 = 58.0;
 const STRIP: f64 = 28.0;
-/// Distance between labels side by side.
+/// Distance between neighbouring labels.
 const LABEL_ADVANCE: f64 = 15.0;
 
 const CRITICAL: Stroke = Stroke::new(color::BLACK, 1.0, "6 4");
 const EDGE: Stroke = Stroke::new(color::GREY, 0.8, "");
 const HATCH: Stroke = Stroke::new("#ffffff", 1.2, "");
-/// Least width of a band, in pixels.
+/// Smallest width of a band, in pixels.
 const LEAST_PX: f64 = 1.5;
-/// Distance between the lines of a hatch, along the strip.
+/// Distance between hatching lines along the strip, in pixels.
 const HATCH_PX: f64 = 6.0;
 
-/// Draws the outcome against the factor, as a strip for each model with the edges of the bands, and below it
-/// the largest rotation. `peak_g` is the peak ground acceleration at the factor 1.
+/// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
+/// peak ground acceleration at factor 1.
 #[must_use]
 pub fn draw(
     figure: Figure,
@@ -81,7 +81,7 @@ pub fn draw(
     for (threshold, stroke) in thresholds.iter().zip(curves()) {
         let faint = Stroke::new(stroke.color, 0.5, "2 3");
         marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
-        // The curve is interrupted at overturning samples, which have no peak.
+        // Overturned samples have no peak and interrupt the curve.
         let points = threshold.samples.iter().map(|sample| {
             let overturns = sample.verdict() == Some(Verdict::Overturns);
             let peak = peak(sample).filter(|_| !overturns);
@@ -106,7 +106,7 @@ pub fn draw(
     sheet.finish()
 }
 
-/// Strokes for the curves of the models, in colours that no outcome has.
+/// Returns strokes for the curves of the models, in colours that no outcome has.
 fn curves() -> impl Iterator<Item = Stroke> {
     const CURVES: [Stroke; 3] = [
         Stroke::new(color::BLACK, 1.6, ""),
@@ -116,12 +116,12 @@ fn curves() -> impl Iterator<Item = Stroke> {
     CURVES.into_iter().cycle()
 }
 
-/// Bands narrower than this, in pixels, are hard to see, so they are listed.
+/// Bands narrower than this, in pixels, are listed in words.
 const NARROW_PX: f64 = 4.0;
 /// Largest number of listed bands.
 const LISTED: usize = 8;
 
-/// The bands and uncertain ranges too narrow to see in a strip, in words; empty without any.
+/// Returns the bands and uncertain ranges that are too narrow to see in a strip, in words; empty without such ranges.
 fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     let place = |factor: f64| axes.place(factor, axes.y.low).x;
     let mut listed = Vec::new();
@@ -154,14 +154,14 @@ fn kind_of(sample: &FactorSample) -> Kind {
     Kind::of(sample.outcome_name(), impacts)
 }
 
-/// Whether all largest rotations are known over the critical one; otherwise they are drawn in radians.
+/// Returns true if the critical rotation of all samples is known; otherwise rotations are drawn in radians.
 fn are_over_critical(thresholds: &[Threshold]) -> bool {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
     let mut endings = samples.flat_map(|sample| &sample.result);
     endings.all(|ending| ending.peak.over_critical().is_some())
 }
 
-/// The scale up to the largest rotation that was survived. Overturning cases go beyond it.
+/// Returns the scale up to the largest survived rotation. Overturned cases exceed it.
 fn scale(
     thresholds: &[Threshold],
     least: f64,
@@ -173,14 +173,14 @@ fn scale(
     Scale::exactly(0.0, 1.15 * largest, 6)
 }
 
-/// The edges of the bands and of the uncertain ranges, ascending.
+/// Returns the edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
     let ranges = threshold.ranges.iter();
     let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
     let ends = ranges.flat_map(|(_, at)| [(at.from, at.from_end), (at.to, at.to_end)]);
     let ends = ends.filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
-    // Where a band meets an uncertain range, one of the two factors that enclose the edge is enough.
+    // One of the two factors that enclose the edge between a band and an uncertain range is enough.
     ends.filter(move |factor| {
         let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();
         last = *factor;
@@ -191,7 +191,7 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
 /// Draws the outcomes of a model along the factors, with the edges of its bands above.
 fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let edges: Vec<f64> = edges(threshold).collect();
-    // The border between two colours: at the edge, if there is one, otherwise halfway.
+    // The border between two colours is the edge, or without an edge the geometric mean of the factors.
     let border = |below: &FactorSample, above: &FactorSample| {
         let mut edges = edges.iter().copied();
         let edge = edges.find(|edge| (below.factor..=above.factor).contains(edge));
@@ -209,7 +209,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);
         let to = next.map_or(axes.x.high, |next| border(last, &next[0]));
-        // Narrow bands are widened to remain visible.
+        // Widens narrow bands so that they remain visible.
         let (left, wide) = (place(from), place(to) - place(from));
         let frame = Frame {
             left: left + 0.5 * (wide - wide.max(LEAST_PX)),
@@ -220,7 +220,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         bands.push((wide, frame, kind_of(last), last.verdict()));
         from = to;
     }
-    // Narrow ones lie above those beside them.
+    // Narrow bands are drawn last, over their neighbours.
     bands.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, frame, kind, verdict) in bands {
         let name = format!("{} {}", threshold.model, kind.name);
@@ -256,8 +256,8 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
     });
 }
 
-/// Positions for labels near the given ascending positions, side by side between `left` and `right`; fewer if
-/// there is not enough room for all.
+/// Returns positions for labels near the given ascending positions, without overlaps between `left` and `right`; fewer if there is not enough
+/// space.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
     let room = ((right - left) / LABEL_ADVANCE) as usize + 1;
     let mut least = left;

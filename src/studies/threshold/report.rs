@@ -1,4 +1,4 @@
-//! The report of thresholds of overturning: their table, summary and words.
+//! Files and words of thresholds of overturning.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -17,18 +17,18 @@ use crate::studies::results::Results;
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
 
-/// Summary of the thresholds of scenarios that differ only in their models.
+/// Summary of the thresholds of scenarios that differ only in their models of motion.
 #[derive(Serialize)]
 pub struct Summary<'a> {
     /// Name of the program.
     program: &'static str,
-    /// Its version.
+    /// Version of the program.
     version: &'static str,
-    /// Largest horizontal acceleration of the ground at the factor 1, in units of gravity.
+    /// Largest horizontal acceleration of the ground at factor 1, in units of gravity.
     peak_acceleration_g: f64,
     /// The factors that were sampled.
     factors: Factors,
-    /// Unlikely numbers, limits of the models, histories without a verdict.
+    /// Warnings about unlikely numbers, limits of the models, and histories without a verdict.
     warnings: Vec<String>,
     /// The threshold of each model.
     models: Vec<ModelSummary<'a>>,
@@ -43,22 +43,22 @@ struct ModelSummary<'a> {
     scenario: Value,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
-    /// The least factor that certainly overturns.
+    /// The smallest factor that certainly overturns the structure; null if no factor does.
     lowest_factor: Option<f64>,
-    /// Ranges of factors that overturn, ascending.
+    /// Ranges of factors that overturn the structure, ascending.
     bands: Vec<RangeSummary>,
-    /// Ranges between bands that survive.
+    /// Safe ranges between bands.
     gaps: Vec<RangeSummary>,
-    /// Ranges for which overturning is uncertain.
+    /// Ranges with an uncertain verdict.
     uncertain: Vec<RangeSummary>,
     /// Ranges whose histories end too early for a verdict.
     incomplete: Vec<RangeSummary>,
     #[serde(flatten)]
     remarks: Remarks,
-    /// The lowest factors of structures with other properties.
+    /// The lowest factors of structures with other stiffness and contact; absent unless requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     variations: Vec<VariedSummary<'a>>,
-    /// All histories, with ascending factors.
+    /// All histories, in order of ascending factors.
     samples: Vec<SampleSummary<'a>>,
 }
 
@@ -67,32 +67,32 @@ struct ModelSummary<'a> {
 struct RangeSummary {
     #[serde(flatten)]
     range: FactorRange,
-    /// Peak ground acceleration at its least factor, in units of gravity.
+    /// Peak ground acceleration at the smallest factor of the range, in units of gravity.
     from_peak_g: f64,
-    /// Peak ground acceleration at its largest factor.
+    /// Peak ground acceleration at the largest factor of the range, in units of gravity.
     to_peak_g: f64,
 }
 
-/// The lowest factor of a structure with other properties.
+/// The lowest overturning factor of a structure with other properties.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum VariedSummary<'a> {
-    /// Found.
+    /// The factors were computed.
     Known {
-        /// The difference from the structure itself.
+        /// The changed property.
         with: &'a str,
-        /// The lowest factor that overturns; null if none does.
+        /// The lowest factor that overturns the structure; null if no factor does.
         factor: Option<f64>,
-        /// Why lower factors are not known to overturn.
+        /// Reason why lower factors are not known to overturn the structure.
         from_end: Option<RangeEnd>,
-        /// Peak ground acceleration at that factor, in units of gravity.
+        /// Peak ground acceleration at `factor`, in units of gravity.
         peak_g: Option<f64>,
         /// Number of histories that ended too early for a verdict.
         incomplete: usize,
     },
-    /// Unknown.
+    /// The factors could not be computed.
     Unknown {
-        /// The difference from the structure itself.
+        /// The changed property.
         with: &'a str,
         /// The reason.
         failed: &'a str,
@@ -104,11 +104,11 @@ enum VariedSummary<'a> {
 struct SampleSummary<'a> {
     /// The factor.
     factor: f64,
-    /// Its outcome.
+    /// Outcome of the history.
     outcome: &'static str,
     #[serde(flatten)]
     history: Option<HistorySummary>,
-    /// Why its outcome is uncertain, or why it has no history.
+    /// Reason why the outcome is uncertain, or why there is no history.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<&'a str>,
 }
@@ -116,19 +116,19 @@ struct SampleSummary<'a> {
 /// The numbers of a history.
 #[derive(Clone, Copy, Serialize)]
 struct HistorySummary {
-    /// The side to which it overturned; null unless that is certain.
+    /// The side to which the structure overturned; null unless overturning is certain.
     overturning_sway: Option<&'static str>,
     /// Number of impacts.
     impacts: Option<usize>,
     /// The time of the outcome, in seconds.
     outcome_time_s: f64,
-    /// Largest rotation over the critical one.
+    /// Largest rotation over the critical rotation; null if the critical rotation is unknown.
     peak_rotation_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians.
     peak_rotation_rad: Option<f64>,
 }
 
-/// Files and words for the thresholds of scenarios that differ only in their models; one of the files is JSON.
+/// Makes files and words of the thresholds of scenarios that differ only in their models of motion.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -158,7 +158,7 @@ pub fn report(
     Results::new(&FILES, &summary, words(scenarios, thresholds), others)
 }
 
-/// The samples, model by model, with ascending factors.
+/// Makes the table of the samples, ordered by model, then by factor.
 fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a str, &'a SampleSummary<'a>);
     let rows = models.iter().flat_map(|model| {
@@ -181,7 +181,7 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
     csv(columns, &rows.collect::<Vec<_>>())
 }
 
-/// Warnings of all models, each once, and histories without a verdict.
+/// Returns the warnings of all models without duplicates, and histories without a verdict.
 fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
     for warning in scenarios.iter().flat_map(remarks::warnings) {
@@ -240,7 +240,7 @@ impl Threshold {
         }
     }
 
-    /// The remarks on its histories.
+    /// Returns the remarks on the histories.
     fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
         for ending in self.samples.iter().flat_map(|sample| &sample.result) {
@@ -249,7 +249,7 @@ impl Threshold {
         remarks
     }
 
-    /// Whether a factor is the smallest one tried, so that smaller ones may overturn as well.
+    /// Returns true if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
     fn is_first(&self, factor: f64) -> bool {
         let first = self.samples.first();
         first.is_some_and(|first| first.factor == factor)
@@ -277,12 +277,12 @@ impl<'a> SampleSummary<'a> {
     }
 }
 
-/// A factor, and the peak ground acceleration there.
+/// Returns a factor with the peak ground acceleration, in words.
 fn at(factor: f64, peak_g: f64) -> String {
     format!("{} ({} g)", rounded(factor), rounded(factor * peak_g))
 }
 
-/// The results in words: one line for a record, one line per range for a pulse.
+/// Returns the results in words: one line for a record, one line per range for a pulse.
 fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
     let peak_g = peak_g(&scenarios[0]);
     let mut lines = Vec::new();
@@ -311,7 +311,7 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
 }
 
 impl Factors {
-    /// The factors that were tried, in words.
+    /// Returns the tried factors in words.
     #[must_use]
     pub fn in_words(&self) -> String {
         format!(
@@ -324,7 +324,7 @@ impl Factors {
 }
 
 impl Threshold {
-    /// The lowest factors that overturn the structure with other properties.
+    /// Returns lines with the lowest factors that overturn the structure with other properties.
     fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
         self.varied.iter().map(move |varied| {
             let no_verdict = varied.no_verdict();
@@ -343,7 +343,7 @@ impl Threshold {
         })
     }
 
-    /// A line for each band, with the range that follows it.
+    /// Returns a line for each band, with the range after the band.
     fn ranges_in_words(&self, peak_g: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         if self.bands().is_empty() {
@@ -378,7 +378,7 @@ impl Threshold {
                 [0, 1].map(|end| format!("{} ({} g)", factors[end], accelerations_g[end]))
             };
             let [begins, mut to] = ends([range.from, range.to]);
-            // After "up to" only ends are printed, so each must differ from the last one.
+            // Lines after the first print only the ends of ranges, so each end must differ from the previous one.
             if let (Some(last), false) = (printed_end, *verdict == Verdict::Overturns) {
                 [_, to] = ends([last, range.to]);
             }
@@ -408,7 +408,7 @@ impl Threshold {
         lines
     }
 
-    /// The doubts about the ranges.
+    /// Returns lines about uncertain, failed and incomplete histories.
     fn doubts_in_words(&self) -> Vec<String> {
         let falls =
             |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));

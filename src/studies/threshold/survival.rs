@@ -1,31 +1,31 @@
-//! The strengths of a ground motion that a structure survives, in brief and in one line of words.
+//! The strengths of a ground motion that a structure survives, in one line of words.
 
 use super::Threshold;
 use super::digits::rounded;
 use crate::studies::ending::Verdict;
 
-/// The least strength that overturns a structure, and the ranges of strengths that it survives again or whose verdict is uncertain.
+/// The smallest strength that overturns a structure, and the ranges of larger strengths that it survives, or whose verdict is uncertain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survival {
-    /// The least strength that certainly overturns; `None` if none does.
+    /// The smallest strength that certainly overturns the structure; `None` if no strength does.
     pub overturns_from: Option<f64>,
-    /// Whether that is also the least strength tried, so that a smaller one might overturn too.
+    /// True if `overturns_from` is the smallest tried strength, so that a smaller one might overturn the structure too.
     pub from_the_first: bool,
-    /// Whether smaller strengths may overturn as well, since histories next to it have no verdict.
+    /// True if smaller strengths may overturn the structure as well, because neighbouring histories have no verdict.
     pub at_most: bool,
-    /// Ranges of greater strengths that it certainly survives.
+    /// Ranges of larger strengths that the structure certainly survives.
     pub again: Vec<[f64; 2]>,
-    /// Ranges of strengths for which it is uncertain whether it overturns.
+    /// Ranges of strengths with an uncertain verdict.
     pub uncertain: Vec<[f64; 2]>,
     /// Ranges of strengths whose histories end too early for a verdict.
     pub incomplete: Vec<[f64; 2]>,
-    /// The greatest strength that was tried.
+    /// The largest tried strength.
     pub tried_to: f64,
 }
 
 impl Survival {
-    /// From ascending strengths, and whether each overturns, if its history is known. A range of survival or of uncertainty
-    /// extends from the first to the last strength tried in it.
+    /// Makes a survival of ascending strengths with their verdicts; `None` for a strength without a history. Ranges extend from their first to
+    /// their last strength.
     #[must_use]
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let known = levels.iter();
@@ -37,7 +37,7 @@ impl Survival {
         Self::of_runs(&runs.collect::<Vec<_>>(), tried)
     }
 
-    /// From a threshold, with the bounds of its edges.
+    /// Makes the survival of a threshold, with ranges that end at its edges.
     #[must_use]
     pub fn of_threshold(threshold: &Threshold) -> Self {
         let tried = threshold.samples.iter();
@@ -49,7 +49,7 @@ impl Survival {
         Self::of_runs(&runs.collect::<Vec<_>>(), tried)
     }
 
-    /// From ascending ranges, each with one verdict, and from the least and the greatest strength tried.
+    /// Makes a survival of ascending ranges of one verdict each, and of the smallest and the largest tried strength.
     fn of_runs(runs: &[(Verdict, [f64; 2])], [tried_from, tried_to]: [f64; 2]) -> Self {
         let first = runs.iter().position(|run| run.0 == Verdict::Overturns);
         let overturns_from = first.map(|first| runs[first].1[0]);
@@ -69,11 +69,10 @@ impl Survival {
     }
 }
 
-/// Begins the list of strengths without a verdict.
+/// Words before strengths without a verdict.
 const EARLY: &str = "no verdict, since the run ends too early,";
 
-/// The line, with strengths in this unit, which may be empty: `first overturns at 2.113; survives again at 2.401 to
-/// 2.604`.
+/// Returns the line of words, with this unit of strengths, which may be empty: `first overturns at 2.113; survives again at 2.401 to 2.604`.
 #[must_use]
 pub fn in_words(survival: &Survival, unit: &str) -> String {
     let at = |strength: f64| format!("{}{unit}", rounded(strength));

@@ -1,4 +1,4 @@
-//! Thresholds of a structure with other properties that are as likely.
+//! Thresholds of a structure with other stiffness and contact.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;
@@ -16,17 +16,17 @@ use crate::studies::runner::{Progress, Runner, RunnerError};
 /// The threshold of a variation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VariedThreshold {
-    /// The difference, in words that follow "with".
+    /// The changed property, in words that follow "with".
     pub name: String,
-    /// The lowest factor that overturns it, searched among the sampled factors of the structure itself: the first of them if it overturns
-    /// already, and `None` if none does. Or why it is unknown.
+    /// The lowest factor that overturns the structure with this property, searched among the sampled factors of the structure itself; the first
+    /// factor if it already overturns the structure, `None` if no factor does. The error is the reason why the factor is unknown.
     pub factor: Result<Option<f64>, String>,
     /// Number of histories of the search that ended too early for a verdict.
     pub incomplete: usize,
 }
 
 impl VariedThreshold {
-    /// The number of histories without a verdict, in words; `None` if all have one.
+    /// Returns the number of histories without a verdict, in words; `None` if all have one.
     #[must_use]
     pub fn no_verdict(&self) -> Option<String> {
         let count = self.incomplete;
@@ -38,14 +38,13 @@ impl VariedThreshold {
     }
 }
 
-/// Number of histories that are computed together: some models are faster that way.
+/// Number of histories that are computed together; some models are faster that way.
 const TOGETHER: usize = 4;
 
-/// The thresholds of these variations on a ground motion. No history is repeated, nor followed beyond the
-/// time from which it cannot overturn.
+/// Computes the thresholds of variations under a ground motion. Histories are not repeated, and stop once they can no longer overturn.
 ///
 /// # Errors
-/// When `watch` breaks, or threads cannot be started.
+/// When `watch` returns `Break`, or threads cannot be started.
 pub fn vary(
     variations: &[Variation],
     factors: &Factors,

@@ -1,4 +1,4 @@
-//! The report of cells of samples: a map of probability, the crossings of its levels, and the influence of the uncertain numbers.
+//! Files and words of a map of samples: a map of probability, the crossings of its levels, and the influence of the uncertain numbers.
 
 use serde::Serialize;
 use serde_json::Value;
@@ -31,7 +31,7 @@ pub const FILES: [&str; 6] = [
     "uncertain.json",
 ];
 
-/// Colours of probabilities, the darker the likelier; the last are for all samples and for cells without an outcome.
+/// Colours of probabilities, dark for high ones. The last two are for cells that overturn in all samples, and for cells without an outcome.
 const PALETTE: [Kind; 9] = [
     kind("probability-0", "no sample overturns", "#f4f4f4"),
     kind("probability-5", "up to 5 %", "#fee5d5"),
@@ -53,21 +53,21 @@ fn kind_of(cell: &CellCounts) -> Kind {
     }]
 }
 
-/// The lines at the [`LEVELS`].
+/// Contour lines of the [`LEVELS`]: name and stroke.
 const LINES: [(&str, Stroke); 3] = [
     ("probability of 5 %", Stroke::new(color::BLUE, 1.8, "2 4")),
     ("probability of 50 %", Stroke::new(color::BLUE, 2.4, "")),
     ("probability of 95 %", Stroke::new(color::BLUE, 1.8, "8 4")),
 ];
 
-/// The part of the summary that only maps have.
+/// The part of the summary that is specific to maps.
 #[derive(Serialize)]
 struct Details {
     /// Number of cells.
     cells: usize,
-    /// Number of histories without an outcome, by the reason.
+    /// Number of histories without an outcome, for each reason.
     histories_without_outcome: Value,
-    /// Part of the cells that overturn.
+    /// Share of the cells that overturn.
     part_that_overturns: Band,
 }
 
@@ -123,7 +123,7 @@ pub(super) fn report(
     findings.results(samples, &FILES, style.figure)
 }
 
-/// A row per cell, as `map.csv` of the map itself: x varies slowly, y fast.
+/// Makes `map.csv`, with a row per cell as the map of the scenario: x varies slowly, y fast.
 fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, OutputError> {
     let axes = study.map.axes.map(|axis| axis.key.as_str());
     let columns = [
@@ -145,10 +145,10 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
 /// The reasons why histories have no outcome.
 const WITHOUT: [&str; 3] = ["invalid", "failed", "incomplete"];
 
-/// The share of overturned samples, as in the table and on the page.
+/// The share of overturned samples, with its interval, in the table and on the page.
 const SHARE: [&str; 3] = ["overturned", "overturned_low", "overturned_high"];
 
-/// A row per column of the map.
+/// Makes `probability.csv`, with a row per column of the map.
 fn crossing_table(
     study: &CellsOfSamples<'_>,
     crossings: &[Crossing],
@@ -190,7 +190,7 @@ fn draw(
         {
             keys.push(Key::line(name, stroke));
         }
-        // A line is interrupted where the probability is not reached, or reached below the map.
+        // A line is interrupted where the level is not reached, or is reached below the map.
         let points = crossings
             .iter()
             .map(|crossing| sheet.point(crossing.x, crossing.inside(level).unwrap_or(f64::NAN)));
@@ -199,7 +199,7 @@ fn draw(
     sheet.draw(&PALETTE, &kinds, keys, vec![Mark::clipped(lines)])
 }
 
-/// The cells of the page.
+/// Returns the cells of the page.
 fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
     let numbers = SHARE.into_iter().enumerate().map(|(which, name)| {
         let of = |cell: &CellCounts| Some(cell.overturned?.numbers()[which]);
@@ -218,7 +218,7 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
     }
 }
 
-/// The number of cells that overturn with each probability, and in the scenario itself.
+/// Returns the number of cells that overturn with each probability, and in the scenario itself, in words.
 fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellRow]) -> String {
     let at_least = |level: f64| {
         let cells = counts
@@ -247,7 +247,7 @@ fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellR
     )
 }
 
-/// The crossings in words, at the ends and in the middle of the map.
+/// Returns the crossings in words, at the ends and in the middle of the map.
 fn at_columns(study: &CellsOfSamples<'_>, crossings: &[Crossing]) -> Vec<String> {
     let [x, y] = study.map.axes.map(|axis| axis.key.as_str());
     let last = crossings.len() - 1;

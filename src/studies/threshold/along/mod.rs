@@ -1,4 +1,4 @@
-//! The threshold for each value of one key along a range: how the answer depends on a dimension, a stiffness or a duration.
+//! The threshold as a function of one key: of a dimension, a stiffness or a duration.
 
 mod no_impact;
 mod picture;
@@ -30,7 +30,7 @@ pub struct KeyRange {
 }
 
 impl KeyRange {
-    /// The values.
+    /// Returns the values.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
         let range = Sequence::Range {
@@ -46,7 +46,7 @@ impl KeyRange {
 impl FromStr for KeyRange {
     type Err = &'static str;
 
-    /// Reads `arch.mean_radius_m=4..6:5`.
+    /// Parses text such as `arch.mean_radius_m=4..6:5`.
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let read = || {
             let (key, range) = text.split_once('=')?;
@@ -68,14 +68,14 @@ impl FromStr for KeyRange {
     }
 }
 
-/// The values of a key, and the search for each of them.
+/// The options of thresholds along a key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlongOptions {
-    /// The values.
+    /// The values of the key.
     pub along: KeyRange,
-    /// The factors that are tried in the search for the first edge.
+    /// The factors that the search for the first edge tries.
     pub factors: Factors,
-    /// Whether also the least factor is found that overturns in the first fall, before any impact.
+    /// True to find also the smallest factor that overturns the structure before any impact.
     pub no_impact: bool,
 }
 
@@ -87,24 +87,25 @@ pub struct Along<'a> {
     values: Vec<f64>,
 }
 
-/// The threshold for a value.
+/// The threshold for a value of the key.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AlongRow {
     /// The value.
     pub value: f64,
-    /// Largest horizontal acceleration of the ground at the factor 1, in units of gravity; `None` if the value is not allowed.
+    /// Largest horizontal acceleration of the ground at factor 1, in units of gravity; `None` if the value is not allowed.
     pub peak_g: Option<f64>,
-    /// Where the structure first overturns, or why this is unknown.
+    /// The first edge, or the reason why it is unknown.
     pub edge: Result<FirstEdge, NoAnswer>,
-    /// The least factor that overturns before any impact, if it was searched for: `None` if none does, or why this is unknown.
+    /// The smallest factor that overturns the structure before any impact; `None` inside if no factor does, `None` outside if it was not
+    /// requested. The error is the reason why it is unknown.
     pub no_impact: Option<Result<Option<f64>, String>>,
 }
 
 impl<'a> Along<'a> {
-    /// The thresholds of a scenario that starts from rest; at least one value must be allowed.
+    /// Makes the study of a scenario that starts from rest. At least one value must be allowed.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario, options: AlongOptions) -> Result<Self, String> {
         check(scenario)?;
         if options.no_impact && scenario.motion.hinges().has_joints() {
@@ -131,24 +132,24 @@ impl<'a> Along<'a> {
     }
 }
 
-/// The threshold for a value, as in the table and in the summary.
+/// The threshold for a value, for the table and the summary.
 #[derive(Serialize)]
 struct Point {
     /// The value of the key.
     value: f64,
-    /// The least factor that certainly overturns the structure; absent if none does.
+    /// The smallest factor that certainly overturns the structure; null if no factor does.
     overturns_from_factor: Option<f64>,
-    /// The peak ground acceleration at that factor.
+    /// The peak ground acceleration at that factor, in units of gravity.
     overturns_from_g: Option<f64>,
-    /// Whether that is the least factor tried, so that a smaller one may overturn as well.
+    /// True if that factor is the smallest tried one, so that a smaller factor may overturn the structure as well.
     at_most: bool,
-    /// The least factor below that for which overturning is uncertain.
+    /// The smallest factor below `overturns_from_factor` with an uncertain verdict; null without uncertain verdicts.
     uncertain_from_factor: Option<f64>,
-    /// The least factor that overturns before any impact, if it was searched for and found.
+    /// The smallest factor that overturns the structure before any impact; null if it was not requested or not found.
     no_impact_factor: Option<f64>,
-    /// The peak ground acceleration at that factor.
+    /// The peak ground acceleration at `no_impact_factor`, in units of gravity.
     no_impact_g: Option<f64>,
-    /// Why the threshold is unknown.
+    /// Reason why the threshold is unknown.
     why_not: Option<&'static str>,
 }
 

@@ -1,25 +1,25 @@
-//! Overturning without impact: in the first fall from rest, before the hinges ever close.
+//! Overturning without impact: during the first sway from rest, before the hinges close.
 //!
-//! The impact model has no influence, so this factor can be compared with other programs and closed forms. Under a pulse with one lobe
-//! it is the only edge. A motion with lobes to both sides can overturn within narrow windows of the factor, in which one lobe just
-//! carries the structure over and the next one does not catch it. So the edge is searched in small strides and then bisected.
+//! The impact model has no influence on this factor, so it can be compared with other programs and closed forms. Under a pulse with one lobe
+//! there is only one edge. Under a motion with lobes to both sides, narrow ranges of the factor may overturn the structure: one lobe just
+//! overturns it and the next lobe does not stop it. So the search for the edge uses small strides, followed by bisection.
 
 use crate::bisection::{Width, try_bisect};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::threshold::factors::Factors;
 
-/// Ratio of successive factors in the search under motions to both sides: a window narrower than that may be missed. The narrowest
-/// found, under Ricker, Gabor and windowed pulses, were some 1.5 % wide.
+/// Ratio of successive factors under motions with lobes to both sides; a narrower range may be missed. The narrowest known ranges, under Ricker,
+/// Gabor and windowed pulses, were about 1.5 % wide.
 const STRIDE: f64 = 1.005;
 
-/// Ratio of successive factors under pulses to one side. A larger factor pushes harder at every instant, so there is only one edge,
-/// and the strides can be long.
+/// Ratio of successive factors under pulses with one lobe. A larger factor pushes more at every instant, so there is only one edge, and long
+/// strides suffice.
 const ONE_SIDED_STRIDE: f64 = 1.5;
 
-/// Relative width to which the edge is bisected: integration at the default tolerance is not more accurate.
+/// Relative width to which bisection encloses the edge: about the accuracy of the integration at the default tolerance.
 const RESOLUTION: f64 = 1e-9;
 
-/// The least of these factors on the ground motion of a scenario that overturns a mechanism without impact; `None` if none does.
+/// Finds the smallest of these factors on the ground motion of a scenario that overturns a mechanism without impact; `None` if no factor does.
 pub(super) fn least_without_impact(
     scenario: &Scenario,
     factors: &Factors,

@@ -5,7 +5,7 @@ use crate::output::Figure;
 use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::svg::CURVES;
 
-/// A quantity of a point, in g.
+/// Function that returns a quantity of a point, in g.
 type Quantity = fn(&Point) -> Option<f64>;
 
 const CURVES_OF: [(&str, Quantity); 2] = [
@@ -13,13 +13,13 @@ const CURVES_OF: [(&str, Quantity); 2] = [
     ("overturns without impact", |point| point.no_impact_g),
 ];
 
-/// Draws the peak ground acceleration that overturns the structure over the values of a key, each value a point of a curve.
+/// Draws the peak ground acceleration that overturns the structure against the values of a key.
 pub(super) fn draw(figure: Figure, title: &str, key: &str, points: &[Point]) -> String {
     let curves = CURVES_OF
         .into_iter()
         .zip(CURVES)
         .map(|((name, of), stroke)| {
-            // The curve is interrupted where there is no value.
+            // Missing values interrupt the curve.
             let points = points.iter();
             let points = points.map(|point| (point.value, of(point).unwrap_or(f64::NAN)));
             Mark::curve(name, stroke, points)

@@ -1,4 +1,4 @@
-//! Reports the thresholds along a range: table, summary and words.
+//! Files and words of thresholds along a key.
 
 use serde::Serialize;
 
@@ -11,12 +11,12 @@ use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, no_verdict};
 use crate::studies::results::{Reported, Results, Style};
 use crate::studies::threshold::{Factors, rounded};
 
-/// The part of the summary that only thresholds along a range have.
+/// The part of the summary that is specific to thresholds along a key.
 #[derive(Serialize)]
 struct Details<'a> {
     /// The key and its values.
     along: &'a KeyRange,
-    /// The factors that were tried.
+    /// The tried factors.
     factors: &'a Factors,
     /// The threshold for each value.
     values: &'a [Point],
@@ -66,7 +66,7 @@ impl Reported for Along<'_> {
 }
 
 impl Along<'_> {
-    /// The values without an answer, and why.
+    /// Returns the values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let mut remarks = Remarks::default();
         for row in rows {
