@@ -1,4 +1,4 @@
-//! The parts of a history, for every model: samples, events and a summary.
+//! Parts of a history, for all models: samples, events and a summary.
 
 use std::fmt;
 use std::time::Duration;
@@ -15,11 +15,11 @@ use crate::mechanics::tie::{Tie, TieMemory};
 
 /// Outcome of a history.
 ///
-/// A history is complete if the structure overturned, or if the ground is quiet for good and at most a quarter of the energy barrier is
-/// left as energy above rest. The energy is the kinetic and potential energy beside the barrier of the first mechanism. Where that barrier
-/// or the energy at rest is not known (joints that slipped, feet that move differently, ties, supports that have moved) it is the largest
-/// kinetic energy of the last part of the history, beside the barrier of the structure as it was built, with rigid joints and without ties:
-/// that of its first mechanism, else that of the part above a joint which overturns most easily as one block.
+/// A history is complete if the structure has overturned. It is also complete if the ground is quiet from then on, and the remaining energy above
+/// rest is at most a quarter of the energy barrier. The energy is kinetic plus potential energy, the barrier that of the first mechanism. The barrier
+/// or the energy at rest may be unknown: for joints that have slipped, feet that move differently, ties, and moved supports. The criterion then
+/// compares the largest kinetic energy of the last part of the history with the barrier of the undeformed structure with rigid joints and without
+/// ties. That is the barrier of the first mechanism if known, otherwise the least barrier to overturn the part above a joint as one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
@@ -30,17 +30,17 @@ pub enum Outcome {
     Vibrates,
     /// A joint opened or slipped, and the structure came to rest.
     Rest,
-    /// Overturned, to this side: the structure passed the point from which gravity alone overturns it, and did not return.
+    /// The structure overturned to this side: it passed the position from which gravity alone overturns it, and did not return.
     Overturned(Sway),
     /// Still moving at the end of a complete history: the structure survives, but has not come to rest.
     StillRocking,
-    /// The history ended too early for a verdict: the ground still moved, or more than a quarter of the energy barrier was left. It
-    /// counts neither as survived nor as overturned.
+    /// The history ended too early to decide: the ground still moved, or more than a quarter of the energy barrier was left. It counts neither as
+    /// survived nor as overturned.
     Incomplete,
 }
 
 impl Outcome {
-    /// The side to which the structure overturned.
+    /// Returns the side to which the structure overturned; `None` if it did not.
     #[must_use]
     pub const fn overturning_sway(self) -> Option<Sway> {
         match self {
@@ -49,7 +49,7 @@ impl Outcome {
         }
     }
 
-    /// The name in machine-readable results.
+    /// Returns the name in machine-readable results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -64,7 +64,7 @@ impl Outcome {
 }
 
 impl fmt::Display for Outcome {
-    /// In words.
+    /// Writes the outcome in words.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NeverMoved => "never moved",
@@ -84,14 +84,14 @@ pub enum State {
     /// At rest, undeformed.
     #[default]
     Rest,
-    /// Rocking, swayed to this side.
+    /// Rocking, with the sway to this side.
     Rocking(Sway),
     /// Overturned, to this side.
     Overturned(Sway),
 }
 
 impl State {
-    /// The name in machine-readable results: `rest`, `right`, `left` or `overturned`.
+    /// Returns the name in machine-readable results: `rest`, `right`, `left` or `overturned`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -101,7 +101,7 @@ impl State {
         }
     }
 
-    /// The side to which it sways or has overturned.
+    /// Returns the side to which the structure sways or has overturned; `None` at rest.
     #[must_use]
     pub const fn sway(self) -> Option<Sway> {
         match self {
@@ -117,16 +117,16 @@ impl Serialize for State {
     }
 }
 
-/// A hinge that is open, and where it is.
+/// Open hinge, with its current position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenHinge {
-    /// Its place in the structure.
+    /// Joint or section of the hinge.
     pub hinge: Hinge,
-    /// Its position now, in metres, relative to the ground.
+    /// Current position, in metres, relative to the ground.
     pub position_m: Vector2<f64>,
 }
 
-/// State of a structure at an instant of the output. Rotations are positive anticlockwise.
+/// State of a structure at an output time. Rotations are positive anticlockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sample {
     /// Time in seconds.
@@ -138,7 +138,7 @@ pub struct Sample {
     /// Displacement of the right foot relative to the left one, to the right and upwards in m; only if the feet move
     /// differently.
     pub feet_apart_m: Vector2<f64>,
-    /// Events so far.
+    /// Number of events up to this time.
     pub phase: usize,
     /// Rest, rocking or overturned.
     pub state: State,
@@ -155,41 +155,39 @@ pub struct Sample {
     pub demand: Demand,
     /// Kinetic and potential energy, in J.
     pub energy_j: f64,
-    /// Kinetic and potential energy over the energy barrier of the mechanism that moves, or of the first mechanism of a row of blocks; `None` where
-    /// no barrier is known.
+    /// Kinetic and potential energy over the energy barrier of the moving mechanism, or of the first mechanism of a row of blocks; `None` if the
+    /// barrier is unknown.
     pub energy_ratio: Option<f64>,
-    /// Rotation (anticlockwise) of the body that carries the coordinate, over its rotation at the unstable
-    /// equilibrium of the mechanism that moves: below -1 or above 1 gravity overturns the structure. `None`
-    /// where it is not known.
+    /// Rotation (anticlockwise) of the body that carries the coordinate, over its rotation at the unstable equilibrium of the moving mechanism. Below
+    /// -1 or above 1 gravity overturns the structure. `None` if unknown.
     pub rotation_over_critical: Option<f64>,
     /// Gaps of the joints at intrados and extrados, in m; only for a row of blocks.
     pub gaps_m: Vec<[f64; 2]>,
-    /// Line of thrust: how far it lies towards the extrados from the middle of each joint, or of each section of
-    /// `Arch::thrust_sections_rad`, over the thickness; `None`
-    /// where there is no pressure. Empty unless a [`Recorder`](super::recorder::Recorder) wants it and the model knows it; elastic joints
-    /// always give it.
+    /// Thrust line: eccentricity towards the extrados in each joint, or in each section of `Arch::thrust_sections_rad`, over the thickness. `None`
+    /// for a joint without compression. Empty unless a [`Recorder`](super::recorder::Recorder) wants it and the model can compute it; always given
+    /// for elastic joints.
     pub eccentricity_ratios: Vec<Option<f64>>,
     /// Offsets of the joints, in m, of the right face towards the extrados; only for a row whose joints slip.
     pub offsets_m: Vec<f64>,
     /// Forces and stresses of the joints; only for a row with elastic joints.
     pub pressures: Vec<JointPressure>,
-    /// Forces and elongations of the ties; none without ties.
+    /// Forces and elongations of the ties; empty without ties.
     pub ties: Vec<TieSample>,
 }
 
-/// Force and elongation of a tie at an instant.
+/// Force and elongation of a tie at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieSample {
     /// Tension, in N.
     pub force_n: f64,
     /// Lengthening from the undeformed structure, in m.
     pub elongation_m: f64,
-    /// Whether it has broken.
+    /// True once the tie has broken.
     pub is_broken: bool,
 }
 
 impl TieSample {
-    /// The state of a tie, from its memory.
+    /// Returns the sample of a tie in a given state.
     pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
         Self {
             force_n: memory.force_n.0[0],
@@ -199,29 +197,29 @@ impl TieSample {
     }
 }
 
-/// The largest force of a tie in a history, and its state at the end.
+/// Largest force of a tie in a history, and its state at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct TieSummary {
-    /// The largest force with which it pulled, in N; of a tie that breaks, also where it broke.
+    /// Largest tension, in N, including the tension at which the tie breaks.
     pub peak_force_n: f64,
-    /// When, in s.
+    /// Time of the largest tension, in s.
     pub peak_force_time_s: f64,
-    /// When it yielded first, in s, if it did.
+    /// Time of the first yield, in s; `None` if the tie does not yield.
     pub yielded_s: Option<f64>,
-    /// When it broke, in s, if it did.
+    /// Time of the break, in s; `None` if the tie does not break.
     pub broken_s: Option<f64>,
-    /// Plastic lengthening, in m.
+    /// Plastic elongation at the end, in m.
     pub yielded_m: f64,
     /// Tension at the end, in N.
     pub force_n: f64,
-    /// Elastic energy in it at the end, in J.
+    /// Elastic energy of the tie at the end, in J.
     pub elastic_j: f64,
-    /// Energy that it took as it yielded and broke, in J.
+    /// Energy dissipated by yield and break, in J.
     pub taken_j: f64,
 }
 
 impl TieSummary {
-    /// Of a tie at rest.
+    /// Returns the summary of a tie at rest.
     pub(in crate::dynamics) fn at_rest(
         tie: &Tie,
         memory: &TieMemory<Lanes<1>>,
@@ -237,7 +235,7 @@ impl TieSummary {
         }
     }
 
-    /// Notes its force and state at a time; returns the events since the last time.
+    /// Records force and state of the tie at a time; returns the events since the last call.
     pub(in crate::dynamics) fn note(
         &mut self,
         tie: &Tie,
@@ -267,14 +265,14 @@ impl TieSummary {
     }
 }
 
-/// Forces and stresses of an elastic joint, by its elastic stress.
+/// Forces and stresses of an elastic joint, without damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointPressure {
     /// Normal force, in N; compression is positive.
     pub normal_n: f64,
-    /// Shear force, in N, positive where it keeps the right face from slipping towards the extrados.
+    /// Shear force, in N, positive if it prevents the right face from slipping towards the extrados.
     pub shear_n: f64,
-    /// Distance of the normal force from the middle of the joint towards the extrados, over the length of the joint; `None` without contact.
+    /// Eccentricity of the normal force towards the extrados, over the length of the joint; `None` without contact.
     pub eccentricity_ratio: Option<f64>,
     /// Fraction of the joint in contact.
     pub contact_ratio: f64,
@@ -283,7 +281,7 @@ pub struct JointPressure {
 }
 
 impl Sample {
-    /// Makes of this the sample of another instant, at rest, with the memory of its lists, which are empty.
+    /// Resets this sample to a state of rest at another time. All lists are empty and keep their memory.
     pub(super) fn begin(&mut self, time_s: f64, ground_m_s2: Vector2<f64>, phase: usize) {
         self.time_s = time_s;
         // Adding zero makes a negative zero positive.
@@ -306,7 +304,7 @@ impl Sample {
 }
 
 named! {
-    /// The kind of an event.
+    /// Kind of an event.
     pub enum EventKind {
         /// The structure starts to move from rest.
         Uplift = "uplift",
@@ -323,16 +321,16 @@ named! {
     }
 }
 
-/// An event of a history, and the state just after.
+/// Event of a history, with the state just after it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Event {
-    /// Instant in seconds.
+    /// Time in seconds.
     pub time_s: f64,
-    /// The kind of the event.
+    /// Kind of the event.
     pub kind: EventKind,
-    /// Rest, rocking or overturned, from here on.
+    /// State from here on: rest, rocking or overturned.
     pub state: State,
-    /// Impacts since uplift, which is the index of its mechanism; `None` at rest, and for a row of blocks.
+    /// Number of impacts since uplift, which is the index of the mechanism; `None` at rest, and for a row of blocks.
     pub mechanism: Option<usize>,
     /// Rotations of the bodies.
     pub rotations_rad: Vec<f64>,
@@ -340,17 +338,17 @@ pub struct Event {
     pub rates_rad_s: Vec<f64>,
     /// Kinetic and potential energy just after, in J.
     pub energy_j: f64,
-    /// Hinges of its mechanism from left to right; none at rest. For a row of blocks, the joints that are open or open
-    /// at this instant, including those left open at rest.
+    /// Hinges of the mechanism from left to right; empty at rest. For a row of blocks: all open joints and those that open at this time, also at
+    /// rest.
     pub hinges: Vec<Hinge>,
-    /// The impact, if the event is one, also if it leads to rest.
+    /// Impact; `None` for other events. An impact may lead to rest.
     pub impact: Option<Impact>,
-    /// The tie, where the event is one of a tie, from 0 on.
+    /// Index of the tie, from 0; `None` for events without a tie.
     pub tie: Option<usize>,
 }
 
 impl Event {
-    /// An event of which nothing else is known: all lists are empty.
+    /// Returns an event with empty lists.
     pub(super) const fn new(time_s: f64, kind: EventKind, state: State) -> Self {
         Self {
             time_s,
@@ -366,7 +364,7 @@ impl Event {
         }
     }
 
-    /// Memory that it takes.
+    /// Returns the memory of the event, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let impact = self.impact.as_ref().map_or(0, |impact| {
             size_of_val(&impact.rates_before_rad_s[..])
@@ -382,78 +380,76 @@ impl Event {
     }
 }
 
-/// An impact: hinges that close, others that open, and the energy that is lost.
+/// Impact: hinges that close, others that open, and the dissipated energy.
 ///
-/// The mechanism after is the one that the impact leads to, with its rates just after, even where these are so
-/// small that the structure comes to rest.
+/// The rates after the impact are those of the new mechanism, even if they are so small that the structure comes to rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Impact {
     /// Sway of the mechanism that closed.
     pub sway_before: Sway,
-    /// Kinetic energy after the impact over that before it; 0 where no mechanism can follow.
+    /// Kinetic energy after the impact over that before it; 0 if no mechanism can follow.
     pub restitution: f64,
     /// Kinetic energy before, in J.
     pub energy_before_j: f64,
     /// Kinetic energy after, in J.
     pub energy_after_j: f64,
-    /// The part of the loss that friction took, in J, if joints slip.
+    /// Part of the loss dissipated by friction, in J; `None` if joints do not slip.
     pub friction_j: Option<f64>,
     /// Rotation rates of the bodies just before; empty for a row of blocks.
     pub rates_before_rad_s: Vec<f64>,
-    /// Rotation rates of the bodies of the mechanism after.
+    /// Rotation rates of the bodies just after.
     pub rates_after_rad_s: Vec<f64>,
     /// The hinges that closed, from left to right.
     pub closed: Vec<Hinge>,
-    /// The hinges that opened, from left to right; none where no mechanism can follow.
+    /// Hinges that opened, from left to right; empty if no mechanism can follow.
     pub opened: Vec<Hinge>,
-    /// Impulses at the hinges that opened, on the part towards the crown, in N s; none where they are not known.
+    /// Impulses at the opened hinges on the part towards the crown, in N s; empty if unknown.
     pub impulses_n_s: Vec<Vector2<f64>>,
 }
 
 impl Impact {
-    /// Sway of the mechanism that opened.
+    /// Returns the sway of the mechanism that opened.
     #[must_use]
     pub const fn sway_after(&self) -> Sway {
         self.sway_before.opposite()
     }
 }
 
-/// Half cycles that peak below this fraction of the largest peak are not reported.
+/// Peak, over the largest peak, below which half cycles are not reported.
 const LEAST_PEAK_RATIO: f64 = 1e-3;
 
 /// Summary of a history.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
-    /// Its outcome.
+    /// Outcome of the history.
     pub outcome: Outcome,
-    /// When: the last outward passage of the unstable equilibrium, the last time it came to rest, or else the end of
-    /// the history.
+    /// Time of the outcome, in seconds: the last outward passage of the unstable equilibrium, the last time of rest, or otherwise the end of the
+    /// history.
     pub outcome_time_s: f64,
-    /// When the simulation ended.
+    /// Time at which the simulation ended, in seconds.
     pub end_s: f64,
     /// Number of impacts.
     pub impacts: usize,
-    /// Largest magnitudes of the rotations of the bodies.
+    /// Largest rotations of the bodies, without sign, in radians.
     pub peak_rotations_rad: Vec<f64>,
-    /// Largest difference between the energy of the structure and its initial energy plus the work of the
-    /// ground minus the losses at impacts, over the energy barrier of the first mechanism; for a row of
-    /// blocks, over its weight times its size.
+    /// Largest error of the energy balance (initial energy, work of the ground, and losses at impacts), over the energy barrier of the first
+    /// mechanism; for a row of blocks, over its weight times its size.
     pub energy_defect_ratio: f64,
-    /// The demands over all samples, if any were made; for a mechanism that overturns, over those before it
-    /// passes the unstable equilibrium for the last time.
+    /// Thrust record of all samples; `None` without samples. For a mechanism that overturns: of all samples before the last passage of the unstable
+    /// equilibrium.
     pub thrust: Option<ThrustRecord>,
-    /// Work done.
+    /// Computational effort.
     pub cost: Cost,
-    /// Results that only one kind of model has.
+    /// Results of one kind of model only.
     pub details: Details,
 }
 
-/// Results that only one kind of model has.
+/// Results of one kind of model only.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Details {
     /// Summary of four links or of a column.
     Mechanisms {
-        /// Largest rotation over that at the unstable equilibrium of the mechanism that moved: from 1 on, gravity alone overturns.
+        /// Largest rotation over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone overturns the structure.
         peak_over_critical: f64,
     },
     /// Summary of a row of blocks with rigid joints.
@@ -463,7 +459,7 @@ pub enum Details {
 }
 
 impl Summary {
-    /// Results of a row of blocks; `None` for mechanisms.
+    /// Returns the results of a row of blocks; `None` for mechanisms.
     #[must_use]
     pub const fn row(&self) -> Option<&RowSummary> {
         match &self.details {
@@ -472,7 +468,7 @@ impl Summary {
         }
     }
 
-    /// Results of elastic joints; `None` for other models.
+    /// Returns the results of elastic joints; `None` for other models.
     #[must_use]
     pub const fn elastic(&self) -> Option<&ElasticSummary> {
         match &self.details {
@@ -481,7 +477,7 @@ impl Summary {
         }
     }
 
-    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved; `None` for rows of blocks.
+    /// Returns the largest rotation over that at the unstable equilibrium of the moving mechanism; `None` for rows of blocks.
     #[must_use]
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
@@ -490,19 +486,19 @@ impl Summary {
         }
     }
 
-    /// Largest potential energy over the barrier of the first mechanism, as of [`RowSummary`]; `None` for mechanisms.
+    /// Returns the largest potential energy over the barrier of the first mechanism, as in [`RowSummary`]; `None` for mechanisms.
     #[must_use]
     pub fn peak_potential_over_barrier(&self) -> Option<f64> {
         self.row()?.peak_potential_over_barrier
     }
 
-    /// Largest magnitude of the rotation of any body, in radians.
+    /// Returns the largest rotation of any body, without sign, in radians.
     #[must_use]
     pub fn largest_rotation_rad(&self) -> f64 {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Index of the body that turns most; the last one, if several do.
+    /// Returns the index of the body with the largest rotation; the last one of several.
     #[must_use]
     pub fn largest_body(&self) -> usize {
         let most_rad = self.largest_rotation_rad();
@@ -511,20 +507,20 @@ impl Summary {
         last.unwrap_or(0)
     }
 
-    /// Number of impacts; `None` for elastic joints, whose contact lasts.
+    /// Returns the number of impacts; `None` for elastic joints, which have no instantaneous impacts.
     #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
         self.elastic().is_none().then_some(self.impacts)
     }
 
-    /// When it overturned, in seconds; `None` where it did not.
+    /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.
     #[must_use]
     pub fn overturned_s(&self) -> Option<f64> {
         matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
     }
 
-    /// Half cycles of a row of blocks that peak at a thousandth of the largest peak or more; empty for other structures. Smaller ones
-    /// are vibration and rattling, of which a motion has any number.
+    /// Returns the half cycles of a row of blocks with peaks of at least a thousandth of the largest peak; empty for other structures. Smaller half
+    /// cycles are vibration, and their number is arbitrary.
     #[must_use]
     pub fn half_cycles(&self) -> Vec<HalfCycle> {
         let all = self.row().map_or(&[][..], |row| &row.half_cycles);
@@ -535,68 +531,67 @@ impl Summary {
     }
 }
 
-/// Work done for a history.
+/// Computational effort of a history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
-    /// Evaluations of the right-hand side; for a row of blocks, systems of equations that were solved.
+    /// Number of evaluations of the right-hand side; for a row of blocks, of solved systems of equations.
     pub evaluations: u64,
-    /// Accepted steps.
+    /// Number of accepted steps.
     pub steps: u64,
 }
 
 /// Additional summary of a row of blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct RowSummary {
-    /// All half cycles, however small; [`Summary::half_cycles`] omits those that are no rocking.
+    /// All half cycles of any size; [`Summary::half_cycles`] omits vibration.
     #[serde(skip)]
     pub half_cycles: Vec<HalfCycle>,
-    /// Number of half cycles, with those of the fall after the row has overturned.
+    /// Number of half cycles, including those of the fall after the row has overturned.
     #[serde(skip)]
     pub half_cycles_with_fall: usize,
-    /// Slip; `None` where joints do not slip.
+    /// Slip; `None` if joints do not slip.
     #[serde(flatten)]
     pub sliding: Option<Sliding>,
-    /// Largest potential energy over the barrier of its first mechanism, which may not be the one by which it overturns. `None` where no
-    /// barrier is known, or if joints slipped so far that friction took a hundredth of it.
+    /// Largest potential energy over the barrier of the first mechanism; the row may overturn by another mechanism. `None` if the barrier is unknown,
+    /// or if friction dissipated more than a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
-    /// Forces and energies of its ties; absent without ties.
+    /// Forces and energies of the ties; absent without ties.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
-    /// Largest potential energy above rest, in J, with that of elastic joints.
+    /// Largest potential energy above rest, in J, including the elastic energy of joints.
     pub largest_potential_j: f64,
-    /// Energy taken by impacts, in J, without what friction takes; with elastic joints, all that damping, friction and crushing
-    /// took.
+    /// Energy dissipated by impacts, in J, without friction; with elastic joints, by damping, friction and crushing.
     pub energy_taken_j: f64,
-    /// Work of the moving ground, in J; of feet that move differently, of the ground under the left one, on all that rides on it.
+    /// Work of the moving ground on the whole row, in J; for feet that move differently, of the ground under the left foot.
     pub ground_j: f64,
-    /// Work of the right foot as it goes away from the left one, in J.
+    /// Work of the right foot due to its motion relative to the left one, in J.
     pub right_foot_j: f64,
-    /// Error of the energy balance, over the larger of the largest kinetic energy and the barrier, where that is known.
+    /// Error of the energy balance, over the largest kinetic energy, or over the barrier if this is known and larger.
     #[serde(rename = "energy_defect_over_largest")]
     pub energy_error: f64,
-    /// Least normal force at a joint outside impacts, in N; infinite without any step, and with elastic joints, and then absent from results.
+    /// Least normal force at a joint outside impacts, in N; infinite without any step and for elastic joints, and then absent from results.
     #[serde(skip_serializing_if = "is_infinite")]
     pub least_normal_n: f64,
-    /// Largest error of closure of an arch, in m.
+    /// Largest closure error of an arch, in m.
     pub closure_error_m: f64,
-    /// The longest step that was allowed, in seconds.
+    /// Longest allowed step, in seconds.
     pub longest_step_s: f64,
-    /// The time within which landings count as crowded, in seconds.
+    /// Time within which landings are merged if impacts are too frequent, in seconds.
     pub shortest_step_s: f64,
-    /// Programs solved.
+    /// Number of solved contact problems.
     pub programs: u64,
-    /// Most systems of equations in one step.
+    /// Largest number of solved systems of equations in a step.
     pub most_iterations: u64,
-    /// Number of times that the tolerance of a program was relaxed.
+    /// Number of times the tolerance of a quadratic program was relaxed.
     pub relaxed: u64,
-    /// Steps with more than one landing, or with landings too close to end at.
+    /// Number of steps with several landings, or with landings that are too frequent.
     pub merged: u64,
-    /// Number of times that the longest step was halved to balance the energy.
+    /// Number of times the longest step was halved because of the energy balance.
     #[serde(rename = "step_halvings")]
     pub halvings: u32,
-    /// Time that the longest step took to compute, where samples are made.
+    /// Computing time of the slowest step, if samples are recorded.
     #[serde(skip)]
     pub longest_step: Elapsed,
 }
@@ -605,32 +600,32 @@ const fn is_infinite(number: &f64) -> bool {
     number.is_infinite()
 }
 
-/// A half cycle: from one passage of the centre of gravity through its undeformed place to the next.
+/// Half cycle: motion between successive passages of the centre of gravity through its undeformed position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct HalfCycle {
-    /// To which side.
+    /// Side of the sway.
     pub sway: Sway,
-    /// When it began, in seconds.
+    /// Start, in seconds.
     pub start_s: f64,
-    /// Duration in seconds; of the last one, until the motion ended.
+    /// Duration in seconds; for the last half cycle, up to the end of the motion.
     pub duration_s: f64,
     /// Largest rotation of a block, in radians.
     pub peak_rad: f64,
-    /// When that was first reached, in seconds.
+    /// Time of the peak, in seconds.
     pub peak_time_s: f64,
-    /// Energy at its end over that at its beginning; unknown for the first and the last one.
+    /// Energy at the end over that at the start; `None` for the first and the last half cycle.
     pub energy_ratio: Option<f64>,
 }
 
 impl HalfCycle {
-    /// When it ended, in seconds.
+    /// Returns the end of the half cycle, in seconds.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
 
-    /// The half cycle of another motion that corresponds to this one: to the same side, at least partly at the same time, and with
-    /// the nearest peak in time; `None` if there is none.
+    /// Returns the corresponding half cycle of another motion: to the same side, overlapping in time, and with the nearest peak in time; `None` if
+    /// there is none.
     #[must_use]
     pub fn counterpart<'a>(&self, others: &'a [Self]) -> Option<&'a Self> {
         let coincides = |other: &&Self| {
@@ -644,27 +639,27 @@ impl HalfCycle {
     }
 }
 
-/// The slip in a motion.
+/// Slip in a motion.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Sliding {
-    /// Energy that friction took, in J.
+    /// Energy dissipated by friction, in J.
     pub friction_j: f64,
-    /// Offsets at the end: of the right face of every joint towards the extrados, in metres.
+    /// Final offsets of the right face of every joint towards the extrados, in metres.
     #[serde(rename = "slips_m")]
     pub offsets_m: Vec<f64>,
-    /// Largest magnitudes of the offsets, in metres.
+    /// Largest offsets, without sign, in metres.
     #[serde(rename = "largest_slips_m")]
     pub largest_offsets_m: Vec<f64>,
-    /// Steps whose bounds of friction did not converge; none with elastic joints, whose bounds are known in every step.
+    /// Number of steps in which friction bounds did not converge; zero for elastic joints, whose bounds are always known.
     #[serde(rename = "unconverged_steps")]
     pub unconverged: u64,
-    /// The largest error of such a bound, as a fraction of the largest bound.
+    /// Largest error of a friction bound, relative to the largest bound.
     #[serde(rename = "friction_bound_error")]
     pub bound_error: f64,
 }
 
 impl Sliding {
-    /// Nothing has slipped.
+    /// Returns a record without slip.
     #[must_use]
     pub fn none(joints: usize) -> Self {
         Self {
@@ -675,43 +670,43 @@ impl Sliding {
     }
 }
 
-/// Additional summary of a motion with elastic joints; energies are totals from the beginning to the end.
+/// Additional summary of a motion with elastic joints. Energies are totals of the whole motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ElasticSummary {
-    /// The largest elastic compressive stress; damping adds to it, and the strength caps both together.
+    /// Largest elastic compressive stress. Damping adds to it, and the strength limits the sum.
     #[serde(flatten)]
     pub largest_stress: Stress,
     /// Elastic energy at the end, in J.
     pub elastic_j: f64,
-    /// Energy that damping took, in J.
+    /// Energy dissipated by damping, in J.
     pub damped_j: f64,
-    /// Energy that friction took, in J.
+    /// Energy dissipated by friction, in J.
     pub friction_j: f64,
-    /// Energy that crushing took, in J.
+    /// Energy dissipated by crushing, in J.
     pub crushed_j: f64,
-    /// Energy that ties took as they yielded and broke, in J.
+    /// Energy dissipated by yield and break of ties, in J.
     pub ties_j: f64,
-    /// Distance of the thrust from the middle of the worst joint at rest before the motion, over the length of the joint.
+    /// Largest eccentricity of the thrust in a joint at rest before the motion, over the length of the joint.
     pub rest_eccentricity_ratio: f64,
-    /// Index of that joint.
+    /// Index of the joint with this eccentricity.
     pub rest_eccentricity_joint: usize,
 }
 
-/// A largest compressive stress, with its place and time.
+/// Largest compressive stress, with its joint and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Stress {
-    /// The largest elastic compressive stress, in Pa; damping adds to it, and the strength caps both together.
+    /// Largest elastic compressive stress, in Pa. Damping adds to it, and the strength limits the sum.
     #[serde(rename = "largest_compressive_stress_pa")]
     pub stress_pa: f64,
-    /// The joint at whose edge it was.
+    /// Index of the joint with this stress at an edge.
     #[serde(rename = "largest_compressive_stress_joint")]
     pub joint: usize,
-    /// When, in seconds.
+    /// Time of this stress, in seconds.
     #[serde(rename = "largest_compressive_stress_time_s")]
     pub time_s: f64,
 }
 
-/// Time that a computation took; `None` where it was not measured. It is no part of a result: any two are equal.
+/// Computing time; `None` if it was not measured. It is no part of a result: any two are equal.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Elapsed(pub Option<Duration>);
 

@@ -1,4 +1,4 @@
-//! Histories in memory: all samples and events of a motion.
+//! Histories in memory, with all samples and events of a motion.
 
 use std::ops::ControlFlow;
 
@@ -10,32 +10,32 @@ use super::recorder::Recorder;
 use crate::mechanics::chain::Demand;
 use crate::mechanics::geometry::pose::Pose;
 
-/// A history with all its samples and events.
+/// History with all its samples and events.
 #[derive(Clone, Debug, PartialEq)]
 pub struct History {
-    /// Names of the bodies, as of [`Model::bodies`](super::model::Model::bodies).
+    /// Names of the bodies, as in [`Model::bodies`](super::model::Model::bodies).
     pub bodies: Vec<String>,
-    /// Its summary.
+    /// Summary of the history.
     pub summary: Summary,
-    /// The state at every output step and at the end.
+    /// Samples at every output step and at the end.
     pub samples: Samples,
-    /// All events: the phase that follows the `i`-th is `i + 1`.
+    /// All events; event `i` begins phase `i + 1`.
     pub events: Vec<Event>,
 }
 
 impl History {
-    /// The events that are impacts, with their instants in seconds.
+    /// Returns the impacts, with their times in seconds.
     pub fn impacts(&self) -> impl Iterator<Item = (f64, &Impact)> {
         let events = self.events.iter();
         events.filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
     }
 }
 
-/// The samples of a history as columns, one entry a sample, without lines of thrust. Columns by body have one entry for each body and
-/// sample, sample by sample.
+/// Samples of a history as columns with one entry per sample, without thrust lines. Columns by body have one entry per body and sample, sample by
+/// sample.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
-    /// Times.
+    /// Times, in seconds.
     pub time_s: Vec<f64>,
     /// Ground accelerations, positive to +x.
     pub ground_acceleration_m_s2: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Samples {
     pub vertical_acceleration_m_s2: Vec<f64>,
     /// Displacement of the right foot relative to the left one, to the right and upwards, in m.
     pub feet_apart_m: Vec<[f64; 2]>,
-    /// Events so far.
+    /// Number of events up to each sample.
     pub phase: Vec<usize>,
     /// Rest, rocking or overturned.
     pub state: Vec<State>,
@@ -61,9 +61,9 @@ pub struct Samples {
     pub demand: Vec<Demand>,
     /// Kinetic and potential energies, in J.
     pub energy_j: Vec<f64>,
-    /// Energies over the barrier of the mechanism that moves, where it is known.
+    /// Energies over the barrier of the moving mechanism; `None` if unknown.
     pub energy_ratio: Vec<Option<f64>>,
-    /// Rotations over the critical ones, where these are known.
+    /// Rotations over the critical rotation; `None` if unknown.
     pub rotation_over_critical: Vec<Option<f64>>,
     /// Gaps of the joints at intrados and extrados, in m, joint by joint; only for a row of blocks.
     pub gaps_m: Vec<[f64; 2]>,
@@ -76,13 +76,13 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Number of samples.
+    /// Returns the number of samples.
     #[must_use]
     pub const fn len(&self) -> usize {
         self.time_s.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no samples.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.time_s.is_empty()
@@ -117,7 +117,7 @@ impl Samples {
             .push(sample.rotation_over_critical);
     }
 
-    /// A sample; `None` beyond the last.
+    /// Returns a sample; `None` beyond the last.
     #[must_use]
     pub fn get(&self, index: usize) -> Option<Sample> {
         let time_s = *self.time_s.get(index)?;
@@ -147,50 +147,50 @@ impl Samples {
         })
     }
 
-    /// The samples, one after another.
+    /// Returns all samples in their order.
     pub fn iter(&self) -> impl Iterator<Item = Sample> {
         (0..self.len()).map_while(|index| self.get(index))
     }
 }
 
-/// The part of a column that belongs to a sample, of so many.
+/// Returns the part of a column that belongs to sample `index`; `samples` is the number of samples.
 fn part<T: Clone>(column: &[T], index: usize, samples: usize) -> Vec<T> {
     let each = column.len() / samples;
     column[index * each..(index + 1) * each].to_vec()
 }
 
-/// The pose of an entry of [`Samples::poses`].
+/// Returns the pose of an entry of [`Samples::poses`].
 fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
     Pose::new(rotation_rad, Vector2::new(x_m, y_m))
 }
 
-/// The size of the samples of a model.
+/// Size of the samples of a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Shape {
     /// Number of bodies.
     pub bodies: usize,
-    /// Number of joints that have gaps.
+    /// Number of joints with gaps.
     pub joints: usize,
-    /// Number of joints that have offsets.
+    /// Number of joints with offsets.
     pub slipping: usize,
-    /// Number of joints whose forces and stresses are sampled.
+    /// Number of joints with forces and stresses.
     pub pressing: usize,
     /// Number of ties.
     pub ties: usize,
 }
 
 impl Shape {
-    /// Bytes of this many samples, at most: as if all hinges were open all the time.
+    /// Returns an upper bound of the memory of samples, in bytes, as if all hinges were always open.
     #[must_use]
     pub fn bytes(self, samples: u64) -> u64 {
-        // Times, two accelerations, two displacements of feet, energies; events so far and where the hinges begin; two ratios that may be unknown.
+        // Times, two accelerations, two displacements of feet, energies; number of events and index of the first hinge; two optional ratios.
         let alone = 6 * size_of::<f64>()
             + 2 * size_of::<usize>()
             + 2 * size_of::<Option<f64>>()
             + size_of::<State>()
             + size_of::<Demand>();
         let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
-        // There is at most one hinge more than bodies, as a row between supports has one joint more than blocks.
+        // There is at most one hinge more than bodies: a row between supports has one joint more than blocks.
         let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
         let by_joint = self.joints * size_of::<[f64; 2]>()
             + self.slipping * size_of::<f64>()
@@ -201,10 +201,10 @@ impl Shape {
     }
 }
 
-/// Memory that a history may take by default, in bytes.
+/// Default limit of the memory of a history, in bytes.
 pub const MEMORY_BYTES: u64 = 4_000_000_000;
 
-/// A history takes more memory than it may.
+/// Error if a history needs more memory than allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a history of so many samples and events takes {} of memory, and {} are allowed: take a longer output_step_s or a \
@@ -212,13 +212,13 @@ pub const MEMORY_BYTES: u64 = 4_000_000_000;
     in_words(*.needed_bytes), in_words(*.allowed_bytes)
 )]
 pub struct MemoryError {
-    /// Memory that it needs in all, or needs already.
+    /// Total memory needed, or memory needed up to the failure, in bytes.
     pub needed_bytes: u64,
-    /// Memory that it may take.
+    /// Allowed memory, in bytes.
     pub allowed_bytes: u64,
 }
 
-/// A size in readable units.
+/// Returns a size in readable units.
 fn in_words(bytes: u64) -> String {
     let megabytes = bytes as f64 / 1e6;
     if megabytes < 1e3 {
@@ -228,20 +228,20 @@ fn in_words(bytes: u64) -> String {
     }
 }
 
-/// Collects all samples and events, as long as they do not take more memory than they may.
+/// Recorder that collects all samples and events within a limit of memory.
 #[derive(Clone, Debug)]
 pub struct Recording {
     samples: Samples,
     events: Vec<Event>,
-    /// Memory of all samples and of the events so far.
+    /// Memory of all samples and of the events up to now.
     memory: MemoryError,
 }
 
 impl Recording {
-    /// A recording of at most this many samples, which together with the events may take this much memory.
+    /// Returns a recorder for at most `samples` samples. `allowed_bytes` is the limit of memory for samples and events.
     ///
     /// # Errors
-    /// When the samples alone may take more.
+    /// If the samples alone may need more.
     pub fn new(shape: Shape, samples: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
         let recording = Self {
             samples: Samples::default(),
@@ -262,10 +262,10 @@ impl Recording {
         Ok(())
     }
 
-    /// All that was collected.
+    /// Returns all samples and events.
     ///
     /// # Errors
-    /// When it took too much memory, which ended the history.
+    /// If they needed too much memory, which ended the history.
     pub fn finish(self) -> Result<(Samples, Vec<Event>), MemoryError> {
         self.check()?;
         Ok((self.samples, self.events))

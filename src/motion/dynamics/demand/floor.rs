@@ -1,7 +1,7 @@
-//! The spectrum at a height in a building, Circolare 7/2019, C7.2.3, [C7.2.5] to [C7.2.8].
+//! Spectrum at a height in a building, Circolare 7/2019, C7.2.3, [C7.2.5] to [C7.2.8].
 //!
-//! In addition, on the safe side, peak and ordinates are here at least those of the ground at every period. The clause requires
-//! that only for periods above the first, so its spectrum falls below that of the ground where a building sways little.
+//! In addition, on the safe side, peak and ordinates are at least those of the ground at every period. The clause requires that only for periods
+//! above the first one; its spectrum is below that of the ground where a building sways little.
 
 use serde::Serialize;
 

@@ -1,15 +1,15 @@
-//! The response spectrum of a record: peaks of damped oscillators, exact for accelerations that are joined by straight lines
-//! (Nigam and Jennings, "Calculation of response spectra from strong-motion earthquake records", Bulletin of the Seismological
-//! Society of America 59, 1969), except for peaks between steps.
+//! Response spectrum of a record: peaks of damped oscillators, exact for accelerations that are linear between samples, except for peaks between
+//! steps (Nigam and Jennings, "Calculation of response spectra from strong-motion earthquake records", Bulletin of the Seismological Society of
+//! America 59, 1969).
 
 use std::f64::consts::PI;
 
-/// The spectral displacement for samples: increasing times in seconds, and accelerations. It is the largest displacement relative
-/// to the ground, up to the last sample, of an oscillator of this period and damping that is at rest before the first one. Its
-/// unit is that of the accelerations, times s2.
+/// Computes the spectral displacement of samples: increasing times in seconds, and accelerations. It is the largest displacement relative to the
+/// ground, up to the last sample, of an oscillator of this period and damping that is at rest before the first sample. Its unit is that of the
+/// accelerations, times s2.
 ///
-/// Over equal steps the motion follows one linear map. A peak between two steps is missed by at most the fraction
-/// `(pi h / T)^2 / 2` of it for the step `h`: steps are cut until that is below a thousandth.
+/// Over equal steps the motion follows one linear map. The relative error of a peak between two steps is at most `(pi h / T)^2 / 2` for the step `h`;
+/// steps are cut until this is below a thousandth.
 #[must_use]
 pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent: f64) -> f64 {
     let omega = 2.0 * PI / period_s;
@@ -22,7 +22,7 @@ pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent:
         let pieces = (whole_s / (0.014 * period_s)).ceil().max(1.0);
         let step_s = whole_s / pieces;
         let advance = match known {
-            // Times of equal steps differ by rounding.
+            // Times of equal steps differ by rounding errors.
             Some((step, advance)) if (step / step_s - 1.0).abs() < 1e-9 => advance,
             _ => Advance::new(omega, damping_percent / 100.0, step_s),
         };

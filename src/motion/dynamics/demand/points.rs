@@ -1,11 +1,11 @@
-//! A spectrum given by points, straight between them.
+//! Spectrum given by points, with linear interpolation.
 
 use serde::Serialize;
 use thiserror::Error;
 
 use super::{damping_factor, displacement_m};
 
-/// Accelerations at rising periods, at one damping.
+/// Accelerations at increasing periods, at one damping.
 #[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
@@ -16,7 +16,7 @@ pub struct PointSpectrum {
     damping_percent: f64,
 }
 
-/// Why points do not make a spectrum.
+/// Reason why points do not form a spectrum.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{reason}")]
 pub struct PointError {
@@ -25,7 +25,7 @@ pub struct PointError {
     reason: String,
 }
 
-/// A period outside those given.
+/// Error for a period outside the given ones.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("the spectrum is given from {:?} to {:?} s, and is needed at {period_s:?} s: add rows", .given_s[0], .given_s[1])]
 pub struct Beyond {

@@ -1,17 +1,17 @@
-//! How strong a recorded ground motion is: peaks, Arias intensity and significant duration.
+//! Strength of a recorded ground motion: peaks, Arias intensity and significant duration.
 //!
-//! All are exact for accelerations that are joined by straight lines. Velocity and displacement begin at zero with the
-//! first sample; nothing corrects the baseline, so that the displacement of a record that was not corrected drifts.
+//! All values are exact for accelerations that are linear between samples. Velocity and displacement are zero at the first sample. There is no
+//! baseline correction, so the displacement of an uncorrected record drifts.
 
 use std::f64::consts::PI;
 
 use crate::bisection::{Width, bisect};
 use crate::dynamics::peak::Peak;
 
-/// Fractions of the Arias intensity between which the significant duration is counted (Trifunac and Brady, 1975).
+/// Fractions of the Arias intensity at the start and end of the significant duration (Trifunac and Brady, 1975).
 pub const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
 
-/// The strength of a record.
+/// Strength of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Intensity {
     /// Peak ground acceleration, in m/s2.
@@ -22,15 +22,15 @@ pub struct Intensity {
     pub displacement_m: Peak,
     /// Arias intensity, pi / (2 g) times the integral of the squared acceleration, in m/s (Arias, 1970).
     pub arias_m_s: f64,
-    /// When 5 % and 95 % of the Arias intensity are reached, in s; both are the first time if the ground stays still.
+    /// Times at which 5 % and 95 % of the Arias intensity are reached, in s; both are the first time for ground without motion.
     pub significant_s: [f64; 2],
-    /// Velocity in m/s and displacement in m at each sample, and the fraction of the Arias intensity reached.
+    /// At each sample: velocity in m/s, displacement in m, and the fraction of the Arias intensity reached.
     pub course: Vec<[f64; 3]>,
 }
 
 impl Intensity {
-    /// The intensity of samples: times in s, which increase except where the acceleration jumps, and accelerations in m/s2. Gravity, in
-    /// m/s2, enters the Arias intensity.
+    /// Computes the intensity of samples: times in s, increasing except at jumps of the acceleration, and accelerations in m/s2. Gravity, in m/s2, is
+    /// used in the Arias intensity.
     #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
         let mut intensity = Self {
@@ -68,14 +68,14 @@ impl Intensity {
         intensity
     }
 
-    /// From 5 % to 95 % of the Arias intensity, in s.
+    /// Returns the duration from 5 % to 95 % of the Arias intensity, in s.
     #[must_use]
     pub fn significant_duration_s(&self) -> f64 {
         let [from_s, to_s] = self.significant_s;
         to_s - from_s
     }
 
-    /// Peaks of velocity and displacement from a state on: at the end, and where their rates vanish.
+    /// Records the peaks of velocity and displacement after a state: at the end, and where their rates are zero.
     fn peaks_within(&mut self, line: &Line, state: [f64; 3]) {
         let [velocity, ..] = state;
         let turns = roots([line.acceleration, line.slope, 0.0])
@@ -114,7 +114,7 @@ impl Line {
         }
     }
 
-    /// Velocity, displacement and the integral of the squared acceleration, this long after the given ones at its start.
+    /// Returns velocity, displacement and the integral of the squared acceleration `after_s` after the given values at its start.
     fn advance(&self, [velocity, displacement, squares]: [f64; 3], after_s: f64) -> [f64; 3] {
         let (s, a, m) = (after_s, self.acceleration, self.slope);
         [
@@ -124,14 +124,14 @@ impl Line {
         ]
     }
 
-    /// When the integral of the squared acceleration reaches this, which it does.
+    /// Returns the time at which the integral of the squared acceleration reaches `target`.
     fn time_of_squares(&self, target: f64) -> f64 {
         let reached = |after_s: f64| self.advance([0.0; 3], after_s)[2] >= target;
         bisect(0.0, self.duration_s, Width::Rounding, reached).1
     }
 }
 
-/// The real roots of c + b x + a x^2; none for a constant.
+/// Returns the real roots of c + b x + a x^2; none for a constant.
 fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
     if a == 0.0 {
         return if b == 0.0 { Vec::new() } else { vec![-c / b] };
@@ -140,7 +140,7 @@ fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
     if discriminant < 0.0 {
         return Vec::new();
     }
-    // The two roots without cancellation.
+    // This form avoids cancellation.
     let q = -0.5 * (b + discriminant.sqrt().copysign(b));
     if q == 0.0 {
         vec![0.0]

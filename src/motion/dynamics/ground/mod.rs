@@ -1,12 +1,10 @@
 //! Ground motion: acceleration as smooth, monotone pieces between known corners.
 //!
-//! An integrator must not step over a corner, and a search for the instant at which the ground gets
-//! strong enough must not step over a peak. So a ground motion is cut at every jump, kink and extremum,
-//! and each piece owns its one-sided formula: at a corner two pieces give two values.
+//! An integrator must not step over a corner. A search for the time at which the ground becomes strong enough must not step over a peak. A ground
+//! motion is therefore cut at every jump, kink and extremum, and each piece has its own one-sided formula: at a corner two pieces give two values.
 //!
-//! The ground may also move vertically. Within a piece either both components are straight lines, or they
-//! are multiples of one monotone shape: **every linear combination of the two is monotone**, and so is the
-//! distance from the onset of rocking.
+//! The ground may also move vertically. In a piece, either both components are linear, or they are multiples of one monotone shape. **Every linear
+//! combination of the two is therefore monotone**, as is the margin to the onset of rocking.
 
 mod error;
 pub mod intensity;

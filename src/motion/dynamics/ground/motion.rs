@@ -1,4 +1,4 @@
-//! A ground motion: its pieces, under both feet.
+//! Ground motion under both feet, as a sequence of pieces.
 
 use std::sync::Arc;
 
@@ -12,33 +12,33 @@ use crate::mechanics::blocks::{Row, Supports};
 
 /// Ground acceleration from [`GroundMotion::start_s`] on, zero after the last corner.
 ///
-/// It is that of the whole ground, or of that under the left foot of a structure whose right foot moves in another way.
+/// The acceleration is that of the whole ground, or of the ground under the left foot if the right foot moves differently.
 #[readonly::make]
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
     /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.
     pub pieces: Vec<Piece>,
-    /// Whether the ground stops dead after the last corner, where it otherwise keeps its velocity.
+    /// True if the ground stops after the last corner; otherwise it keeps its velocity.
     pub(super) stops: bool,
-    /// The ground under the right foot, where that moves in another way.
+    /// Ground under the right foot; `None` if both feet move alike.
     right: Option<Arc<Self>>,
 }
 
 impl GroundMotion {
-    /// The ground stays still.
+    /// Returns ground without motion.
     #[must_use]
     pub fn still() -> Self {
         Self::from_pieces(0.0, Vec::new())
     }
 
-    /// Pieces given by their ends and formulas in the time since `start_s`.
+    /// Returns the motion of pieces given by their ends and formulas, both in the time since `start_s`.
     pub(super) fn from_pieces(start_s: f64, formulas: Vec<(f64, Formula)>) -> Self {
         let placed = |(end, formula)| (start_s + end, start_s, formula);
         Self::join(start_s, formulas.into_iter().map(placed))
     }
 
-    /// Quiet from time zero until `start_s` (from `start_s` on if that is negative), then the pieces given by end, origin and formula, then
-    /// quiet for good.
+    /// Returns the motion of pieces given by end, origin and formula. The ground is quiet before `start_s` (from time zero, or from `start_s` if
+    /// negative) and after the last piece.
     pub(super) fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
         let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
         let all = [quiet(start_s)].into_iter().chain(moving);
@@ -46,7 +46,7 @@ impl GroundMotion {
         let mut pieces = Vec::new();
         let mut piece_start_s = start_s.min(0.0);
         for (end_s, origin_s, formula) in all {
-            // A piece shorter than the spacing of floating-point times around it vanishes.
+            // A piece shorter than the resolution of floating-point times vanishes.
             if end_s > piece_start_s {
                 pieces.push(Piece {
                     start_s: piece_start_s,
@@ -64,8 +64,8 @@ impl GroundMotion {
         }
     }
 
-    /// Motion of two feet: this one under the left foot, `right` under the right foot. Both start from the same rest at the earlier of their
-    /// starts. From the later of their ends on the distance between the feet stays constant.
+    /// Returns a motion of two feet: this motion under the left foot, `right` under the right foot. Both start from rest at the earlier one of their
+    /// starts. The distance between the feet is constant after the later one of their ends.
     #[must_use]
     pub fn with_right_foot(self, right: Self) -> Self {
         let start_s = self.start_s().min(right.start_s());
@@ -75,9 +75,9 @@ impl GroundMotion {
         }
     }
 
-    /// Motion of two feet: this one under the left foot, and under the right foot the same motion later by a time in seconds, in -1e9 to 1e9.
-    /// A negative delay starts the right foot earlier: if its acceleration then begins before time zero, the motion of both feet
-    /// [starts](Self::start_s) at that negative time. The times of the left foot never change.
+    /// Returns a motion of two feet: this motion under the left foot, and the same motion with a delay under the right foot. The delay is in seconds,
+    /// from -1e9 to 1e9. With a negative delay the right foot starts earlier. If its acceleration then begins before time zero, the motion of both
+    /// feet [starts](Self::start_s) at this negative time. The times of the left foot do not change.
     ///
     /// # Errors
     /// When the delay is out of range.
@@ -91,13 +91,13 @@ impl GroundMotion {
         Ok(self.with_right_foot(right))
     }
 
-    /// Time at which the motion begins, in seconds: zero, or negative where the right foot accelerates before time zero.
+    /// Returns the time at which the motion begins, in seconds: zero, or negative if the right foot accelerates before time zero.
     #[must_use]
     pub fn start_s(&self) -> f64 {
         self.pieces.first().map_or(0.0, |piece| piece.start_s)
     }
 
-    /// The index of the piece of a time that is not before the start; at a corner, of the later one.
+    /// Returns the index of the piece at a time not before the start; at a corner, of the later piece.
     pub(in crate::dynamics) fn piece_at(&self, time_s: f64) -> usize {
         let starts = |piece: &Piece| piece.start_s <= time_s;
         self.pieces.partition_point(starts).max(1) - 1
@@ -121,13 +121,13 @@ impl GroundMotion {
         self
     }
 
-    /// The motion under the right foot, where it is another one.
+    /// Returns the motion under the right foot; `None` if both feet move alike.
     #[must_use]
     pub fn right_foot(&self) -> Option<&Self> {
         self.right.as_deref()
     }
 
-    /// The motion under the right foot of this row, where it is another one: a stack has only a left one.
+    /// Returns the motion under the right foot of a row; `None` if both feet move alike, or for a stack, which has only a left foot.
     pub(in crate::dynamics) fn right_foot_of(&self, row: &Row) -> Option<&Self> {
         match row.supports {
             Supports::Both => self.right_foot(),
@@ -135,7 +135,7 @@ impl GroundMotion {
         }
     }
 
-    /// This motion for a structure whose feet move differently: at its end the ground stops, whatever its velocity is.
+    /// Returns this motion for a structure whose feet move differently: the ground stops at its end, at any velocity.
     #[must_use]
     pub fn stopping(self) -> Self {
         Self {
@@ -144,7 +144,7 @@ impl GroundMotion {
         }
     }
 
-    /// This motion of both feet, later by a time in seconds, in 0 to 1e9.
+    /// Returns this motion with both feet delayed by a time in seconds, from 0 to 1e9.
     ///
     /// # Errors
     /// When the delay is out of range.
@@ -156,13 +156,13 @@ impl GroundMotion {
         Ok(late)
     }
 
-    /// The motion of this foot, earlier by a time in seconds. It starts where its acceleration begins if that is before time zero.
+    /// Returns the motion of this foot, earlier by a time in seconds. The motion starts at its first acceleration if this is before time zero.
     fn earlier_by(&self, lead_s: f64) -> Self {
         let begins = self.pieces.iter().find(|piece| !piece.is_quiet());
         self.moved_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
     }
 
-    /// The pieces from this time on, with all their times changed by a delay.
+    /// Returns the pieces from `from_s` on, with all times changed by a delay.
     fn moved_by(&self, delay_s: f64, from_s: f64) -> Self {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(|piece| !piece.stays_still() && piece.start_s >= from_s);
@@ -176,16 +176,16 @@ impl GroundMotion {
         }
     }
 
-    /// Largest magnitudes of the horizontal and the vertical acceleration up to a time, in m/s2: pieces are
-    /// monotone, so they are at ends of pieces, or at that time.
+    /// Returns the largest horizontal and vertical acceleration up to a time, without sign, in m/s2. Pieces are monotone, so the largest values are
+    /// at ends of pieces, or at that time.
     #[must_use]
     pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
         let ends = self.ends_until_m_s2(until_s);
         ends.fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
     }
 
-    /// Largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left and to
-    /// the right.
+    /// Returns the largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left
+    /// and to the right.
     #[must_use]
     pub fn pushes_m_s2(&self, until_s: f64) -> [f64; 2] {
         let ends = self.ends_until_m_s2(until_s);
@@ -194,7 +194,7 @@ impl GroundMotion {
         })
     }
 
-    /// The accelerations at the ends of the pieces that begin before a time, and at that time.
+    /// Returns the accelerations at the ends of the pieces that begin before a time, and at that time.
     fn ends_until_m_s2(&self, until_s: f64) -> impl Iterator<Item = Vector2<f64>> {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(move |piece| piece.start_s < until_s && !piece.stays_still());
@@ -203,29 +203,29 @@ impl GroundMotion {
         })
     }
 
-    /// End of the ground motion, in seconds: the acceleration is zero from here on, under both feet.
+    /// Returns the end of the ground motion, in seconds; afterwards the acceleration is zero under both feet.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         let [left_s, right_s] = self.ends_s();
         left_s.max(right_s)
     }
 
-    /// Ends of the motion of the left and of the right foot, in seconds.
+    /// Returns the ends of the motion of the left and of the right foot, in seconds.
     #[must_use]
     pub fn ends_s(&self) -> [f64; 2] {
         let own_s = self.pieces.last().map_or(0.0, |piece| piece.start_s);
         [own_s, self.right_foot().map_or(own_s, Self::end_s)]
     }
 
-    /// Whether the ground ever moves vertically, under either foot.
+    /// Returns whether the ground ever moves vertically, under either foot.
     #[must_use]
     pub fn has_vertical(&self) -> bool {
         let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
         ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
     }
 
-    /// The first time at which the ground falls as fast as a free body or faster, `g + a_v <= 0`, so that
-    /// it no longer carries a structure; `None` if that never happens. Of two feet, the first that it leaves.
+    /// Returns the first time at which the ground accelerates downwards as fast as a free body, `g + a_v <= 0`, so that it no longer carries a
+    /// structure; `None` if that does not happen. With two feet, the first time of either foot.
     #[must_use]
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let right = self.right_foot();
@@ -247,7 +247,7 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
-    /// This motion with all accelerations times a factor, from -1e9 to 1e9, under both feet.
+    /// Returns this motion with all accelerations multiplied by a factor, from -1e9 to 1e9, under both feet.
     ///
     /// # Errors
     /// When the factor is outside that range.
@@ -265,7 +265,7 @@ impl GroundMotion {
         })
     }
 
-    /// This motion with additional corners at these times, where integration begins a new step.
+    /// Returns this motion with additional corners at given times, where the integration begins a new step.
     #[must_use]
     pub fn cut_at(&self, times_s: &[f64]) -> Self {
         let mut cut = self.clone();

@@ -4,12 +4,12 @@ use nalgebra::Vector2;
 
 use super::shape::Shape;
 
-/// One-sided formula of a piece in the time since its origin, horizontal and vertical.
+/// One-sided formula of a piece in the time since its origin, for both components.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Formula {
-    /// A straight line: its acceleration at the origin, and its slope.
+    /// Linear acceleration: value at the origin, and slope.
     Linear(Vector2<f64>, Vector2<f64>),
-    /// An amplitude times a shape.
+    /// Amplitude times a shape.
     Shaped(Vector2<f64>, Shape),
 }
 
@@ -18,7 +18,7 @@ impl Formula {
         Self::Linear(acceleration, Vector2::zeros())
     }
 
-    /// The formula times a factor.
+    /// Returns the formula times a factor.
     pub fn scaled(self, factor: f64) -> Self {
         match self {
             Self::Linear(at_origin, slope) => Self::Linear(at_origin * factor, slope * factor),
@@ -26,7 +26,7 @@ impl Formula {
         }
     }
 
-    /// Acceleration and its rate of change.
+    /// Returns the acceleration and its rate of change.
     pub fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Linear(at_origin, slope) => (at_origin + slope * since_s, slope),
@@ -37,7 +37,7 @@ impl Formula {
         }
     }
 
-    /// Integral of the acceleration between two times.
+    /// Returns the integral of the acceleration between two times.
     fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
         match *self {
             Self::Linear(at_origin, slope) => {
@@ -48,52 +48,50 @@ impl Formula {
     }
 }
 
-/// A piece of ground motion: smooth, and every combination of its components monotone, from its start to
-/// its end.
+/// Piece of ground motion: smooth, and every linear combination of its components is monotone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Start, in seconds.
     pub start_s: f64,
     /// End, in seconds; infinite for the last piece.
     pub end_s: f64,
-    /// Time that the formula counts from.
+    /// Origin of the formula's time, in seconds.
     pub(super) origin_s: f64,
     pub(super) formula: Formula,
 }
 
 impl Piece {
-    /// Change of the velocity of the ground from the start of the piece to a time in it, in m/s: the integral of
-    /// the acceleration.
+    /// Returns the change of the ground velocity from the start of the piece to a time in it, in m/s.
     pub fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
         let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
         self.formula.integral(from_s, to_s)
     }
 
-    /// Acceleration in m/s2 and its rate of change in m/s3, both horizontal and vertical (positive to the
-    /// right and upwards), at a time in the piece, the ends included, as the limit from inside.
+    /// Returns the acceleration in m/s2 and its rate of change in m/s3, horizontal and vertical (positive to the right and upwards), at a time in the
+    /// piece. At its ends the values are limits from inside.
     #[must_use]
     pub fn at(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         self.formula.at(time_s - self.origin_s)
     }
 
-    /// Horizontal acceleration in m/s2, as [`Piece::at`].
+    /// Returns the horizontal acceleration in m/s2, as [`Piece::at`].
     #[must_use]
     pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
         self.at(time_s).0.x
     }
 
-    /// Whether the acceleration is zero from here on.
+    /// Returns whether the piece is the last one, with zero acceleration from here on.
     #[must_use]
     pub fn stays_still(&self) -> bool {
         self.end_s == f64::INFINITY
     }
 
-    /// Whether the acceleration is zero throughout.
+    /// Returns whether the acceleration is zero in the whole piece.
     pub fn is_quiet(&self) -> bool {
         self.ends_m_s2() == [Vector2::zeros(); 2]
     }
 
-    /// Longest step that resolves the shape of the piece.
+    /// Returns the longest step that resolves the shape of the piece, in seconds.
     #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         match self.formula {
@@ -102,7 +100,7 @@ impl Piece {
         }
     }
 
-    /// The accelerations at both ends, which bound those in between.
+    /// Returns the accelerations at both ends, which bound those in between.
     pub fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
         if self.stays_still() {
             [Vector2::zeros(); 2]

@@ -57,13 +57,13 @@ named! {
 }
 
 impl Pulse {
-    /// Whether it pushes to one side only.
+    /// Returns whether the pulse pushes to one side only.
     #[must_use]
     pub const fn is_one_sided(self) -> bool {
         matches!(self, Self::Rectangular | Self::HalfSine | Self::Triangular)
     }
 
-    /// Whether the shape depends on a [`WaveTrain`].
+    /// Returns whether the shape depends on a [`WaveTrain`].
     #[must_use]
     pub const fn is_wave_train(self) -> bool {
         matches!(
@@ -106,7 +106,7 @@ struct CutTrain {
 }
 
 impl Pulse {
-    /// A pulse of length `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
+    /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
     #[must_use]
     pub fn lasting_s(self, duration_s: f64) -> PulseShape {
         PulseShape {
@@ -120,20 +120,20 @@ impl Pulse {
 }
 
 impl PulseShape {
-    /// This pulse, starting at `start_s` (0 to 1e9).
+    /// Returns this pulse with the start `start_s` (0 to 1e9).
     #[must_use]
     pub fn starting_at_s(self, start_s: f64) -> Self {
         Self { start_s, ..self }
     }
 
-    /// This pulse with another wave train, which matters only to pulses that are wave trains.
+    /// Returns this pulse with another wave train; without effect for pulses that are no wave trains.
     #[must_use]
     pub fn with_train(self, train: WaveTrain) -> Self {
         let cut = OnceLock::new();
         Self { train, cut, ..self }
     }
 
-    /// The ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
+    /// Returns the ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
     ///
     /// # Errors
     /// When a number of the pulse is outside its range.
@@ -141,8 +141,7 @@ impl PulseShape {
         self.inclined_m_s2(Vector2::new(amplitude_m_s2, 0.0))
     }
 
-    /// The ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of one
-    /// common shape.
+    /// Returns the ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of a common shape.
     ///
     /// # Errors
     /// When a number of the pulse is outside its range.
@@ -159,7 +158,7 @@ impl PulseShape {
         Ok(GroundMotion::from_pieces(self.start_s, pieces))
     }
 
-    /// Ends in the time since the start, and formulas.
+    /// Returns the pieces: ends in the time since the start, and formulas.
     fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
         let sine = |periods: f64, phase_rad: f64| {
@@ -248,7 +247,7 @@ impl CutTrain {
         };
         let mut ends_s = shape.extrema_s(length_s, t);
         ends_s.push(length_s);
-        // Where the train begins it is no stronger than at its strongest extremum or its end.
+        // The value at the start of the train does not exceed its strongest extremum or its end.
         let values = ends_s.iter().map(|end| shape.at(*end).0.abs());
         let peak = values.fold(0.0, f64::max);
         Self {
@@ -258,7 +257,7 @@ impl CutTrain {
         }
     }
 
-    /// Its pieces, scaled so that the largest extremum is the amplitude.
+    /// Returns its pieces, scaled so that the largest extremum is the amplitude.
     fn pieces(&self, amplitude: Vector2<f64>) -> Vec<(f64, Formula)> {
         let formula = Formula::Shaped(amplitude / self.peak, self.shape);
         self.ends_s.iter().map(|end| (*end, formula)).collect()

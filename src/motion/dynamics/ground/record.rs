@@ -1,4 +1,4 @@
-//! Recorded ground motion: straight lines between samples.
+//! Recorded ground motion, linear between samples.
 
 use nalgebra::Vector2;
 
@@ -66,7 +66,7 @@ impl GroundMotion {
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
-    /// Recorded motion from samples that are known to be in bounds. Where the acceleration jumps, two samples share a time.
+    /// Returns the recorded motion of samples that are known to be in bounds. At a jump of the acceleration two samples have the same time.
     pub fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
@@ -97,7 +97,7 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
         within("time_s", time_s, CLOCK_S)
             .and(within("acceleration_m_s2", acceleration, ACCELERATION_M_S2))
             .map_err(|fault| GroundError(format!("{sample}: {fault}")))?;
-        // Times that are multiples of a step may round to a hair less than a step apart.
+        // Times computed as multiples of a step may be slightly less than a step apart.
         if time_s - before_s < 0.999 * MIN_STEP_S {
             return Err(GroundError(format!(
                 "{sample} is at {time_s:?} s and the one before at {before_s:?} s: times must rise by at least 1e-8 s"
@@ -108,7 +108,7 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
     Ok(())
 }
 
-/// Value at the first of two times, without a sample in between, and slope of the line there between samples. Those before are dropped.
+/// Returns the value at the first of two times, and the slope; no sample lies between the two times. Drops earlier samples.
 fn line(samples: &mut &[(f64, f64)], ends: &[f64]) -> (f64, f64) {
     let middle = 0.5 * (ends[0] + ends[1]);
     while samples.len() > 1 && samples[1].0 <= middle {

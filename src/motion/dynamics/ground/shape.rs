@@ -1,4 +1,4 @@
-//! The shapes of pulses in time, and where these have their extrema.
+//! Shapes of pulses in time, and their extrema.
 
 use std::f64::consts::PI;
 
@@ -59,7 +59,7 @@ pub struct Gabor {
 }
 
 impl Gabor {
-    /// Angle of the oscillation from the middle of the bell, and sine and cosine with its phase.
+    /// Returns the angle of the oscillation from the middle of the bell, and sine and cosine of this angle plus the phase.
     fn angle(&self, since_s: f64) -> (f64, (f64, f64)) {
         let angle = self.frequency_rad_s * (since_s - self.centre_s);
         (angle, (angle + self.train.phase_rad).sin_cos())
@@ -89,7 +89,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Value and rate of change.
+    /// Returns the value and its rate of change.
     pub fn at(&self, since_s: f64) -> (f64, f64) {
         match *self {
             Self::Sine(sine) => sine.at(since_s),
@@ -123,7 +123,7 @@ impl Shape {
         }
     }
 
-    /// Integral over a piece, or over a part of it.
+    /// Returns the integral over a piece, or over a part of it.
     pub fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         match *self {
             Self::Sine(sine) => sine.integral(from_s, to_s),
@@ -144,8 +144,8 @@ impl Shape {
                 };
                 (antiderivative(to_s) - antiderivative(from_s)) / scale
             }
-            // Its antiderivative is an error function of a complex argument: quadrature is simpler, and exact to
-            // rounding over the half period that a piece lasts.
+            // The antiderivative is an error function of a complex argument. Quadrature is simpler, and exact within rounding error over the half
+            // period of a piece.
             Self::Gabor(_) => {
                 let quarter_s = 0.25 * (to_s - from_s);
                 let quarters = [0.5, 1.5, 2.5, 3.5].map(|part| from_s + part * quarter_s);
@@ -161,9 +161,9 @@ impl Shape {
         }
     }
 
-    /// The times at which a wave train of the given length and period has its extrema.
+    /// Returns the times of the extrema of a wave train with a given length and period.
     pub fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
-        // The rate of change up to a positive factor, and a bound of the slope of this function.
+        // Rate of change up to a positive factor, and a bound of the slope of this function.
         let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
             Self::Beat(sines) => {
                 let bend = |sine: Sine| sine.amplitude.abs() * sine.frequency_rad_s.powi(2);
@@ -191,12 +191,11 @@ impl Shape {
     }
 }
 
-/// The zeros of `function` between 0 and `end` at which it changes its sign, in order, to rounding.
-/// `steepest` bounds the magnitude of its slope.
+/// Returns the zeros of `function` between 0 and `end` at which its sign changes, in order, within rounding error. `steepest` bounds the magnitude of
+/// its slope.
 ///
-/// A part in whose middle the function is farther from zero than it can fall over the length of the part
-/// has no zero, not even at its ends to rounding; others are halved. Pairs of zeros closer than `resolution`
-/// may be missed.
+/// A part has no zero if the function in its middle is farther from zero than the slope allows over the length of the part. Other parts are halved.
+/// Pairs of zeros closer than `resolution` may be missed.
 fn zeros(function: impl Fn(f64) -> f64, steepest: f64, end: f64, resolution: f64) -> Vec<f64> {
     let mut zeros = Vec::new();
     let mut parts = vec![(0.0, end)];

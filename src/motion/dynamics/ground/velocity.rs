@@ -1,4 +1,4 @@
-//! The velocity of the ground: the exact integral of its acceleration.
+//! Velocity of the ground: exact integral of its acceleration.
 
 use nalgebra::Vector2;
 
@@ -9,12 +9,12 @@ use crate::mechanics::blocks::Row;
 #[derive(Clone, Debug)]
 pub struct GroundVelocity<'a> {
     ground: &'a GroundMotion,
-    /// Velocities at the starts of the pieces.
+    /// Velocities at the starts of the pieces, in m/s.
     at_starts_m_s: Vec<Vector2<f64>>,
 }
 
 impl<'a> GroundVelocity<'a> {
-    /// The velocity of a ground motion.
+    /// Returns the velocity of a ground motion.
     #[must_use]
     pub fn new(ground: &'a GroundMotion) -> Self {
         let (mut velocity_m_s, mut at_starts_m_s) = (Vector2::zeros(), Vec::new());
@@ -33,17 +33,16 @@ impl<'a> GroundVelocity<'a> {
         }
     }
 
-    /// The velocity in m/s, of the left of two feet that move differently, horizontal and vertical (positive to the right and upwards), at a time that is not
-    /// before the start.
+    /// Returns the velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
+    /// differently it is that of the left foot.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
         let index = self.ground.piece_at(time_s);
         self.at_starts_m_s[index] + self.ground.pieces[index].velocity_gained_m_s(time_s)
     }
 
-    /// Displacements of the ground at these times, which ascend from the start on, in m from its position at the start.
-    /// They follow by Simpson's rule over the parts between times and corners, which is exact for records and
-    /// constant accelerations.
+    /// Returns the displacements of the ground at ascending times from the start on, in m from its position at the start. Simpson's rule is applied
+    /// between times and corners; it is exact for records and constant accelerations.
     #[must_use]
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let mut way = Way::new(self.clone());
@@ -52,8 +51,8 @@ impl<'a> GroundVelocity<'a> {
 }
 
 impl GroundMotion {
-    /// Displacement of the right foot relative to the left one, to the right and upwards in m, at these times, which
-    /// ascend from the start on; zero where both move alike.
+    /// Returns the displacement of the right foot relative to the left one, to the right and upwards in m, at ascending times from the start on; zero
+    /// if both feet move alike.
     #[must_use]
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let Some(right) = self.right_foot() else {
@@ -64,11 +63,11 @@ impl GroundMotion {
     }
 }
 
-/// The way of the ground from its start on.
+/// Position of the ground, advanced from its start.
 #[derive(Clone, Debug)]
 struct Way<'a> {
     velocity: GroundVelocity<'a>,
-    /// The piece in which it has arrived, when, and where.
+    /// Current piece, time and position.
     piece: usize,
     time_s: f64,
     at_m: Vector2<f64>,
@@ -84,14 +83,14 @@ impl<'a> Way<'a> {
         }
     }
 
-    /// Position of the ground at a time that is not before the last one.
+    /// Advances to a time not before the last one, and returns the position.
     fn to(&mut self, time_s: f64) -> Vector2<f64> {
         (self.piece, self.at_m) = self.ahead(time_s);
         self.time_s = self.time_s.max(time_s);
         self.at_m
     }
 
-    /// Later position of the ground at a time, and the piece of that time.
+    /// Returns the position of the ground at a later time, and the piece of that time.
     fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = &self.velocity.ground.pieces;
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
@@ -111,22 +110,22 @@ impl<'a> Way<'a> {
     }
 }
 
-/// Displacement of the right foot of a structure relative to its left one.
+/// Displacement of the right foot of a structure relative to its left foot.
 #[derive(Clone, Debug)]
 pub(in crate::dynamics) struct FeetApart<'a> {
     ways: [Way<'a>; 2],
-    /// When the feet stop moving apart, in seconds.
+    /// Time at which the relative motion ends, in seconds.
     end_s: f64,
 }
 
 impl<'a> FeetApart<'a> {
-    /// `None` where both feet of the row move alike, or it has only one.
+    /// Returns the relative motion of the feet of a row; `None` if both feet move alike, or the row has only one.
     pub(in crate::dynamics) fn of(row: &Row, ground: &'a GroundMotion) -> Option<Self> {
         let right = ground.right_foot_of(row)?;
         Some(Self::between([ground, right]))
     }
 
-    /// Between feet that move like this, the left and the right one.
+    /// Returns the relative motion of feet with given motions, left and right.
     fn between(feet: [&'a GroundMotion; 2]) -> Self {
         let [left_s, right_s] = feet.map(GroundMotion::end_s);
         Self {
@@ -135,21 +134,21 @@ impl<'a> FeetApart<'a> {
         }
     }
 
-    /// At a time that is not before the last one, to the right and upwards, in m.
+    /// Returns the displacement at a time not before the last one, to the right and upwards, in m.
     pub(in crate::dynamics) fn at(&mut self, time_s: f64) -> Vector2<f64> {
         let [left, right] = &mut self.ways;
         let time_s = time_s.min(self.end_s);
         right.to(time_s) - left.to(time_s)
     }
 
-    /// Displacement of the right foot relative to the left one at a time, in m.
+    /// Returns the displacement at a later time, in m, without advancing.
     pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
         let [left_m, right_m] = self.ways.each_ref().map(|way| way.ahead(time_s).1);
         right_m - left_m
     }
 
-    /// Velocity of the right foot against the left one at a time, in m/s.
+    /// Returns the velocity of the right foot relative to the left one at a time, in m/s.
     pub(in crate::dynamics) fn velocity_m_s(&self, time_s: f64) -> Vector2<f64> {
         if time_s >= self.end_s {
             return Vector2::zeros();
