@@ -128,16 +128,12 @@ fn why_no_row(error: &RowError) -> String {
              corner first",
             block + 1
         ),
-        RowError::Value {
-            name: "mass in kg" | "inertia in kg m2",
-            index,
-            ..
-        } => format!(
+        RowError::Block("mass in kg" | "inertia in kg m2", index, ..) => format!(
             "block {} from this joint to the next has no area: check its corners, and that at every joint the intrados corner \
              comes first",
             index + 1
         ),
-        RowError::Value { value, .. } => {
+        RowError::Thickness(_, value) => {
             format!("this joint is {value:?} m long: its two corners must be apart")
         }
         other => other.to_string(),
@@ -252,13 +248,13 @@ impl Additions {
             MasonryError::Shape(error) => {
                 table.wrong_in(&[shape], error.argument, allowed(error))
             }
-            MasonryError::Pier { side, error } => {
+            MasonryError::Pier(side, error) => {
                 let side = side.name();
                 let wrong = format!("of the {side} pier {}", allowed(error));
                 table.wrong_in(&["piers", side], error.argument, wrong)
             }
             MasonryError::Fill(error) => table.wrong_in(&["fill"], error.argument, allowed(error)),
-            MasonryError::Load { index, error } => {
+            MasonryError::Load(index, error) => {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
             }

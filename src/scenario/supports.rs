@@ -3,7 +3,7 @@
 use super::prelude::*;
 use super::structure::Structure;
 use crate::mechanics::blocks::Supports;
-use crate::mechanics::settling::{Follower, Movement, Movements, Reached};
+use crate::mechanics::settling::{Follower, Movement, Movements};
 
 /// Nothing stands on springings that have gone farther.
 const MOVEMENT_M: Number = within(&(-1e3..=1e3));
@@ -47,12 +47,12 @@ pub(super) fn check(table: &mut Table<'_>, structure: &Structure, moved: Movemen
         return Ok(());
     };
     let wrong = match follower.move_supports(|part| moved * part, 0.0, 1.0) {
-        Ok(Reached::Falls(part)) => format!(
+        Ok(Some(part)) => format!(
             "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
              `archrock spread` finds how far they may move",
             1e2 * part
         ),
-        Ok(Reached::End) => {
+        Ok(None) => {
             let Some(tie) = follower.stance.broken_tie() else {
                 return Ok(());
             };

@@ -175,7 +175,7 @@ fn static_and_kinematic_theorem_agree_on_random_shapes() {
                     compared += 1;
                 }
             }
-            Err(FourLinkError::Row { sway, .. }) => {
+            Err(FourLinkError::Row(sway, _)) => {
                 let side = usize::from(sway == Sway::Left);
                 let openings = of_static[side]
                     .as_ref()

@@ -133,11 +133,11 @@ proptest! {
         ] {
             match &row {
                 Err(RowError::Count(count)) => prop_assert!(*count == voussoirs && !counted),
-                Err(RowError::Dimension { value, .. }) => {
+                Err(RowError::Dimension(_, value)) => {
                     prop_assert!(size.iter().any(|x| x == value || x.is_nan() && value.is_nan()));
                 }
                 // Next to the others a size, or its powers, may vanish.
-                Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) => {
+                Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) => {
                     prop_assert!(!usual);
                 }
                 Err(error) => return Err(TestCaseError::fail(error.to_string())),
@@ -162,12 +162,12 @@ proptest! {
         let row = Row::stack(&drums, depth_m, density_kg_m3);
         match &row {
             Err(RowError::Count(count)) => prop_assert!(*count == 0 && drums.is_empty()),
-            Err(RowError::Dimension { value, .. }) => {
+            Err(RowError::Dimension(_, value)) => {
                 prop_assert!(!(*value > 0.0 && *value < f64::INFINITY));
                 prop_assert!(sizes.iter().any(|x| x == value || x.is_nan() && value.is_nan()));
             }
             // A drum may vanish next to another one.
-            Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) => {
+            Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) => {
                 prop_assert!(!sizes.iter().all(|x| (1e-3..1e6).contains(x)));
             }
             Err(error) => return Err(TestCaseError::fail(error.to_string())),
@@ -189,12 +189,12 @@ proptest! {
         let row = between_faces(&faces, supports, size_m, 1.0, 2000.0);
         match &row {
             Err(RowError::Count(count)) => prop_assert!(*count == 0 && faces.len() < 2),
-            Err(RowError::Dimension { .. }) => prop_assert!(!(size_m > 0.0 && size_m < f64::INFINITY)),
+            Err(RowError::Dimension(..)) => prop_assert!(!(size_m > 0.0 && size_m < f64::INFINITY)),
             Err(RowError::Joints { .. } | RowError::NoVoussoirs) => {
                 return Err(TestCaseError::fail("the joints are counted by the row"));
             }
             Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
-            Err(RowError::Value { .. } | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
+            Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
         }
         // Steps follow the size: a joint far larger than the row would need steps without end.
         if let Ok(row) = &row {
@@ -221,7 +221,7 @@ proptest! {
             Err(RowError::Joints { blocks, joints }) => {
                 prop_assert!((*blocks, *joints) == counts && counts.1 != expected);
             }
-            Err(RowError::Dimension { .. }) => return Err(TestCaseError::fail("the size is fine")),
+            Err(RowError::Dimension(..)) => return Err(TestCaseError::fail("the size is fine")),
             Err(RowError::Size { extent_m, .. }) => prop_assert!(*extent_m > 5e6),
             _ => prop_assert!(counts.0 > 0 && counts.1 == expected),
         }

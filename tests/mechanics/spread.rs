@@ -8,7 +8,7 @@ use archrock::internals::contact::ContactError;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, RestError};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::settling::{Follower, Movement, Movements, Reached, SettlingError};
+use archrock::mechanics::settling::{Follower, Movement, Movements, SettlingError};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie};
 use archrock::studies::spread::{Way, spread};
@@ -51,8 +51,8 @@ fn right([spread, settlement]: [f64; 2]) -> impl Fn(f64) -> Movements {
 fn falls_at(row: &Row, way: [f64; 2]) -> f64 {
     let mut follower = Follower::new(row).unwrap();
     match follower.move_supports(right(way), 0.0, 1.6).unwrap() {
-        Reached::Falls(at) => at,
-        Reached::End => panic!("it stands"),
+        Some(at) => at,
+        None => panic!("it stands"),
     }
 }
 
@@ -442,7 +442,7 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
             if step == steps / 2 {
                 let mut follower = Follower::new(&row).unwrap();
                 let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
-                assert_eq!(reached.unwrap(), Reached::End);
+                assert_eq!(reached.unwrap(), None);
                 let crown = row.joints[voussoirs / 2].extrados_m;
                 let pose = follower.stance.placement.poses[voussoirs / 2 - 1];
                 let drop = (crown - pose.of(crown)).y;
@@ -577,11 +577,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
             blocks.support = way.map(|part| part * to);
             let stands = blocks.settle();
             let last = falls && step == steps;
-            assert_eq!(
-                (reached == Reached::End, stands),
-                (!last, !last),
-                "{what}: {to}"
-            );
+            assert_eq!((reached == None, stands), (!last, !last), "{what}: {to}");
             if last {
                 break;
             }
@@ -634,7 +630,7 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
             for piece in 0..pieces {
                 let ends_m = [piece, piece + 1].map(at_m);
                 let reached = follower.move_supports(right(way), ends_m[0], ends_m[1]);
-                assert_eq!(reached, Ok(Reached::End), "{way:?} {ends_m:?}");
+                assert_eq!(reached, Ok(None), "{way:?} {ends_m:?}");
             }
             let weight_n = row.mass_kg() * 9.81;
             let ties = follower.stance.ties.iter();
@@ -675,7 +671,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
             let [from, to] = [step - 1, step].map(|step| stride * f64::from(step));
             let what = format!("{stiffnesses:?} {way:?} {to}");
             let reached = follower.move_supports(right(way), from, to).unwrap();
-            assert_eq!(reached, Reached::End, "{what}");
+            assert_eq!(reached, None, "{what}");
             blocks.support = way.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
             let crown = row.joints[8].extrados_m;
@@ -871,7 +867,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     };
     let joints = ElasticStructure::of_row(&row, &properties).unwrap();
     let joints = joints.on_supports(right(OUT)(0.1).displacements());
-    let Err(RestError::TieOnTheWay { tie: 0, part }) = joints.rest([0.0, -9.81]) else {
+    let Err(RestError::TieOnTheWay(0, part)) = joints.rest([0.0, -9.81]) else {
         panic!("it holds");
     };
     // In steps of 3 % of the way.
@@ -895,7 +891,7 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
         };
         let mut follower = Follower::new(&row).unwrap();
         let way = |part: f64| along * part;
-        assert_eq!(follower.move_supports(way, 0.0, 1.0).unwrap(), Reached::End);
+        assert_eq!(follower.move_supports(way, 0.0, 1.0).unwrap(), None);
         let built = Follower::new(&row).unwrap();
         for sway in [Sway::Right, Sway::Left] {
             let [now, then] =
@@ -983,7 +979,7 @@ fn an_arch_that_turns_as_a_whole_leans() {
         let reached = follower
             .move_supports(|part| movements * part, 0.0, 1.0)
             .unwrap();
-        assert_eq!(reached == Reached::End, stands, "{angle}");
+        assert_eq!(reached == None, stands, "{angle}");
         if !stands {
             continue;
         }
@@ -1096,11 +1092,11 @@ fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
     let inwards_from = |out: [f64; 2]| {
         let mut follower = Follower::new(&row).unwrap();
         let reached = follower.move_supports(right(out), 0.0, 1.0).unwrap();
-        assert!(matches!(reached, Reached::End));
+        assert!(matches!(reached, None));
         let back = |s: f64| right([out[0] - s, out[1]])(1.0);
         match follower.move_supports(back, 0.0, 1.6).unwrap() {
-            Reached::Falls(at) => at,
-            Reached::End => panic!("it stands"),
+            Some(at) => at,
+            None => panic!("it stands"),
         }
     };
     let fall = inwards_from([0.04, 0.0]);
@@ -1131,8 +1127,8 @@ fn either_springing_moves_an_arch_alike() {
             .move_supports(|s| both(s, parts), 0.0, 0.5)
             .unwrap()
         {
-            Reached::Falls(at) => at,
-            Reached::End => panic!("it stands"),
+            Some(at) => at,
+            None => panic!("it stands"),
         }
     };
     assert!((fall([1.0, 0.0]) - fall([0.0, 1.0])).abs() < 1e-12);
@@ -1150,8 +1146,8 @@ fn either_springing_moves_an_arch_alike() {
             },
         };
         match follower.move_supports(movements, 0.0, 0.5).unwrap() {
-            Reached::Falls(at) => at,
-            Reached::End => panic!("it stands"),
+            Some(at) => at,
+            None => panic!("it stands"),
         }
     };
     assert!((spread([0.5, 0.5]) - spread([0.0, 1.0])).abs() < 1e-12);
@@ -1169,10 +1165,7 @@ fn a_springing_that_turns_leaves_an_arch_that_fits() {
         },
         ..Movements::default()
     };
-    assert_eq!(
-        follower.move_supports(turned, 0.0, 0.02).unwrap(),
-        Reached::End
-    );
+    assert_eq!(follower.move_supports(turned, 0.0, 0.02).unwrap(), None);
     let state = follower.state().unwrap();
     let sum: f64 = state.turns_rad.iter().sum();
     assert!((sum + 0.02).abs() < 1e-14 && state.margin() >= -1e-12);
@@ -1259,7 +1252,7 @@ fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
         for radius_m in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
             let row = Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap();
             let way = |part: f64| right([-1.0, 0.0])(radius_m * part);
-            let Reached::Falls(at) = Follower::new(&row)
+            let Some(at) = Follower::new(&row)
                 .and_then(|mut scout| scout.move_supports(way, 0.0, 1.7))
                 .unwrap()
             else {
@@ -1427,13 +1420,13 @@ fn a_flat_thick_arch_jams() {
     for jams in [INWARDS, DOWN] {
         let error = way(97.0, jams).unwrap_err();
         assert!(
-            matches!(error, SettlingError::Contact(ContactError::Jammed { .. })),
+            matches!(error, SettlingError::Contact(ContactError::Jammed(_))),
             "{error}"
         );
     }
-    assert_eq!(way(97.0, OUT), Ok(Reached::End));
+    assert_eq!(way(97.0, OUT), Ok(None));
     // (1 + 0.205) cos(51.5 degrees) = 0.750 is below 1 - 0.205.
-    assert_eq!(way(103.0, INWARDS), Ok(Reached::End));
+    assert_eq!(way(103.0, INWARDS), Ok(None));
 
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.41\nembrace_deg = 97.0\nvoussoirs = 12\n[free_hinges]\n";
     let folder = tempfile::tempdir().unwrap();

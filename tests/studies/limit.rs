@@ -282,7 +282,7 @@ fn arches_that_stand_are_not_said_to_fall() {
         assert!(carries_its_weight(&ring, HingeSites::Anywhere));
         assert!(room_for_a_line(&ring, &even_sections(&ring, 360)).unwrap() > 0.1);
         let error = incipient(&ring, HingeSites::Anywhere).unwrap_err();
-        let LimitError::OtherMechanism { acceleration_g } = error else {
+        let LimitError::OtherMechanism(acceleration_g) = error else {
             panic!("{t} {embrace}: {error}");
         };
         assert!(acceleration_g > 1.0, "{acceleration_g}");
@@ -342,7 +342,7 @@ fn thick_shallow_rings_are_out_of_scope() {
     // more than is due to the 1e-7 rad by which the search keeps hinges apart.
     for (t, embrace, statics) in [(0.30, 90.0, 9.6633), (0.60, 120.0, 7.3966)] {
         let ring = ring(t, embrace);
-        let Err(LimitError::OtherMechanism { acceleration_g }) =
+        let Err(LimitError::OtherMechanism(acceleration_g)) =
             incipient(&ring, HingeSites::Anywhere)
         else {
             panic!("{t} {embrace} must be refused");
@@ -461,7 +461,7 @@ proptest! {
                     prop_assert!(push < 0.05, "{push}");
                 }
             }
-            Err(LimitError::OtherMechanism { acceleration_g }) => {
+            Err(LimitError::OtherMechanism(acceleration_g)) => {
                 // The test's own programme finds no starting corner in some of these rings.
                 let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
                 // Statics at 180 sections constrains the line less than the whole ring would, by the square of their

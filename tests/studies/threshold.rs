@@ -228,9 +228,7 @@ impl Model for Rule {
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),
-            details: Details::Mechanisms {
-                peak_over_critical: 0.0,
-            },
+            details: Details::Mechanisms(0.0),
         })
     }
 }

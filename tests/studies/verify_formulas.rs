@@ -611,7 +611,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
     };
     let masses = [(1.0, body)];
     let refused = Capacity::new(Sway::Right, rising, &masses, Control::point(body), GRAVITY);
-    assert_eq!(refused, Err(CapacityError::Locks { sway: Sway::Right }));
+    assert_eq!(refused, Err(CapacityError::Locks(Sway::Right)));
 }
 
 /// If the force first grows and then falls, the curve is followed along its own course to where the force vanishes.

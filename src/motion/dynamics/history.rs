@@ -447,11 +447,9 @@ pub struct Summary {
 /// Results of one kind of model only.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Details {
-    /// Summary of four links or of a column.
-    Mechanisms {
-        /// Largest rotation over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone overturns the structure.
-        peak_over_critical: f64,
-    },
+    /// Largest rotation of four links or of a column over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone
+    /// overturns the structure.
+    Mechanisms(f64),
     /// Summary of a row of blocks with rigid joints.
     Rigid(Box<RowSummary>),
     /// Summary of a row of blocks with elastic joints.
@@ -463,7 +461,7 @@ impl Summary {
     #[must_use]
     pub const fn row(&self) -> Option<&RowSummary> {
         match &self.details {
-            Details::Mechanisms { .. } => None,
+            Details::Mechanisms(_) => None,
             Details::Rigid(row) | Details::Elastic(row, _) => Some(row),
         }
     }
@@ -473,7 +471,7 @@ impl Summary {
     pub const fn elastic(&self) -> Option<&ElasticSummary> {
         match &self.details {
             Details::Elastic(_, elastic) => Some(elastic),
-            Details::Mechanisms { .. } | Details::Rigid(_) => None,
+            Details::Mechanisms(_) | Details::Rigid(_) => None,
         }
     }
 
@@ -481,7 +479,7 @@ impl Summary {
     #[must_use]
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
-            Details::Mechanisms { peak_over_critical } => Some(peak_over_critical),
+            Details::Mechanisms(peak_over_critical) => Some(peak_over_critical),
             Details::Rigid(_) | Details::Elastic(..) => None,
         }
     }

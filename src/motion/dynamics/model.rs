@@ -261,10 +261,8 @@ pub trait MechanismModel: Model {
 /// If a number is not valid, or the ground accelerates downwards faster than a free body: models do not follow a structure that loses contact.
 pub(super) fn check(ground: &GroundMotion, request: &Request) -> Result<(), SimulationError> {
     request.check(ground)?;
-    match ground.free_fall_s(request.gravity_m_s2) {
-        Some(time_s) => Err(SimulationError::FreeFall { time_s }),
-        None => Ok(()),
-    }
+    let falls_s = ground.free_fall_s(request.gravity_m_s2);
+    falls_s.map_or(Ok(()), |time_s| Err(SimulationError::FreeFall(time_s)))
 }
 
 /// Reason why four links cannot follow feet that move differently.
@@ -276,15 +274,12 @@ pub enum SimulationError {
     /// A number of the request is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
-    /// The ground accelerates downwards faster than a free body.
+    /// The ground accelerates downwards faster than a free body from this time on, in seconds.
     #[error(
-        "the ground falls as fast as a free body at {time_s:?} s and no longer carries the structure: \
+        "the ground falls as fast as a free body at {0:?} s and no longer carries the structure: \
          vertical accelerations must stay above -1 g"
     )]
-    FreeFall {
-        /// Time at which this happens, in seconds.
-        time_s: f64,
-    },
+    FreeFall(f64),
     /// The feet move differently, and the hinges cannot follow.
     #[error("{FEET_NEED_JOINTS}: choose free hinges or elastic joints")]
     Feet,

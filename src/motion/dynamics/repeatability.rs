@@ -496,7 +496,7 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
         Outcome::Overturned(_) => own.row().is_some_and(|row| row.half_cycles_with_fall <= 1),
         Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
             let ratio = match &own.details {
-                Details::Mechanisms { .. } => None,
+                Details::Mechanisms(_) => None,
                 Details::Rigid(row) => row.peak_potential_over_barrier,
                 // Elastic joints overturn below the barrier of rigid joints.
                 Details::Elastic(row, elastic) => {

@@ -28,28 +28,18 @@ const LEAST_SIZE_RATIO: f64 = 1e-6;
 /// Why blocks and joints do not make a row.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RowError {
-    /// A number is not finite, or not in its range.
-    #[error("{name} of {part} {index} is {value}: {allowed}")]
-    Value {
-        /// Name of the number, with its unit.
-        name: &'static str,
-        /// Block or joint.
-        part: &'static str,
-        /// Its index, from 0.
-        index: usize,
-        /// The number.
-        value: f64,
-        /// Its allowed range.
-        allowed: &'static str,
-    },
-    /// A dimension of the whole row is out of range.
-    #[error("{name} is {value}: it must be positive and finite")]
-    Dimension {
-        /// The dimension, with its unit.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    /// The joint of this index, from 0, has this thickness, in metres.
+    #[error(
+        "thickness in m of joint {0} is {1}: it must be finite, and positive beside the size of the row"
+    )]
+    Thickness(usize, f64),
+    /// A number of a block is not finite, or not in its range: its name with the unit, the index of the block, from 0, the number, and
+    /// the allowed range.
+    #[error("{0} of block {1} is {2}: {3}")]
+    Block(&'static str, usize, f64, &'static str),
+    /// A dimension of the whole row, with its unit, is out of range: it has this value.
+    #[error("{0} is {1}: it must be positive and finite")]
+    Dimension(&'static str, f64),
     /// The size is negligible beside the row.
     #[error(
         "size in m is {size_m}: it must be at least a millionth of the extent of the row, {extent_m:.3e}, since steps follow it"
@@ -402,7 +392,7 @@ impl Row {
 
 fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
     let holds = value > 0.0 && value < f64::INFINITY;
-    let error = RowError::Dimension { name, value };
+    let error = RowError::Dimension(name, value);
     holds.then_some(()).ok_or(error)
 }
 
@@ -423,13 +413,7 @@ fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
     for (index, joint) in joints.iter().enumerate() {
         let value = joint.thickness_m();
         if !(value > 1e-9 * size_m && value < f64::INFINITY) {
-            return Err(RowError::Value {
-                name: "thickness in m",
-                part: "joint",
-                index,
-                value,
-                allowed: "it must be finite, and positive beside the size of the row",
-            });
+            return Err(RowError::Thickness(index, value));
         }
     }
     let joints_m = joints.iter();
@@ -455,13 +439,7 @@ fn check_blocks(blocks: &[Block]) -> Result<(), RowError> {
             ("centre in m", y, finite),
         ] {
             if !value.is_finite() || (allowed == positive && value <= 0.0) {
-                return Err(RowError::Value {
-                    name,
-                    part: "block",
-                    index,
-                    value,
-                    allowed,
-                });
+                return Err(RowError::Block(name, index, value, allowed));
             }
         }
     }

@@ -207,26 +207,18 @@ pub struct TieOnTheWay {
 /// Reason why there is no capacity curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum CapacityError {
-    /// The control point does not move, or moves against the sway.
+    /// The control point at this position, in metres, does not move, or moves against the sway to this side.
     #[error(
         "the control point ({:?}, {:?}) m does not move to the {side} with the mechanism: choose a point of a block that does",
-        .at_m.x, .at_m.y, side = .sway.name()
+        .0.x, .0.y, side = .1.name()
     )]
-    Control {
-        /// Its position.
-        at_m: Vector2<f64>,
-        /// The side.
-        sway: Sway,
-    },
-    /// There is no unstable equilibrium.
+    Control(Vector2<f64>, Sway),
+    /// There is no unstable equilibrium to this side.
     #[error(
         "the linkage that sways to the {side} comes to the end of its way before it loses its strength: it has no ultimate \
-         displacement", side = .sway.name()
+         displacement", side = .0.name()
     )]
-    Locks {
-        /// The side.
-        sway: Sway,
-    },
+    Locks(Sway),
 }
 
 /// Number of intervals of a capacity curve.
@@ -262,15 +254,14 @@ impl Capacity {
         let speeds = moving.iter().map(|(_, velocity)| velocity.abs());
         let fastest = speeds.fold(0.0, f64::max);
         if control_velocity <= 1e-9 * fastest {
-            let at_m = control.at_m;
-            return Err(CapacityError::Control { at_m, sway });
+            return Err(CapacityError::Control(control.at_m, sway));
         }
         let participation = Participation::of(moving);
         let to_oscillator = participation.oscillator_displacement / control_velocity;
         // At the end of the path the acceleration may be NaN.
         let [start_g, end_g] = [0.0, 1.0].map(|part| displaced(part).acceleration_g);
         if end_g.is_nan() || end_g.abs() > 1e-6 * start_g {
-            return Err(CapacityError::Locks { sway });
+            return Err(CapacityError::Locks(sway));
         }
         let mut capacity = Self {
             sway,

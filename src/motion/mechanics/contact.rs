@@ -43,25 +43,19 @@ const DEPENDENCE: f64 = 1e-10;
 /// Reason why a quadratic program has no solution, or why none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum ContactError {
-    /// The active set was not found within the maximum number of iterations, at the loosest tolerance.
+    /// The active set was not found within this number of iterations, at the loosest tolerance.
     #[error(
-        "the velocities of the blocks were not found in {iterations} iterations: where the heaviest block is more than some \
+        "the velocities of the blocks were not found in {0} iterations: where the heaviest block is more than some \
          1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
     )]
-    Unsolved {
-        /// Number of iterations.
-        iterations: usize,
-    },
-    /// No velocities are admissible: the corner of a joint closes further under any motion of the blocks. An example is a flat, thick arch whose
-    /// supports approach each other.
+    Unsolved(usize),
+    /// No velocities are admissible: the corner of this joint, from 0 on the left support, closes further under any motion of the blocks. An
+    /// example is a flat, thick arch whose supports approach each other.
     #[error(
-        "the blocks jam: rigid blocks that do not slide cannot follow the supports, since joint {joint} (from 0 at the left springing) \
+        "the blocks jam: rigid blocks that do not slide cannot follow the supports, since joint {0} (from 0 at the left springing) \
          would overlap"
     )]
-    Jammed {
-        /// Index of the joint, from 0 on the left support.
-        joint: usize,
-    },
+    Jammed(usize),
 }
 
 /// Computational effort of a solution.
@@ -234,7 +228,7 @@ impl Program {
         }
         let (finite, iterations) = (self.set_velocities(), effort.iterations);
         let found = finite.then_some(effort);
-        found.ok_or(ContactError::Unsolved { iterations })
+        found.ok_or(ContactError::Unsolved(iterations))
     }
 
     /// Returns the largest velocity in m/s under a load: of a block's centre, or of a block's rotation times the size of the row.

@@ -70,15 +70,10 @@ pub enum FourLinkError {
     Ties,
     /// A row of blocks does not start as four links to this side.
     #[error(
-        "to the {side} four links do not describe this row of blocks ({error}); give [free_hinges] or \
-         [elastic_joints], which take any mechanism", side = .sway.name()
+        "to the {side} four links do not describe this row of blocks ({1}); give [free_hinges] or \
+         [elastic_joints], which take any mechanism", side = .0.name()
     )]
-    Row {
-        /// Side of the sway.
-        sway: Sway,
-        /// Reason for this side.
-        error: LimitError,
-    },
+    Row(Sway, LimitError),
     /// The stability of the row was not determined.
     #[error(transparent)]
     Contact(#[from] ContactError),
@@ -137,7 +132,7 @@ impl FourLinks {
             } else {
                 incipient_of(&*profiles[0], sites)
             };
-            let incipient = incipient.map_err(|error| FourLinkError::Row { sway, error })?;
+            let incipient = incipient.map_err(|error| FourLinkError::Row(sway, error))?;
             Ok::<_, FourLinkError>(Arc::new(Chain::new(profiles, sites, incipient, law)))
         };
         let chains = Sides::try_of(chain)?;

@@ -153,15 +153,6 @@ pub struct Snap {
     pub causes: Vec<Pin>,
 }
 
-/// End of a followed path.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reached {
-    /// The row reached the end of the path.
-    End,
-    /// The row falls at this position along the path.
-    Falls(f64),
-}
-
 /// Reason why a row could not be followed.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SettlingError {
@@ -179,12 +170,9 @@ pub enum SettlingError {
         "what the ties pull with was not found where the row gives way: give them less stiffness, or other places"
     )]
     Ties,
-    /// No other hinges were found on which the row is in equilibrium.
+    /// No other hinges were found on which the row is in equilibrium, at this position along the path.
     #[error("its hinges give way, and no others were found on which it rests")]
-    Lost {
-        /// Position along the path.
-        at: f64,
-    },
+    Lost(f64),
     /// The row comes to rest with a joint that is open at both edges.
     #[error(
         "its hinges give way, and joint {joint} (from 0 at the left springing) parts: blocks that do not touch are not followed"
@@ -202,7 +190,7 @@ impl SettlingError {
     #[must_use]
     pub const fn at(&self) -> Option<f64> {
         match self {
-            Self::Lost { at } | Self::Parted { at, .. } => Some(*at),
+            Self::Lost(at) | Self::Parted { at, .. } => Some(*at),
             Self::OneSupport | Self::Stability(_) | Self::Contact(_) | Self::Ties => None,
         }
     }
@@ -271,7 +259,8 @@ impl<'a> Follower<'a> {
         hinges.state(self.row, condition, &self.stance)
     }
 
-    /// Moves the supports from `movements(from)` to `movements(to)`, along a straight line.
+    /// Moves the supports from `movements(from)` to `movements(to)`, along a straight line. Returns the parameter at which the row falls;
+    /// `None` if it reaches the end.
     ///
     /// # Errors
     /// If no equilibrium is found where the hinges become inadmissible.
@@ -280,12 +269,12 @@ impl<'a> Follower<'a> {
         movements: impl Fn(f64) -> Movements,
         from: f64,
         to: f64,
-    ) -> Result<Reached, SettlingError> {
+    ) -> Result<Option<f64>, SettlingError> {
         let (row, force_g) = (self.row, self.condition.force_g);
         let (first, last) = (movements(from), movements(to));
         let extent = (last - first).extent(row.size_m);
         if extent == 0.0 {
-            return Ok(Reached::End);
+            return Ok(None);
         }
         if self.hinges.is_none() && last.are_one_motion(row) {
             return Ok(self.move_along(&movements, [from, to])?);
@@ -302,7 +291,7 @@ impl<'a> Follower<'a> {
         &mut self,
         movements: &impl Fn(f64) -> Movements,
         [from, to]: [f64; 2],
-    ) -> Result<Reached, ContactError> {
+    ) -> Result<Option<f64>, ContactError> {
         let row = self.row;
         let there = |part: f64| {
             let [pose, _] = movements(part).poses(row);
@@ -314,11 +303,11 @@ impl<'a> Follower<'a> {
         let falls = |part: f64| Ok(falls_at(row, &there(part))?.is_some());
         if falls(to)? {
             let (last, _) = try_bisect(from, to, Width::Rounding, falls)?;
-            return Ok(Reached::Falls(last));
+            return Ok(Some(last));
         }
         self.stance = there(to);
         self.condition.supports = self.stance.placement.support_poses;
-        Ok(Reached::End)
+        Ok(None)
     }
 
     /// Returns the push to a side, in multiples of gravity, that starts a motion of the present state; `None` if no push does. The push is zero if
@@ -360,27 +349,24 @@ impl<'a> Follower<'a> {
             force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),
             ..condition
         };
-        let reached = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
-        Ok(match reached {
-            // Two computations of the same push differ by rounding errors.
-            Reached::Falls(capacity_g) => Some(capacity_g.max(first_g)),
-            Reached::End => None,
-        })
+        let falls_g = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
+        // Two computations of the same push differ by rounding errors.
+        Ok(falls_g.map(|capacity_g| capacity_g.max(first_g)))
     }
 
     /// Follows the equilibrium along a path from one parameter to another. The parameter changes by `unit` while a support moves by the size of the
-    /// row or turns by a radian, or while a push grows by gravity.
+    /// row or turns by a radian, or while a push grows by gravity. Returns the parameter at which the row falls; `None` if it reaches the end.
     fn follow(
         &mut self,
         way: &impl Fn(f64) -> Condition,
         [from, to]: [f64; 2],
         unit: f64,
-    ) -> Result<Reached, SettlingError> {
+    ) -> Result<Option<f64>, SettlingError> {
         let mut low = from;
         if self.hinges.is_none() {
             match self.give_way(way, low, unit)? {
                 Some(at) => low = at,
-                None => return Ok(Reached::Falls(low)),
+                None => return Ok(Some(low)),
             }
         }
         let (mut step, mut rates) = (STEP, Vec::new());
@@ -416,12 +402,12 @@ impl<'a> Follower<'a> {
             self.stand_in(&way(last));
             match self.give_way(way, last, unit)? {
                 Some(at) => low = at,
-                None => return Ok(Reached::Falls(last)),
+                None => return Ok(Some(last)),
             }
             (step, rates) = (STEP, Vec::new());
         }
         self.stand_in(&way(to.max(low)));
-        Ok(Reached::End)
+        Ok(None)
     }
 
     /// Returns the rotation rates of the blocks between here and another state, over a distance `way` along the path.
@@ -530,7 +516,7 @@ impl<'a> Follower<'a> {
         }
         Err(match parted {
             Some(joint) => SettlingError::Parted { at, joint },
-            None => SettlingError::Lost { at },
+            None => SettlingError::Lost(at),
         })
     }
 }

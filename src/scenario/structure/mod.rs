@@ -286,7 +286,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     }
     match arch.incipient() {
         Ok(_) => Ok(Read::Arch(arch)),
-        Err(LimitError::OtherMechanism { .. } | LimitError::NoPush) if free_hinges => {
+        Err(LimitError::OtherMechanism(_) | LimitError::NoPush) if free_hinges => {
             Ok(Read::Arch(arch))
         }
         Err(error) => {
@@ -311,7 +311,7 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
                  the thickness must be at least {least} mean radii"
             )
         }
-        LimitError::OtherMechanism { .. } | LimitError::NoPush => {
+        LimitError::OtherMechanism(_) | LimitError::NoPush => {
             let degrees = plain(embrace_deg.to_degrees());
             let unit = match embrace_deg < LIKELY_EMBRACE_DEG {
                 true => format!(": is it in radians, {degrees} degrees?"),

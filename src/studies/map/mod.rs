@@ -49,7 +49,7 @@ impl From<ModelError> for CellResult {
                 Self::CannotStand
             }
             ModelError::FourLinks(FourLinkError::Limit(
-                LimitError::OtherMechanism { .. } | LimitError::NoPush,
+                LimitError::OtherMechanism(_) | LimitError::NoPush,
             )) => Self::NotFourLinks,
             error => Self::Failed(error.to_string()),
         }

@@ -16,9 +16,7 @@ pub use self::report::{FILES, report};
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::parts::Parts as _;
-use crate::mechanics::settling::{
-    Follower, Movement, Movements, Pin, Reached, SettlingError, Snap, State,
-};
+use crate::mechanics::settling::{Follower, Movement, Movements, Pin, SettlingError, Snap, State};
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::output::template::filters;
@@ -236,8 +234,7 @@ fn path(
     let before = start.snaps.len();
     let mut scout = start.clone();
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
-        Ok(Reached::Falls(at_m)) => (at_m, Some(at_m), None),
-        Ok(Reached::End) => (longest_m, None, None),
+        Ok(falls_at_m) => (falls_at_m.unwrap_or(longest_m), falls_at_m, None),
         // If the end is unknown, the loop below ends before it.
         Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
     };
@@ -249,8 +246,8 @@ fn path(
         if next_m <= here_m {
             break;
         }
-        let reached = match follower.move_supports(movements, here_m, next_m) {
-            Ok(reached) => reached,
+        let falls_at_m = match follower.move_supports(movements, here_m, next_m) {
+            Ok(falls_at_m) => falls_at_m,
             Err(error) => {
                 lost = lost.or(Some(error));
                 break;
@@ -258,7 +255,7 @@ fn path(
         };
         places.push((follower.clone(), next_m));
         // Due to rounding errors the arch may collapse just before its end.
-        if reached != Reached::End {
+        if falls_at_m.is_some() {
             break;
         }
         here_m = next_m;

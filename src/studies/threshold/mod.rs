@@ -86,7 +86,7 @@ impl FactorSample {
             Ok((summary, doubt)) => {
                 Ending::from_summary(&summary, None, doubt).map_err(NoHistory::Failed)
             }
-            Err(error @ SimulationError::FreeFall { .. }) => {
+            Err(error @ SimulationError::FreeFall(_)) => {
                 Err(NoHistory::GroundFalls(error.to_string()))
             }
             Err(error) => Err(NoHistory::Failed(error.to_string())),

@@ -176,7 +176,7 @@ pub(super) fn histories(
     let model = scenario.mechanisms();
     let model = model.map_err(|error| match error {
         // These errors recommend another model of motion.
-        FourLinkError::Stack | FourLinkError::Argument(_) | FourLinkError::Row { .. } => failed(format!(
+        FourLinkError::Stack | FourLinkError::Argument(_) | FourLinkError::Row(..) => failed(format!(
             "they are of four links or of Housner's block, and stacks, drums, tapers and other mechanisms are neither: leave {}_records \
              out, and compute the records with `archrock suite`",
             state.name()

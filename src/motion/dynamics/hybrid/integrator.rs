@@ -59,18 +59,12 @@ pub struct Task<const N: usize> {
 /// Reason why an integration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum IntegratorError {
-    /// The right-hand side gave no finite number however short the step.
-    #[error("the motion has no finite acceleration at {time_s:?} s")]
-    NotFinite {
-        /// Time in seconds.
-        time_s: f64,
-    },
-    /// The step fell below the spacing of numbers, or too many were needed.
-    #[error("the relative tolerance cannot be met at {time_s:?} s: allow a larger one")]
-    ToleranceNotMet {
-        /// Time in seconds.
-        time_s: f64,
-    },
+    /// The right-hand side gave no finite number at this time, in seconds, however short the step.
+    #[error("the motion has no finite acceleration at {0:?} s")]
+    NotFinite(f64),
+    /// The step fell below the spacing of numbers at this time, in seconds, or too many were needed.
+    #[error("the relative tolerance cannot be met at {0:?} s: allow a larger one")]
+    ToleranceNotMet(f64),
 }
 
 /// Maximum number of steps of one call of the solver, far more than any part of a motion needs.
@@ -134,9 +128,9 @@ pub fn integrate<const N: usize>(
             | IntegrationError::StiffnessDetected { x }) = error;
             let time_s = task.start_s + x;
             Err(if not_finite.get() {
-                IntegratorError::NotFinite { time_s }
+                IntegratorError::NotFinite(time_s)
             } else {
-                IntegratorError::ToleranceNotMet { time_s }
+                IntegratorError::ToleranceNotMet(time_s)
             })
         }
     }

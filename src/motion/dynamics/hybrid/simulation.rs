@@ -174,7 +174,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
             _ => sampler.thrust,
         }),
         cost: finish.cost,
-        details: Details::Mechanisms { peak_over_critical },
+        details: Details::Mechanisms(peak_over_critical),
     })
 }
 

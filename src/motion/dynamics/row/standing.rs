@@ -12,7 +12,7 @@ use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::settling::{Follower, Movements, Reached, SettlingError};
+use crate::mechanics::settling::{Follower, Movements, SettlingError};
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::stance::Stance;
@@ -106,7 +106,7 @@ impl RigidRow {
     pub fn on_supports(self, movements: &Movements) -> Result<Self, RowModelError> {
         let mut follower = Follower::new(&self.row)?;
         let way = |part: f64| *movements * part;
-        if let Reached::Falls(part) = follower.move_supports(way, 0.0, 1.0)? {
+        if let Some(part) = follower.move_supports(way, 0.0, 1.0)? {
             return Err(RowModelError::Falls(part));
         }
         if let Some(tie) = follower.stance.broken_tie() {

@@ -54,8 +54,8 @@ impl Program {
             if tolerance > LARGEST_RATE_TOLERANCE {
                 let iterations = *iterations;
                 return Err(match self.jammed {
-                    Some(joint) => ContactError::Jammed { joint },
-                    None => ContactError::Unsolved { iterations },
+                    Some(joint) => ContactError::Jammed(joint),
+                    None => ContactError::Unsolved(iterations),
                 });
             }
         }

@@ -56,27 +56,19 @@ pub enum RestError {
          or a greater thickness"
     )]
     Stiffness,
-    /// The structure falls while its supports move.
+    /// The structure falls at this fraction of the movement of its supports.
     #[error("the structure falls when its supports have moved {:.2} % of the way", 1e2 * .0)]
-    Supports(
-        /// Fraction of the movement.
-        f64,
-    ),
+    Supports(f64),
     /// The tie with this index breaks under the weight.
     #[error("tie {number} breaks under the weight of the structure: it needs a larger breaks_at_strain, or less prestress_n", number = .0 + 1)]
     Tie(usize),
-    /// A tie breaks while the supports move.
+    /// The tie with this index breaks at this fraction of the movement of the supports.
     #[error(
         "tie {number} breaks when the supports have moved {part:.2} % of the way: it needs a larger breaks_at_strain",
-        number = tie + 1,
-        part = 1e2 * part
+        number = .0 + 1,
+        part = 1e2 * .1
     )]
-    TieOnTheWay {
-        /// Index of the tie.
-        tie: usize,
-        /// Fraction of the movement.
-        part: f64,
-    },
+    TieOnTheWay(usize, f64),
     /// No equilibrium was found.
     #[error("no equilibrium was found under the weight of the structure")]
     NotFound,
@@ -202,7 +194,7 @@ impl ElasticStructure {
                 continue;
             };
             if let Some(tie) = found.broken_tie() {
-                return Err(RestError::TieOnTheWay { tie, part: next });
+                return Err(RestError::TieOnTheWay(tie, next));
             }
             if found.steps - here.steps <= QUICK_STEPS {
                 stride = (1.5 * stride).min(longest);

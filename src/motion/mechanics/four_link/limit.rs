@@ -31,15 +31,13 @@ pub enum LimitError {
     #[error("the arch cannot carry its own weight")]
     CannotStand,
     /// The ring is stable, but the static theorem does not confirm the best four-link mechanism. Its thrust line leaves the ring, or two of its
-    /// hinges merge into one section that would open at both edges.
+    /// hinges merge into one section that would open at both edges. The acceleration of this mechanism, in multiples of gravity, is an upper
+    /// bound of the true one.
     #[error(
         "the arch stands, but does not start to rock as a four-link mechanism: the best one moves at \
-         {acceleration_g:.4} g, and the thrust line does not confirm it; another mechanism governs, as in thick shallow arches"
+         {0:.4} g, and the thrust line does not confirm it; another mechanism governs, as in thick shallow arches"
     )]
-    OtherMechanism {
-        /// Acceleration of the best four-link mechanism, in multiples of gravity; an upper bound of the true one.
-        acceleration_g: f64,
-    },
+    OtherMechanism(f64),
     /// The ring is stable, and no push moves it as a four-link mechanism.
     #[error("the arch stands, but no horizontal push moves it as a four-link mechanism")]
     NoPush,
@@ -72,7 +70,7 @@ pub(crate) fn incipient_of(
     let (acceleration_g, mechanism) = least.ok_or(LimitError::NoPush)?;
     let thrust_line = ResultantLine::through_hinges(profile, &mechanism, push(acceleration_g));
     if !thrust_line.extremes(sites).is_admissible() {
-        return Err(LimitError::OtherMechanism { acceleration_g });
+        return Err(LimitError::OtherMechanism(acceleration_g));
     }
     Ok(Incipient {
         acceleration_g,

@@ -184,7 +184,7 @@ impl GivenBlocks {
         match error {
             RowError::Crossing(joint) => Some(joint + 1),
             RowError::Order { joint, .. } => Some(*joint),
-            RowError::Value { index, .. } => Some(*index),
+            RowError::Thickness(index, _) | RowError::Block(_, index, ..) => Some(*index),
             _ => None,
         }
     }

@@ -208,25 +208,15 @@ pub enum MasonryError {
     /// A number of the shape is out of range.
     #[error("{0}")]
     Shape(#[from] ArgumentError),
-    /// A number of a pier is out of range.
-    #[error("{side} pier: {error}", side = .side.name())]
-    Pier {
-        /// The side.
-        side: Sway,
-        /// The number that is out of range.
-        error: ArgumentError,
-    },
+    /// A number of the pier on this side is out of range.
+    #[error("{side} pier: {1}", side = .0.name())]
+    Pier(Sway, ArgumentError),
     /// A number of the fill is out of range.
     #[error("fill: {0}")]
     Fill(ArgumentError),
-    /// A number of a load is out of range.
-    #[error("load {number}: {error}", number = .index + 1)]
-    Load {
-        /// Index of the load, from 0.
-        index: usize,
-        /// The number that is out of range.
-        error: ArgumentError,
-    },
+    /// A number of the load of this index, from 0, is out of range.
+    #[error("load {number}: {1}", number = .0 + 1)]
+    Load(usize, ArgumentError),
     /// An outline of a block is not valid.
     #[error(transparent)]
     Outline(#[from] OutlineError),
@@ -269,7 +259,7 @@ impl Masonry {
         }
         for (index, load) in loads.iter().enumerate() {
             load.add_to(&mut extra, &arch)
-                .map_err(|error| MasonryError::Load { index, error })?;
+                .map_err(|error| MasonryError::Load(index, error))?;
         }
         let (blocks, outlines_m) = match given {
             Some(given) => (given.blocks(), given.outlines_m()),

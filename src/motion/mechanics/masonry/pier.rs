@@ -69,7 +69,7 @@ impl Courses {
         };
         let springing = springing.ok_or(RowError::Count(0))?;
         let courses = pier.courses(springing, side, material);
-        let courses = courses.map_err(|error| MasonryError::Pier { side, error })?;
+        let courses = courses.map_err(|error| MasonryError::Pier(side, error))?;
         let count = self.blocks.len() + courses.blocks.len();
         if count > MAX_BLOCKS {
             return Err(MasonryError::Count(count));
