@@ -85,14 +85,14 @@ pub use archrock_motion::internals;
 pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
-pub use dynamics::elastic_joints::{ElasticJoints, ElasticOptions};
+pub use dynamics::elastic_joints::ElasticJoints;
 pub use dynamics::free_hinges::{FreeHinges, RowOptions};
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
 pub use dynamics::history::{Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary};
 pub use dynamics::model::{
     Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
 };
-pub use dynamics::recording::{History, MEMORY_BYTES, MemoryError, Samples, Shape};
+pub use dynamics::recording::{History, MEMORY_BYTES, MemoryError, Samples};
 pub use dynamics::row::error::{RowModelError, RowMotionError};
 pub use dynamics::until::Until;
 pub use mechanics::arch::Arch;

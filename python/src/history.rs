@@ -192,11 +192,8 @@ impl History {
         let scene = run::scene(inner, &**model);
         let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
         let point = point.transpose()?;
-        let (shape, most_samples) = (
-            model.shape(),
-            inner.request_under(motion).most_samples(motion),
-        );
-        let recording = Recording::new(shape, most_samples, memory_bytes).map_err(too_large)?;
+        let needed_bytes = model.sample_bytes(motion, &inner.request_under(motion));
+        let recording = Recording::new(needed_bytes, memory_bytes).map_err(too_large)?;
         let mut watched = Watched {
             recording,
             signals: Signals::new(),

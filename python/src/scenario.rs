@@ -246,12 +246,8 @@ impl Scenario {
     /// Largest memory that the samples of its history take, in bytes.
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<u64> {
         self.moving()?;
-        let shape = self.model(py)?.shape();
-        Ok(shape.bytes(
-            self.inner
-                .request()
-                .most_samples(self.inner.ground_motion()),
-        ))
+        let (ground, request) = (self.inner.ground_motion(), self.inner.request());
+        Ok(self.model(py)?.sample_bytes(ground, &request))
     }
 
     /// The acceleration that starts it to either side, as `archrock limit --format json`.

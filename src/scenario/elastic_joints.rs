@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
-use crate::dynamics::elastic_joints::{ElasticJoints, ElasticOptions};
+use crate::dynamics::elastic_joints::ElasticJoints;
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
@@ -80,7 +80,7 @@ impl ElasticTable {
             damping_time_s: read_damping(table),
             compressive_strength_mpa: table.optional("compressive_strength_mpa", &STRENGTH_MPA),
             contact_points: table.optional("contact_points", &POINTS),
-            longest_step_s: table.optional("longest_step_s", &within(&ElasticOptions::STEP_S)),
+            longest_step_s: table.optional("longest_step_s", &within(&ElasticJoints::STEP_S)),
             supports: Movements::default(),
         };
         table.optional("contact", &one_of(&["continuous"], |name| name));
@@ -187,7 +187,7 @@ impl ElasticTable {
                 );
                 Err(table.wrong_in(TABLE, "longest_step_s", wrong))
             }
-            None if end_s > ElasticOptions::MOST_STEPS * step_s => {
+            None if end_s > ElasticJoints::MOST_STEPS * step_s => {
                 let [step, end] = [step_s, end_s].map(short);
                 let wrong = format!(
                     "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
@@ -207,12 +207,12 @@ impl ElasticTable {
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        let options = ElasticOptions {
-            longest_step_s: self.longest_step_s,
-        };
         ElasticJoints::new(row, self.properties(depth_m))
             .and_then(|model| model.on_supports(self.supports))
-            .and_then(|model| Ok(model.with_options(options)?))
+            .and_then(|model| match self.longest_step_s {
+                Some(step_s) => Ok(model.with_longest_step_s(step_s)?),
+                None => Ok(model),
+            })
             .map_err(ModelError::ElasticJoints)
     }
 }

@@ -36,7 +36,7 @@ impl Motion {
         }
     }
 
-    /// True if the model computes several motions faster together: see [`Model::is_faster_together`].
+    /// True if the model computes several motions faster together: see [`Model::is_elastic`].
     #[must_use]
     pub const fn is_faster_together(&self) -> bool {
         matches!(self, Self::ElasticJoints(_))

@@ -11,9 +11,9 @@ use archrock::mechanics::elastic_joint::{ElasticStructure, Place, RestError};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::{
-    Contact, ElasticJoints, ElasticOptions, ElasticProperties, GroundMotion, Job, Jobs,
-    JointStiffness, Materials, Model, Outcome, Pulse, Request, RowModelError, Sample,
-    SimulationError, Stiffness, Summary, Sway, Until,
+    Contact, ElasticJoints, ElasticProperties, GroundMotion, Job, Jobs, JointStiffness, Materials,
+    Model, Outcome, Pulse, Request, RowModelError, Sample, SimulationError, Stiffness, Summary,
+    Sway, Until,
 };
 use nalgebra::Vector2;
 
@@ -227,10 +227,7 @@ fn what_does_not_rest_says_why() {
         assert!(matches!(why(lemos(), wrong), RowModelError::Argument(_)));
     }
     let model = ElasticJoints::new(lemos(), arch(Contact::Continuous)).unwrap();
-    let unstable = ElasticOptions {
-        longest_step_s: Some(1e-3),
-    };
-    let model = model.with_options(unstable).unwrap();
+    let model = model.with_longest_step_s(1e-3).unwrap();
     let error = model
         .simulate(&GroundMotion::still(), &Request::default(), None)
         .unwrap_err();
@@ -442,10 +439,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
         let error = |part: f64| {
             let model = ElasticJoints::new(semicircle(9), properties).unwrap();
             let step_s = part * model.structure.stable_step_s();
-            let options = ElasticOptions {
-                longest_step_s: Some(step_s),
-            };
-            let model = model.with_options(options).unwrap();
+            let model = model.with_longest_step_s(step_s).unwrap();
             let ground = Pulse::OneSine
                 .lasting_s(0.3)
                 .inclined_m_s2(Vector2::new(2.5, 1.5));

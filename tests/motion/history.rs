@@ -571,11 +571,11 @@ fn the_memory_of_a_history_is_known_before_and_bounded() {
         let count = request.most_samples(scenario.ground_motion());
         assert!((1001..=1003).contains(&count) && history.samples.len() as u64 <= count);
         // Not all hinges that may be open are always open; the bound is too large by that.
-        let needed = model.shape().bytes(count);
+        let needed = model.sample_bytes(scenario.ground_motion(), &request);
         let taken = bytes(&history.samples) as u64;
         assert!(taken <= needed && needed < 2 * taken, "{taken} {needed}");
         let within = |bytes| {
-            let mut recording = Recording::new(model.shape(), count, bytes)?;
+            let mut recording = Recording::new(needed, bytes)?;
             let summary = model.simulate(scenario.ground_motion(), &request, Some(&mut recording));
             summary.unwrap();
             recording.finish()

@@ -15,8 +15,8 @@ use archrock::mechanics::capacity::TieOnTheWay;
 use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
 use archrock::studies::capacity::capacity;
 use archrock::{
-    Contact, ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion,
-    JointStiffness, Model, Pulse, Request, RowOptions, Stiffness,
+    Contact, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, JointStiffness, Model,
+    Pulse, Request, RowOptions, Stiffness,
 };
 use nalgebra::{Matrix2, Vector2};
 use roxmltree::Document;
@@ -156,10 +156,7 @@ fn a_tied_block_rests_and_vibrates_by_two_linear_equations() {
             assert!((rest.moved[0][2] - moved.y).abs() < 1e-11);
         }
         // A steady push that is small beside what opens the base: the frequency of what follows.
-        let options = ElasticOptions {
-            longest_step_s: Some(4e-5),
-        };
-        let model = model.with_options(options).unwrap();
+        let model = model.with_longest_step_s(4e-5).unwrap();
         let ground = pulse(Pulse::Rectangular, -1e-4, 3.0);
         let (_, samples) = run_sampled(&model, &ground, &sampled(2.0, 1e-3));
         let tilts: Vec<f64> = samples

@@ -14,8 +14,7 @@ use archrock::dynamics::model::SimulationError;
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::settling::{Movement, Movements};
 use archrock::{
-    ElasticJoints, ElasticOptions, ElasticProperties, FreeHinges, GroundMotion, Model, Pulse,
-    RowOptions, Until,
+    ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, Model, Pulse, RowOptions, Until,
 };
 use nalgebra::Vector2;
 use roxmltree::Document;
@@ -305,10 +304,7 @@ fn the_work_of_both_feet_balances_the_energy() {
     let both = shaking([2.0, 1.0], [1.5, 4.0]).with_right_foot(shaking([-2.0, 1.5], [1.0, 3.0]));
     let longest_s = 0.5 * model.longest_step_s();
     let defects = [1.0, 0.5, 0.25].map(|part| {
-        let options = ElasticOptions {
-            longest_step_s: Some(part * longest_s),
-        };
-        let model = model.clone().with_options(options).unwrap();
+        let model = model.clone().with_longest_step_s(part * longest_s).unwrap();
         let summary = model.simulate(&both, &sampled(1.0, 0.01), None).unwrap();
         let row = summary.row().unwrap();
         assert!(

@@ -6,4 +6,4 @@ mod model;
 mod motion;
 mod stepper;
 
-pub use model::{ElasticJoints, ElasticOptions};
+pub use model::ElasticJoints;

@@ -6,16 +6,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::ground::GroundMotion;
-use super::history::{Outcome, Summary};
+use super::history::{JointPressure, OpenHinge, Outcome, State, Summary, TieSample};
 pub use super::recorder::{Recorder, WithoutDemand};
-use super::recording::{History, MEMORY_BYTES, MemoryError, Recording, Shape};
+use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
 pub use super::request::{Initial, Request};
 use super::row::error::RowMotionError;
 use super::until::{Until, UntilSafe};
 use crate::argument::ArgumentError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
-use crate::mechanics::chain::Hinge;
+use crate::mechanics::chain::{Demand, Hinge};
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::MovingBody;
@@ -64,8 +64,14 @@ pub trait Model: Debug + Send + Sync {
         None
     }
 
-    /// Returns whether the model computes several motions in parallel, faster than one by one.
-    fn is_faster_together(&self) -> bool {
+    /// Returns whether joints slip.
+    fn slips(&self) -> bool {
+        false
+    }
+
+    /// Returns whether joints are elastic. Such a model samples the forces and stresses of its joints, has no impacts, and computes several
+    /// motions in parallel, faster than one by one.
+    fn is_elastic(&self) -> bool {
         false
     }
 
@@ -112,12 +118,26 @@ pub trait Model: Debug + Send + Sync {
         one_by_one(self, cases, jobs);
     }
 
-    /// Returns the size of its samples.
-    fn shape(&self) -> Shape {
-        Shape {
-            bodies: self.bodies().len(),
-            ..Shape::default()
-        }
+    /// Returns the memory of all samples of a motion in bytes, at most: as if all hinges were open all the time.
+    fn sample_bytes(&self, ground: &GroundMotion, request: &Request) -> u64 {
+        let bodies = self.bodies().len();
+        // Times, two accelerations, two displacements of feet, energies; number of events and index of the first hinge; two optional ratios.
+        let alone = 6 * size_of::<f64>()
+            + 2 * size_of::<usize>()
+            + 2 * size_of::<Option<f64>>()
+            + size_of::<State>()
+            + size_of::<Demand>();
+        let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
+        // There is at most one hinge more than bodies: a row between supports has one joint more than blocks.
+        let hinges = (bodies + 1) * size_of::<OpenHinge>();
+        let of_row = self.row().map_or(0, |row| {
+            let by_joint = size_of::<[f64; 2]>()
+                + usize::from(self.slips()) * size_of::<f64>()
+                + usize::from(self.is_elastic()) * size_of::<JointPressure>();
+            row.joints.len() * by_joint + row.ties.len() * size_of::<TieSample>()
+        });
+        let each = alone + bodies * by_body + hinges + of_row;
+        request.most_samples(ground).saturating_mul(each as u64)
     }
 
     /// Computes the motion with all samples and events, which may take up to [`MEMORY_BYTES`] of memory.
@@ -130,8 +150,7 @@ pub trait Model: Debug + Send + Sync {
         request: &Request,
     ) -> Result<History, SimulationError> {
         request.check(ground)?;
-        let most_samples = request.most_samples(ground);
-        let mut recording = Recording::new(self.shape(), most_samples, MEMORY_BYTES)?;
+        let mut recording = Recording::new(self.sample_bytes(ground, request), MEMORY_BYTES)?;
         let summary = self.simulate(ground, request, Some(&mut recording))?;
         let (samples, events) = recording.finish()?;
         Ok(History {

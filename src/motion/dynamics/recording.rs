@@ -164,43 +164,6 @@ fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
     Pose::new(rotation_rad, Vector2::new(x_m, y_m))
 }
 
-/// Size of the samples of a model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Shape {
-    /// Number of bodies.
-    pub bodies: usize,
-    /// Number of joints with gaps.
-    pub joints: usize,
-    /// Number of joints with offsets.
-    pub slipping: usize,
-    /// Number of joints with forces and stresses.
-    pub pressing: usize,
-    /// Number of ties.
-    pub ties: usize,
-}
-
-impl Shape {
-    /// Returns an upper bound of the memory of samples, in bytes, as if all hinges were always open.
-    #[must_use]
-    pub fn bytes(self, samples: u64) -> u64 {
-        // Times, two accelerations, two displacements of feet, energies; number of events and index of the first hinge; two optional ratios.
-        let alone = 6 * size_of::<f64>()
-            + 2 * size_of::<usize>()
-            + 2 * size_of::<Option<f64>>()
-            + size_of::<State>()
-            + size_of::<Demand>();
-        let by_body = 2 * size_of::<f64>() + size_of::<[f64; 3]>();
-        // There is at most one hinge more than bodies: a row between supports has one joint more than blocks.
-        let hinges = (self.bodies + 1) * size_of::<OpenHinge>();
-        let by_joint = self.joints * size_of::<[f64; 2]>()
-            + self.slipping * size_of::<f64>()
-            + self.pressing * size_of::<JointPressure>()
-            + self.ties * size_of::<TieSample>();
-        let each = alone + self.bodies * by_body + hinges + by_joint;
-        samples.saturating_mul(each as u64)
-    }
-}
-
 /// Default limit of the memory of a history, in bytes.
 pub const MEMORY_BYTES: u64 = 4_000_000_000;
 
@@ -238,16 +201,17 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Returns a recorder for at most `samples` samples. `allowed_bytes` is the limit of memory for samples and events.
+    /// Returns a recorder for samples of at most `needed_bytes` of memory, see [`Model::sample_bytes`](super::model::Model::sample_bytes).
+    /// `allowed_bytes` is the limit of memory for samples and events.
     ///
     /// # Errors
     /// If the samples alone may need more.
-    pub fn new(shape: Shape, samples: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
+    pub fn new(needed_bytes: u64, allowed_bytes: u64) -> Result<Self, MemoryError> {
         let recording = Self {
             samples: Samples::default(),
             events: Vec::new(),
             memory: MemoryError {
-                needed_bytes: shape.bytes(samples),
+                needed_bytes,
                 allowed_bytes,
             },
         };

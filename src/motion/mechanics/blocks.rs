@@ -20,7 +20,7 @@ use super::tie::{Tie, TieError};
 pub const MAX_BLOCKS: usize = 500;
 
 /// Gravity where none is given.
-const GRAVITY_M_S2: f64 = 9.81;
+pub(crate) const GRAVITY_M_S2: f64 = 9.81;
 
 /// The size of a row is at least this fraction of its extent.
 const LEAST_SIZE_RATIO: f64 = 1e-6;

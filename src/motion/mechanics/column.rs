@@ -21,7 +21,7 @@ use nalgebra::{Rotation2, Vector2};
 use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
-use super::blocks::{MAX_BLOCKS, Row, RowError};
+use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS, Row, RowError};
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use super::tie::{Tie, TieError};
 use crate::argument::{ArgumentError, allow, within};
@@ -51,6 +51,30 @@ impl Tilting {
             self.sin * cos - self.cos * sin,
             self.cos * cos + self.sin * sin,
         )
+    }
+
+    /// Where the line of thrust crosses each section normal to the axis, from the base up: the distance to the right over
+    /// the width, for the resultant of the load on the part above. `None` where the part below would have to pull.
+    ///
+    /// No part lies above the top section. There the value is the limit for a thin slice, to which the inertia of its
+    /// rotation contributes.
+    fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
+        let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
+        let crossing = |part: f64| {
+            let section = Vector2::new(0.0, part * height);
+            let above = height * (1.0 - part);
+            let centre = section + Vector2::new(0.0, 0.5 * above);
+            // Per mass, which cancels.
+            let resultant = load.resultant(&MassMoments {
+                mass: 1.0,
+                first: centre,
+                polar: (width * width + above * above) / 12.0 + centre.norm_squared(),
+            });
+            let normal = -resultant.linear.y;
+            let eccentricity_ratio = -resultant.about(section) / (normal * width);
+            (normal > 0.0).then_some(eccentricity_ratio)
+        };
+        thrust_section_parts().map(crossing).collect()
     }
 }
 
@@ -130,9 +154,12 @@ pub struct Column {
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
-    /// With the gravity that they were given with.
+    /// Its ties.
     #[serde(skip)]
-    ties: Option<(Vec<Tie>, f64)>,
+    pub ties: Vec<Tie>,
+    /// The gravity that its ties were given with, in m/s2.
+    #[serde(skip)]
+    gravity_m_s2: f64,
 }
 
 impl Column {
@@ -149,7 +176,8 @@ impl Column {
             drum_heights_m: None,
             top_width_m: None,
             pedestal: false,
-            ties: None,
+            ties: Vec::new(),
+            gravity_m_s2: GRAVITY_M_S2,
         })
     }
 
@@ -207,14 +235,11 @@ impl Column {
         for (index, tie) in ties.iter().enumerate() {
             tie.check(blocks, size_m).map_err(|error| (index, error))?;
         }
-        let ties = (!ties.is_empty()).then_some((ties, gravity_m_s2));
-        Ok(Self { ties, ..self })
-    }
-
-    /// Its ties.
-    #[must_use]
-    pub fn ties(&self) -> &[Tie] {
-        self.ties.as_ref().map_or(&[], |(ties, _)| ties)
+        Ok(Self {
+            ties,
+            gravity_m_s2,
+            ..self
+        })
     }
 
     /// Half the diagonal of its outline, in metres, as if it were as wide at the top as at the base.
@@ -237,11 +262,8 @@ impl Column {
             self.density_kg_m3,
         )?;
         let row = row.with_supports_that_extend([!self.pedestal, false]);
-        let Some((ties, gravity_m_s2)) = &self.ties else {
-            return Ok(row);
-        };
-        let tied = row.with_ties(ties.clone(), *gravity_m_s2);
-        Ok(tied.expect("they were checked with the same blocks"))
+        let tied = row.with_ties(self.ties.clone(), self.gravity_m_s2);
+        Ok(tied.expect("the ties were checked with the same blocks"))
     }
 
     /// Heights of its drums from the base up, in metres; its own height where it is one block.
@@ -255,7 +277,7 @@ impl Column {
     #[must_use]
     pub fn is_one_prism(&self) -> bool {
         let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
-        prism && self.ties.is_none()
+        prism && self.ties.is_empty()
     }
 
     /// Width at the top, in metres.
@@ -373,32 +395,6 @@ fn rate_ratio(sin: f64, cos: f64) -> f64 {
 /// Sections at which the line of thrust is reported, as fractions of the height.
 fn thrust_section_parts() -> impl Iterator<Item = f64> {
     (0..=20_u8).map(|section| f64::from(section) / 20.0)
-}
-
-impl Tilting {
-    /// Where the line of thrust crosses each section normal to the axis, from the base up: the distance to the right over
-    /// the width, for the resultant of the load on the part above. `None` where the part below would have to pull.
-    ///
-    /// No part lies above the top section. There the value is the limit for a thin slice, to which the inertia of its
-    /// rotation contributes.
-    fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
-        let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
-        let crossing = |part: f64| {
-            let section = Vector2::new(0.0, part * height);
-            let above = height * (1.0 - part);
-            let centre = section + Vector2::new(0.0, 0.5 * above);
-            // Per mass, which cancels.
-            let resultant = load.resultant(&MassMoments {
-                mass: 1.0,
-                first: centre,
-                polar: (width * width + above * above) / 12.0 + centre.norm_squared(),
-            });
-            let normal = -resultant.linear.y;
-            let eccentricity_ratio = -resultant.about(section) / (normal * width);
-            (normal > 0.0).then_some(eccentricity_ratio)
-        };
-        thrust_section_parts().map(crossing).collect()
-    }
 }
 
 /// Demand at the base for a ground reaction per unit weight and its moment about the middle of the base.

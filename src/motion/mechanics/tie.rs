@@ -167,6 +167,34 @@ impl Tie {
             ..*self
         }
     }
+
+    /// Its stretch and direction after these displacements of its ends, in m.
+    ///
+    /// The square of the length is taken less that at rest, so that small changes keep their digits.
+    #[inline(always)]
+    #[must_use]
+    pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
+        let apart = self.ends[1].at_m - self.ends[0].at_m;
+        let length_m = self.length_m();
+        let by = both!(i: moved_m[1][i] - moved_m[0][i]);
+        let now = both!(i: by[i] + R::of(apart[i]));
+        let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
+        let more = both!(i: by[i] * (by[i] + R::of(2.0 * apart[i])));
+        let lengthened = (more[0] + more[1]) / (length + R::of(length_m));
+        let per_length = R::of(1.0) / length;
+        TieSpan {
+            stretch_m: lengthened + R::of(self.prestress_n / self.stiffness_n_m),
+            along: both!(i: now[i] * per_length),
+        }
+    }
+
+    /// Its force in N, if it has yielded so much before, is now stretched so far beyond its unstressed length, and does not
+    /// break.
+    #[must_use]
+    pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
+        let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
+        elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
+    }
 }
 
 /// Square of the highest angular frequency, in (rad/s)2, that ties make of blocks that nothing else holds, at most.
@@ -197,28 +225,6 @@ pub struct TieSpan<R> {
     pub stretch_m: R,
     /// Unit vector from its first end to its second one.
     pub along: [R; 2],
-}
-
-impl Tie {
-    /// Its stretch and direction after these displacements of its ends, in m.
-    ///
-    /// The square of the length is taken less that at rest, so that small changes keep their digits.
-    #[inline(always)]
-    #[must_use]
-    pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
-        let apart = self.ends[1].at_m - self.ends[0].at_m;
-        let length_m = self.length_m();
-        let by = both!(i: moved_m[1][i] - moved_m[0][i]);
-        let now = both!(i: by[i] + R::of(apart[i]));
-        let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
-        let more = both!(i: by[i] * (by[i] + R::of(2.0 * apart[i])));
-        let lengthened = (more[0] + more[1]) / (length + R::of(length_m));
-        let per_length = R::of(1.0) / length;
-        TieSpan {
-            stretch_m: lengthened + R::of(self.prestress_n / self.stiffness_n_m),
-            along: both!(i: now[i] * per_length),
-        }
-    }
 }
 
 /// The line of a tie between blocks in any position.
@@ -309,16 +315,6 @@ pub(crate) fn pull_blocks<'a>(
         let rate = pull.about(*centre_m) / block.inertia_kg_m2;
         let gained = Twist::translation(pull.linear / block.mass_kg);
         *velocity = *velocity + gained + Twist::rotation(*centre_m, rate);
-    }
-}
-
-impl Tie {
-    /// Its force in N, if it has yielded so much before, is now stretched so far beyond its unstressed length, and does not
-    /// break.
-    #[must_use]
-    pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
-        let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
-        elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
     }
 }
 

@@ -98,7 +98,7 @@ impl Structure {
     pub fn ties(&self) -> &[Tie] {
         match self {
             Self::Arch(_) => &[],
-            Self::Column(column) => column.ties(),
+            Self::Column(column) => &column.ties,
             Self::Masonry(masonry) => &masonry.row.ties,
         }
     }
@@ -113,7 +113,7 @@ impl Structure {
     ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
         Ok(match self {
             Self::Arch(arch) => Box::new(FourLinks::of_arch(arch, law)?),
-            Self::Column(column) if !column.ties().is_empty() => return Err(FourLinkError::Ties),
+            Self::Column(column) if !column.ties.is_empty() => return Err(FourLinkError::Ties),
             Self::Column(column) => Box::new(RockingColumn::new(column, law)?),
             Self::Masonry(masonry) => Box::new(four_link_row(masonry, law)?),
         })

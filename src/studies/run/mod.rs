@@ -212,7 +212,7 @@ impl<'a> Run<'a> {
             POSES => self.options.poses,
             JOINTS => self.model.row().is_some(),
             // Elastic joints have no impacts.
-            IMPACTS => self.model.shape().pressing == 0,
+            IMPACTS => !self.model.is_elastic(),
             OVERLAY => false,
             _ => true,
         };

@@ -84,10 +84,11 @@ impl Timeline {
     /// Makes an empty timeline for a model of motion.
     pub(super) fn new(model: &dyn Model) -> Self {
         let bodies = model.bodies();
+        let slipping = model.row().filter(|_| model.slips());
         Self {
             rotations_rad: envelopes(bodies.len()),
             bodies,
-            slips_mm: envelopes(model.shape().slipping),
+            slips_mm: envelopes(slipping.map_or(0, |row| row.joints.len())),
             joints: model.row().map(OpenJoints::new),
             ..Self::default()
         }

@@ -70,7 +70,8 @@ impl Report {
     #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
-        let pressing = model.shape().pressing;
+        let pressed = model.row().filter(|_| model.is_elastic());
+        let pressing = pressed.map_or(0, |row| row.joints.len());
         // Rotation and displacement of each body, each section, each closed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);

@@ -113,10 +113,13 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
 /// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a joint is measured along the arc:
 /// thickness times relative rotation, plus the smaller gap.
 pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
-    let shape = model.shape();
-    let gaps = (0..shape.joints)
+    let (joints, ties) = model
+        .row()
+        .map_or((0, 0), |row| (row.joints.len(), row.ties.len()));
+    let joints_if = |reported: bool| 0..if reported { joints } else { 0 };
+    let gaps = (0..joints)
         .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
-    let pressures = (0..shape.pressing).flat_map(|joint| {
+    let pressures = joints_if(model.is_elastic()).flat_map(|joint| {
         let of_joint = [
             ("normal", "n"),
             ("shear", "n"),
@@ -127,9 +130,9 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
         ];
         of_joint.map(|(quantity, unit)| format!("{quantity}_{joint}_{unit}"))
     });
-    let ties = (1..=shape.ties)
+    let ties = (1..=ties)
         .flat_map(|tie| ["force_n", "elongation_m"].map(|what| format!("tie_{tie}_{what}")));
-    let slips = (0..shape.slipping).map(|joint| format!("slip_{joint}_m"));
+    let slips = joints_if(model.slips()).map(|joint| format!("slip_{joint}_m"));
     vec![
         column("time_s", |sample: &Sample| sample.time_s),
         numbers(gaps, |sample: &Sample| sample.gaps_m.as_flattened()),
@@ -178,7 +181,7 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
         column("mechanism", |event: &Event| event.mechanism),
     ];
     let energy = column("energy_j", |event: &Event| event.energy_j);
-    if model.shape().ties > 0 {
+    if model.row().is_some_and(|row| !row.ties.is_empty()) {
         all.push(column("tie", |event: &Event| event.tie.map(|tie| tie + 1)));
     }
     match model.as_mechanisms() {
@@ -277,7 +280,7 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
         of_impact("energy_after_j", |impact| impact.energy_after_j),
         of_impact("energy_taken_j", taken_j),
     ];
-    if model.shape().slipping > 0 {
+    if model.slips() {
         all.push(of_impact("friction_j", |impact| impact.friction_j));
     }
     all

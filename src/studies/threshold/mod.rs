@@ -210,7 +210,7 @@ pub fn thresholds(
     let sampled = models.len() * factors.len();
     let model_of = |index: usize| index / factors.len();
     let family = |index| {
-        let together = models[model_of(index)].1.is_faster_together();
+        let together = models[model_of(index)].1.is_elastic();
         together.then_some(model_of(index))
     };
     // A case without a family is computed alone.
@@ -321,7 +321,7 @@ impl Shaking<'_> {
     /// on both sides of it; if a history fails, returns that history.
     fn search(&self, (model, below, above): Change<'_>) -> Vec<Found> {
         let width = Width::Relative(EDGE_WIDTH);
-        let together = self.models[model].1.is_faster_together();
+        let together = self.models[model].1.is_elastic();
         let steps = if together { STEPS_AHEAD } else { 1 };
         let (mut low, mut high) = (below.factor, above.factor);
         let mut ahead: Vec<FactorSample> = Vec::new();

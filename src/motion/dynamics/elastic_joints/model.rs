@@ -10,7 +10,6 @@ use crate::dynamics::history::{Details, Summary};
 use crate::dynamics::model::{
     Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, check, one_by_one,
 };
-use crate::dynamics::recording::Shape;
 use crate::dynamics::row::clock::Settings;
 use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, balanced};
 use crate::dynamics::row::error::{RowModelError, RowMotionError};
@@ -19,7 +18,7 @@ use crate::dynamics::row::stepper;
 use crate::dynamics::row::task::Task;
 use crate::dynamics::until::Until;
 use crate::dynamics::variation::Variation;
-use crate::mechanics::blocks::Row;
+use crate::mechanics::blocks::{GRAVITY_M_S2, Row};
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Rest, Stiffness,
 };
@@ -36,7 +35,8 @@ pub struct ElasticJoints {
     rigid: RigidRow,
     /// Properties of the joints.
     pub properties: ElasticProperties,
-    options: ElasticOptions,
+    /// The longest step that was given, in seconds.
+    given_step_s: Option<f64>,
     /// Bodies and joints.
     pub structure: ElasticStructure,
     /// Gravity, and the equilibrium under it.
@@ -47,20 +47,6 @@ pub struct ElasticJoints {
     many_cases: bool,
     /// Factor on the longest step, for a repetition.
     steps_times: f64,
-}
-
-/// Numerical options of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ElasticOptions {
-    /// Longest step, in seconds (1e-9 to 1). `None` selects a quarter (undamped) to a half of the largest step that is proved to be stable.
-    pub longest_step_s: Option<f64>,
-}
-
-impl ElasticOptions {
-    /// Range of the longest step, in seconds; shorter steps need too much time.
-    pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
-    /// Maximum number of steps of a motion: some hours of computing.
-    pub const MOST_STEPS: f64 = 1e9;
 }
 
 /// Longest step over the largest stable one, without damping, and with the damping ratio [`DAMPED`]. Undamped vibration that opens and closes joints
@@ -78,10 +64,13 @@ const OTHER_STIFFNESS: f64 = 3.0;
 const SHORTER: f64 = 0.3;
 /// Remedy in the message on too many steps.
 const TOO_LONG: &str = "take a smaller damping time or stiffness of the joints, or free hinges, the limit of stiff joints";
-/// Gravity of the first equilibrium, in m/s2.
-const GRAVITY_M_S2: f64 = 9.81;
 
 impl ElasticJoints {
+    /// Range of the longest step, in seconds; shorter steps need too much time.
+    pub const STEP_S: RangeInclusive<f64> = 1e-9..=1.0;
+    /// Maximum number of steps of a motion: some hours of computing.
+    pub const MOST_STEPS: f64 = 1e9;
+
     /// Returns the model of a stable row with elastic joints.
     ///
     /// # Errors
@@ -102,7 +91,7 @@ impl ElasticJoints {
         Ok(Self {
             rigid,
             properties,
-            options: ElasticOptions::default(),
+            given_step_s: None,
             structure,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
@@ -121,20 +110,21 @@ impl ElasticJoints {
         }
         let structure = self.structure.on_supports(movements.displacements());
         let rigid = self.rigid.on_supports(&movements)?;
-        let options = self.options;
         let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
-        Ok(Self { options, ..settled })
+        Ok(Self {
+            given_step_s: self.given_step_s,
+            ..settled
+        })
     }
 
-    /// Returns this model with other options.
+    /// Returns this model with this longest step, in seconds. The default is a quarter (undamped) to a half of the largest step that is proved
+    /// to be stable.
     ///
     /// # Errors
-    /// When a step is out of range.
-    pub fn with_options(self, options: ElasticOptions) -> Result<Self, ArgumentError> {
-        if let Some(step_s) = options.longest_step_s {
-            within("longest_step_s", step_s, ElasticOptions::STEP_S)?;
-        }
-        Ok(Self { options, ..self })
+    /// When the step is outside 1e-9 to 1.
+    pub fn with_longest_step_s(mut self, step_s: f64) -> Result<Self, ArgumentError> {
+        self.given_step_s = Some(within("longest_step_s", step_s, Self::STEP_S)?);
+        Ok(self)
     }
 
     /// Returns this model for a study of many cases, with longer default steps. Few results change, and those that do differ between repetitions.
@@ -175,7 +165,7 @@ impl ElasticJoints {
         if self.many_cases {
             default_s *= MANY_CASES_STEP_RATIO;
         }
-        self.steps_times * self.options.longest_step_s.unwrap_or(default_s)
+        self.steps_times * self.given_step_s.unwrap_or(default_s)
     }
 
     /// Returns the default of the longest step, in seconds.
@@ -267,13 +257,13 @@ impl ElasticJoints {
         }
         let settings = Settings {
             longest_step_s: step_s,
-            may_halve: self.options.longest_step_s.is_none(),
+            may_halve: self.given_step_s.is_none(),
             shortest_step_s: step_s,
             end_s: request.end_s,
             output_step_s: Some(request.output_step_s),
             ..Settings::default()
         };
-        let settings = settings.within(ElasticOptions::MOST_STEPS, TOO_LONG)?;
+        let settings = settings.within(Self::MOST_STEPS, TOO_LONG)?;
         Ok(self.rigid.task(ground, request.gravity_m_s2, settings))
     }
 
@@ -381,9 +371,8 @@ impl Model for ElasticJoints {
         self.rigid.bodies()
     }
 
-    fn shape(&self) -> Shape {
-        let slips = self.properties.friction_coefficient.is_some();
-        self.rigid.shape(slips, true)
+    fn slips(&self) -> bool {
+        self.properties.friction_coefficient.is_some()
     }
 
     fn row(&self) -> Option<&Row> {
@@ -416,7 +405,7 @@ impl Model for ElasticJoints {
         }
     }
 
-    fn is_faster_together(&self) -> bool {
+    fn is_elastic(&self) -> bool {
         true
     }
 

@@ -58,21 +58,9 @@ struct Lane<'a> {
     /// Time up to which the kicks have been applied, and ground velocity at this time.
     kicked_s: f64,
     ground_m_s: Vector2<f64>,
-    /// Potential and elastic energy at rest, in J; `None` before the first observation.
-    rest_j: Option<f64>,
-    rest_sway_kg_m: f64,
-    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
-    opening_m: Vec<[f64; 2]>,
-    /// Largest energy of a row at rest, in J.
-    still_j: f64,
+    seen: Seen,
     /// Barrier with rigid joints in J, if known; otherwise that with elastic joints, once computed.
     barrier_j: Option<f64>,
-    /// Largest energy up to now, in J.
-    largest_j: f64,
-    /// True while the centre of gravity moves back to its position at rest.
-    returns: bool,
-    /// Time and energy of the first observation on quiet ground.
-    quiet: Option<(f64, f64)>,
     quiet_since_s: f64,
     /// Last time at which a joint was open beyond its state at rest.
     open_until_s: f64,
@@ -81,6 +69,24 @@ struct Lane<'a> {
     lost: Option<RowMotionError>,
     /// Events of ties since the last observation.
     happened: Vec<(usize, EventKind)>,
+}
+
+/// Observations of a motion up to now.
+#[derive(Default)]
+struct Seen {
+    /// Potential and elastic energy at rest, in J; `None` before the first observation.
+    rest_j: Option<f64>,
+    rest_sway_kg_m: f64,
+    /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
+    opening_m: Vec<[f64; 2]>,
+    /// Largest energy of a row at rest, in J.
+    still_j: f64,
+    /// Largest energy, in J.
+    largest_j: f64,
+    /// True while the centre of gravity moves back to its position at rest.
+    returns: bool,
+    /// Time and energy of the first observation on quiet ground.
+    quiet: Option<(f64, f64)>,
 }
 
 /// Group of parallel motions.
@@ -113,14 +119,8 @@ impl<'a> Lane<'a> {
             until_s: start_s,
             is_seen: false,
             kicked_s: start_s,
-            rest_j: None,
-            rest_sway_kg_m: 0.0,
-            opening_m: Vec::new(),
-            still_j: 0.0,
+            seen: Seen::default(),
             barrier_j: task.barrier_j,
-            largest_j: 0.0,
-            returns: false,
-            quiet: None,
             quiet_since_s: start_s,
             open_until_s: start_s,
             marks: Marks::new(task.settings, start_s),
@@ -182,6 +182,93 @@ impl<'a> Lane<'a> {
 
     fn is_due(&self) -> bool {
         self.ends_stride() || self.course.time >= self.until_s
+    }
+
+    /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
+    fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
+        if self.seen.opening_m.is_empty() {
+            let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
+            let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
+            let opens = |end: f64| (-end).max(0.0) + most_m;
+            self.seen.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
+            return false;
+        }
+        let mut joints = penetrations_m.zip(&self.seen.opening_m);
+        joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]))
+    }
+
+    /// Records open and slipped joints of the lane with this index. Returns the slip of the structure along its supports, in m to the right.
+    fn note_joints<const L: usize>(
+        &mut self,
+        index: usize,
+        motion: &Motion<'_, L>,
+        slides: &[Slide],
+    ) -> f64 {
+        if self.course.rocks != Some(true) || !self.course.moved {
+            let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
+            let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
+            let slips =
+                self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
+            if is_open {
+                self.open_until_s = self.course.time;
+            }
+            self.course.rocks = Some(self.course.rocks == Some(true) || is_open || slips);
+        }
+        let course = &mut self.course;
+        let mut slid = 0.0;
+        for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
+            let slipped_m = motion.memories[joint].slipped_m.0[index];
+            if let Some(sliding) = &mut course.of_row.sliding {
+                sliding.friction_j = course.elastic.friction_j;
+                sliding.offsets_m[joint] = slipped_m;
+                let largest = &mut sliding.largest_offsets_m[joint];
+                *largest = largest.max(slipped_m.abs());
+            }
+            // A block can slide off a support that ends at the joint: it has fallen after a slip by the length of the joint.
+            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
+            match slides.iter().find(on_support) {
+                Some(slide) => slid += slipped_m * slide.along_x,
+                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
+            }
+        }
+        slid
+    }
+
+    fn rests_since(&self) -> Option<f64> {
+        // A row may rock with no more energy than at rest.
+        let since_s = if self.course.moved {
+            self.quiet_since_s
+        } else {
+            self.open_until_s
+        };
+        let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
+        quiet.then_some(since_s)
+    }
+
+    /// Returns whether the outcome is certain at this energy. On quiet ground a structure gains no energy.
+    fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
+        // With feet that move apart, the barrier is unknown.
+        if self.feet.is_some() {
+            return false;
+        }
+        // A row beyond its barrier falls to that side, with any damping.
+        if self.until == Until::End || self.course.time < self.quiet_s || !self.seen.returns {
+            return false;
+        }
+        let (quiet_s, quiet_j) = *self.seen.quiet.get_or_insert((self.course.time, energy_j));
+        if self.until == Until::Settled {
+            // Assume that the energy decays `SLOWER` times more slowly from now on.
+            let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
+            let rests_s = SLOWER * (energy_j / self.seen.still_j).ln().max(0.0) / rate;
+            let rested_s = self.course.time + rests_s + self.course.rest_time_s();
+            let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
+            if !(self.course.moved && rests && energy_j < DECAYED * self.seen.largest_j) {
+                return false;
+            }
+        }
+        let gone_j = self.course.elastic.friction_j + self.course.elastic.crushed_j;
+        barrier_j()
+            .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
     }
 }
 
@@ -302,11 +389,11 @@ impl<'a, const L: usize> Group<'a, L> {
             )));
             return;
         }
-        let rest_j = *lane.rest_j.get_or_insert_with(|| {
-            lane.still_j = (REST_ENERGY_RATIO * course.energy_unit)
+        let rest_j = *lane.seen.rest_j.get_or_insert_with(|| {
+            lane.seen.still_j = (REST_ENERGY_RATIO * course.energy_unit)
                 .max(REST_STRAIN_RATIO * elastic)
                 .max(REST_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
-            lane.rest_sway_kg_m = of(seen.sway_kg_m);
+            lane.seen.rest_sway_kg_m = of(seen.sway_kg_m);
             stored
         });
         let spent = &seen.spent;
@@ -340,16 +427,16 @@ impl<'a, const L: usize> Group<'a, L> {
         // The middle between the feet moves half as far as the right foot.
         let slid = lane.note_joints(index, motion, slides) + 0.5 * lane.apart_m.x;
         let course = &mut lane.course;
-        let sway = of(seen.sway_kg_m) - lane.rest_sway_kg_m - self.row.mass_kg() * slid;
+        let sway = of(seen.sway_kg_m) - lane.seen.rest_sway_kg_m - self.row.mass_kg() * slid;
         let rotations = motion.turns(index).map(|(rotation, _)| rotation);
-        lane.returns = sway.abs() < course.sway.abs();
+        lane.seen.returns = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
         let far = OVERTURNED_RATIO * self.row.size_m;
         course.overturned |=
             of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + taken);
         course.note_height(height);
-        let vibrates = kinetic < lane.still_j && potential < lane.still_j;
+        let vibrates = kinetic < lane.seen.still_j && potential < lane.seen.still_j;
         // A row without motion that stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             lane.quiet_since_s = time;
@@ -359,7 +446,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);
         let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
         course.mind_balance(rigid_j, scale_j);
-        lane.largest_j = lane.largest_j.max(kinetic + potential);
+        lane.seen.largest_j = lane.seen.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
             lane.course.decide();
         }
@@ -387,95 +474,6 @@ impl<'a, const L: usize> Group<'a, L> {
         }
         lane.until_s = lane.marks.next_s();
         None
-    }
-}
-
-impl<'a> Lane<'a> {
-    /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
-    fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
-        if self.opening_m.is_empty() {
-            let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
-            let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
-            let opens = |end: f64| (-end).max(0.0) + most_m;
-            self.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
-            return false;
-        }
-        let mut joints = penetrations_m.zip(&self.opening_m);
-        joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]))
-    }
-
-    /// Records open and slipped joints of the lane with this index. Returns the slip of the structure along its supports, in m to the right.
-    fn note_joints<const L: usize>(
-        &mut self,
-        index: usize,
-        motion: &Motion<'_, L>,
-        slides: &[Slide],
-    ) -> f64 {
-        if self.course.rocks != Some(true) || !self.course.moved {
-            let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
-            let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
-            let slips =
-                self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
-            if is_open {
-                self.open_until_s = self.course.time;
-            }
-            self.course.rocks = Some(self.course.rocks == Some(true) || is_open || slips);
-        }
-        let course = &mut self.course;
-        let mut slid = 0.0;
-        for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
-            let slipped_m = motion.memories[joint].slipped_m.0[index];
-            if let Some(sliding) = &mut course.of_row.sliding {
-                sliding.friction_j = course.elastic.friction_j;
-                sliding.offsets_m[joint] = slipped_m;
-                let largest = &mut sliding.largest_offsets_m[joint];
-                *largest = largest.max(slipped_m.abs());
-            }
-            // A block can slide off a support that ends at the joint: it has fallen after a slip by the length of the joint.
-            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
-            match slides.iter().find(on_support) {
-                Some(slide) => slid += slipped_m * slide.along_x,
-                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
-            }
-        }
-        slid
-    }
-
-    fn rests_since(&self) -> Option<f64> {
-        // A row may rock with no more energy than at rest.
-        let since_s = if self.course.moved {
-            self.quiet_since_s
-        } else {
-            self.open_until_s
-        };
-        let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
-        quiet.then_some(since_s)
-    }
-
-    /// Returns whether the outcome is certain at this energy. On quiet ground a structure gains no energy.
-    fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
-        // With feet that move apart, the barrier is unknown.
-        if self.feet.is_some() {
-            return false;
-        }
-        // A row beyond its barrier falls to that side, with any damping.
-        if self.until == Until::End || self.course.time < self.quiet_s || !self.returns {
-            return false;
-        }
-        let (quiet_s, quiet_j) = *self.quiet.get_or_insert((self.course.time, energy_j));
-        if self.until == Until::Settled {
-            // Assume that the energy decays `SLOWER` times more slowly from now on.
-            let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
-            let rests_s = SLOWER * (energy_j / self.still_j).ln().max(0.0) / rate;
-            let rested_s = self.course.time + rests_s + self.course.rest_time_s();
-            let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
-            if !(self.course.moved && rests && energy_j < DECAYED * self.largest_j) {
-                return false;
-            }
-        }
-        let gone_j = self.course.elastic.friction_j + self.course.elastic.crushed_j;
-        barrier_j()
-            .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
     }
 }
 

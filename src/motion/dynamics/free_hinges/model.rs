@@ -10,7 +10,6 @@ use crate::argument::{ArgumentError, allow, within};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
-use crate::dynamics::recording::Shape;
 use crate::dynamics::row::clock::Settings;
 use crate::dynamics::row::course::balanced;
 use crate::dynamics::row::error::RowModelError;
@@ -235,9 +234,8 @@ impl Model for FreeHinges {
         self.rigid.bodies()
     }
 
-    fn shape(&self) -> Shape {
-        let slips = self.options.friction_coefficient.is_some();
-        self.rigid.shape(slips, false)
+    fn slips(&self) -> bool {
+        self.options.friction_coefficient.is_some()
     }
 
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {

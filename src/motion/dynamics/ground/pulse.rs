@@ -71,6 +71,18 @@ impl Pulse {
             Self::MavroeidisPapageorgiou | Self::Gabor | Self::WindowedSine
         )
     }
+
+    /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
+    #[must_use]
+    pub fn lasting_s(self, duration_s: f64) -> PulseShape {
+        PulseShape {
+            pulse: self,
+            duration_s,
+            start_s: 0.0,
+            train: WaveTrain::default(),
+            cut: OnceLock::new(),
+        }
+    }
 }
 
 /// A pulse of any amplitude: its kind, its duration, and when it starts.
@@ -103,20 +115,6 @@ struct CutTrain {
     ends_s: Vec<f64>,
     /// Largest magnitude of the shape.
     peak: f64,
-}
-
-impl Pulse {
-    /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
-    #[must_use]
-    pub fn lasting_s(self, duration_s: f64) -> PulseShape {
-        PulseShape {
-            pulse: self,
-            duration_s,
-            start_s: 0.0,
-            train: WaveTrain::default(),
-            cut: OnceLock::new(),
-        }
-    }
 }
 
 impl PulseShape {

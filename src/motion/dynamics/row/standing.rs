@@ -5,7 +5,6 @@ use super::error::RowModelError;
 use super::task::{Task, rise_to_overturn_m};
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::recording::Shape;
 use crate::dynamics::request::Initial;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
@@ -58,19 +57,6 @@ impl RigidRow {
     pub fn bodies(&self) -> Vec<String> {
         let blocks = 1..=self.row.blocks.len();
         blocks.map(|block| block.to_string()).collect()
-    }
-
-    /// Returns the size of the samples. `slips` and `presses` are true if offsets and pressures of joints are reported.
-    pub fn shape(&self, slips: bool, presses: bool) -> Shape {
-        let joints = self.row.joints.len();
-        let joints_if = |reported: bool| if reported { joints } else { 0 };
-        Shape {
-            bodies: self.row.blocks.len(),
-            joints,
-            slipping: joints_if(slips),
-            pressing: joints_if(presses),
-            ties: self.row.ties.len(),
-        }
     }
 
     /// Returns the push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.

@@ -231,33 +231,7 @@ impl ElasticStructure {
             }
         })
     }
-}
 
-/// Longest step of the supports, over the mean length of the joints.
-const LONGEST_SETTLING: f64 = 2e-2;
-/// Shortest step of the supports over the longest one; the structure falls if shorter steps would be required.
-const SHORTEST_SETTLING: f64 = 1e-5;
-/// Largest displacement of a body in a step, over the displacement of the supports. A larger one is a jump to another equilibrium.
-const FARTHEST: f64 = 50.0;
-/// Displacements below this fraction of the length of a joint are rounding errors.
-const NOT_FAR: f64 = 1e-9;
-/// Largest number of Newton steps after which the next step of the supports is longer.
-const QUICK_STEPS: usize = 8;
-
-/// First step of the overturning path, over the mean length of the joints; the longest step is ten times as long.
-const FIRST_STRIDE: f64 = 2e-3;
-/// Shortest step of the overturning path, over the first one. The path is lost if shorter steps would be required.
-const SHORTEST_STRIDE: f64 = 1e-6;
-/// Tolerance between the energy gained by the structure and the work of the push, relative to the work.
-const SAME_ENERGY: f64 = 0.03;
-/// Maximum number of steps of the overturning path.
-const MOST_STRIDES: usize = 1000;
-/// Number of softer structures for which a path is searched.
-const SOFTER: usize = 6;
-/// Largest unbalanced force over the weight on the overturning path.
-const BALANCED_ON_WAY: f64 = 1e-7;
-
-impl ElasticStructure {
     /// Returns a lower bound, in J, of the energy above that at rest that the structure needs to overturn without slip. `None` if the bound is not
     /// found, or if a joint crushes on the path. With slip, less energy may suffice.
     ///
@@ -346,6 +320,30 @@ impl ElasticStructure {
         None
     }
 }
+
+/// Longest step of the supports, over the mean length of the joints.
+const LONGEST_SETTLING: f64 = 2e-2;
+/// Shortest step of the supports over the longest one; the structure falls if shorter steps would be required.
+const SHORTEST_SETTLING: f64 = 1e-5;
+/// Largest displacement of a body in a step, over the displacement of the supports. A larger one is a jump to another equilibrium.
+const FARTHEST: f64 = 50.0;
+/// Displacements below this fraction of the length of a joint are rounding errors.
+const NOT_FAR: f64 = 1e-9;
+/// Largest number of Newton steps after which the next step of the supports is longer.
+const QUICK_STEPS: usize = 8;
+
+/// First step of the overturning path, over the mean length of the joints; the longest step is ten times as long.
+const FIRST_STRIDE: f64 = 2e-3;
+/// Shortest step of the overturning path, over the first one. The path is lost if shorter steps would be required.
+const SHORTEST_STRIDE: f64 = 1e-6;
+/// Tolerance between the energy gained by the structure and the work of the push, relative to the work.
+const SAME_ENERGY: f64 = 0.03;
+/// Maximum number of steps of the overturning path.
+const MOST_STRIDES: usize = 1000;
+/// Number of softer structures for which a path is searched.
+const SOFTER: usize = 6;
+/// Largest unbalanced force over the weight on the overturning path.
+const BALANCED_ON_WAY: f64 = 1e-7;
 
 /// Structure in equilibrium with a sideways push.
 struct Pushed {
