@@ -1,10 +1,12 @@
 //! A single elastic joint: forces from its energy, conservation of momenta, and stresses compared with sums over many points.
 
 use archrock::internals::lanes::Lanes;
+use archrock::mechanics::blocks::Block;
 use archrock::mechanics::elastic_joint::{
-    Body, ElasticJoint, ElasticStructure, Fibre, Link, Memory, Place,
+    ElasticJoint, ElasticStructure, Fibre, Link, Memory, Place,
 };
 use archrock::{Contact, ElasticProperties};
+use nalgebra::Vector2;
 
 const ALONG: [f64; 2] = [0.6, 0.8];
 const NORMAL_N_M: f64 = 3e9;
@@ -29,8 +31,9 @@ fn structure(contact: Contact, strength_m: Option<f64>, damping_time_s: f64) -> 
         compressive_strength_pa: strength_m.map(|_| 1e9),
         ..ElasticProperties::of_stiffness(1e9)
     };
-    let body = Body {
+    let body = Block {
         mass_kg: 1.0,
+        centre_m: Vector2::zeros(),
         inertia_kg_m2: 1.0,
     };
     ElasticStructure::new(vec![body; 2], vec![joint], &properties)

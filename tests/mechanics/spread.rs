@@ -577,7 +577,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
             blocks.support = way.map(|part| part * to);
             let stands = blocks.settle();
             let last = falls && step == steps;
-            assert_eq!((reached == None, stands), (!last, !last), "{what}: {to}");
+            assert_eq!((reached.is_none(), stands), (!last, !last), "{what}: {to}");
             if last {
                 break;
             }
@@ -979,7 +979,7 @@ fn an_arch_that_turns_as_a_whole_leans() {
         let reached = follower
             .move_supports(|part| movements * part, 0.0, 1.0)
             .unwrap();
-        assert_eq!(reached == None, stands, "{angle}");
+        assert_eq!(reached.is_none(), stands, "{angle}");
         if !stands {
             continue;
         }
@@ -1092,7 +1092,7 @@ fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
     let inwards_from = |out: [f64; 2]| {
         let mut follower = Follower::new(&row).unwrap();
         let reached = follower.move_supports(right(out), 0.0, 1.0).unwrap();
-        assert!(matches!(reached, None));
+        assert!(reached.is_none());
         let back = |s: f64| right([out[0] - s, out[1]])(1.0);
         match follower.move_supports(back, 0.0, 1.6).unwrap() {
             Some(at) => at,

@@ -393,9 +393,7 @@ fn too_many_events_are_an_error_that_says_what_to_change() {
     )
     .events[5]
         .time_s;
-    assert!(
-        matches!(error, EngineError::TooManyTransitions { time_s, max_transitions: 5 } if time_s == sixth_s)
-    );
+    assert!(matches!(error, EngineError::TooManyTransitions(time_s, 5) if time_s == sixth_s));
     let message = error.to_string();
     for word in [
         "5 transitions",

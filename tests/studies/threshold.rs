@@ -210,10 +210,7 @@ impl Model for Rule {
         _: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
         let overturns = (self.0)(ground.peaks_m_s2(f64::INFINITY).x);
-        let failure = EngineError::TooManyTransitions {
-            time_s: 1.0,
-            max_transitions: 1,
-        };
+        let failure = EngineError::TooManyTransitions(1.0, 1);
         let failure = || SimulationError::computation(failure);
         let outcome = match overturns.ok_or_else(failure)? {
             true => Outcome::Overturned(Sway::Left),

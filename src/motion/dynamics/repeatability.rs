@@ -113,16 +113,11 @@ pub struct RepeatedValue {
 impl RepeatedValue {
     /// Returns the range of a value of the motion itself and of its repetitions.
     fn of(own: f64, others: impl IntoIterator<Item = f64>) -> Self {
-        let range = Self {
-            own,
-            min: own,
-            max: own,
-        };
-        others.into_iter().fold(range, |range, other| Self {
-            min: range.min.min(other),
-            max: range.max.max(other),
-            ..range
-        })
+        let (mut min, mut max) = (own, own);
+        for other in others {
+            (min, max) = (min.min(other), max.max(other));
+        }
+        Self { own, min, max }
     }
 
     /// Returns whether the value is certain to [`SAME_PEAK_RATIO`].

@@ -48,13 +48,8 @@ impl Initial {
         let rotation_rad = self.rotation_rad;
         let allowed =
             format_args!("below {limit_rad:?}, the limit position of the first mechanism");
-        allow(
-            rotation_rad < limit_rad,
-            "rotation_rad",
-            rotation_rad,
-            allowed,
-        )
-        .map(drop)
+        let fits = rotation_rad < limit_rad;
+        allow(fits, "rotation_rad", rotation_rad, allowed).map(drop)
     }
 }
 

@@ -111,10 +111,7 @@ impl Joint {
     /// Corner on the given edge, in metres.
     #[must_use]
     pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
-        match edge {
-            Edge::Intrados => self.intrados_m,
-            Edge::Extrados => self.extrados_m,
-        }
+        [self.intrados_m, self.extrados_m][edge as usize]
     }
 
     /// The mirror image about the y axis.

@@ -21,12 +21,11 @@ pub(crate) fn solve(
     linear: &[f64],
     right: &[f64],
     equations: usize,
-    settings: DefaultSettings<f64>,
+    mut settings: DefaultSettings<f64>,
 ) -> DefaultSolution<f64> {
-    let cones = [
-        ZeroConeT(equations),
-        NonnegativeConeT(right.len() - equations),
-    ];
+    settings.verbose = false;
+    let others = right.len() - equations;
+    let cones = [ZeroConeT(equations), NonnegativeConeT(others)];
     let mut solver = DefaultSolver::new(quadratic, linear, matrix, right, &cones, settings)
         .expect("the dimensions fit and the settings are valid");
     solver.solve();

@@ -17,7 +17,5 @@ mod tie;
 pub use contact::{Contact, ElasticJoint, Fibre, Memory, Pressing, Rubbing};
 pub use kinematics::{Action, Gap, Link, Place};
 pub use statics::{Rest, RestError};
-pub use structure::{
-    Body, ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness,
-};
+pub use structure::{ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness};
 pub use tie::BoundTie;

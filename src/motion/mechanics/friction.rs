@@ -271,10 +271,7 @@ impl Program {
         let width = 1 + 3 * self.joints;
         let mut objective = vec![0.0; width];
         objective[0] = factor;
-        let settings = DefaultSettings {
-            verbose: false,
-            ..DefaultSettings::default()
-        };
+        let settings = DefaultSettings::default();
         let matrices = [&CscMatrix::zeros((width, width)), &self.matrix];
         let solution =
             cone_program::solve(matrices, &objective, &self.right, self.equations, settings);
@@ -293,11 +290,7 @@ impl Program {
             joint,
             opens: [moves(rates[0]), moves(rates[1])],
             // The friction that reaches its bound acts against the slip.
-            slips: match (moves(rates[2]), moves(rates[3])) {
-                (true, false) => Some(Edge::Intrados),
-                (false, true) => Some(Edge::Extrados),
-                _ => None,
-            },
+            slips: Edge::only([moves(rates[2]), moves(rates[3])]),
         });
         let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());
         Ok(Some((solution.x[0], yields.collect())))

@@ -212,15 +212,13 @@ impl<const D: usize> Dual<D> {
     /// The variable of this index.
     #[must_use]
     pub(crate) fn variable(value: f64, index: usize) -> Self {
-        let slope = array::from_fn(|other| if other == index { 1.0 } else { 0.0 });
-        Self { value, slope }
+        Self::with(value, |other| if other == index { 1.0 } else { 0.0 })
     }
 
     /// A function of this number, given by its value and derivative.
     #[must_use]
     pub(crate) fn chained(self, value: f64, derivative: f64) -> Self {
-        let slope = self.slope.map(|slope| slope * derivative);
-        Self { value, slope }
+        Self::with(value, |i| self.slope[i] * derivative)
     }
 
     fn with(value: f64, slope: impl FnMut(usize) -> f64) -> Self {
@@ -286,8 +284,7 @@ impl<const D: usize> Neg for Dual<D> {
 
 impl<const D: usize> Real for Dual<D> {
     fn of(value: f64) -> Self {
-        let slope = [0.0; D];
-        Self { value, slope }
+        Self::with(value, |_| 0.0)
     }
 
     fn sqrt(self) -> Self {

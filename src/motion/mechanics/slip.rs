@@ -132,10 +132,8 @@ impl Faces {
         let apart = corners[1] - corners[0];
         let offset_m = apart.dot(&along);
         let tangent = half.y / half.x;
-        let ends_m = [
-            0.5 * offset_m.abs(),
-            self.thickness_m * half.x - 0.5 * offset_m.abs(),
-        ];
+        let inset_m = 0.5 * offset_m.abs();
+        let ends_m = [inset_m, self.thickness_m * half.x - inset_m];
         let gap = |x: f64| apart.dot(&normal) + 2.0 * s * tangent * x;
         Contact {
             middle_m: (corners[0] + corners[1]) * 0.5,

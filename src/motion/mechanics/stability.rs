@@ -424,11 +424,7 @@ impl<'a> Trial<'a> {
         let opens = rates().filter(|(_, rates)| rates.iter().any(|rate| *rate > 1e-9 * most));
         let openings = opens.map(|(joint, rates)| Opening {
             joint,
-            hinge: match self.program.active[joint] {
-                [true, _] => Some(Edge::Intrados),
-                [_, true] => Some(Edge::Extrados),
-                _ => None,
-            },
+            hinge: Edge::only(self.program.active[joint]),
             rates,
         });
         openings.collect()

@@ -166,12 +166,8 @@ impl GroundSpectrum {
         let in_order = tc_star_s > 0.0 && t_c_s <= t_d_s;
         allow(in_order, "tc_star_s", tc_star_s, allowed)?;
         let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)";
-        allow(
-            (1.0..=2.0).contains(&s_t),
-            "topographic_factor",
-            s_t,
-            allowed,
-        )?;
+        let fits = (1.0..=2.0).contains(&s_t);
+        allow(fits, "topographic_factor", s_t, allowed)?;
         let s_s = soil.amplification(f0 * ag_g);
         Ok(Self {
             soil,

@@ -2,8 +2,9 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::mechanics::blocks::Block;
 use crate::mechanics::elastic_joint::{
-    Body, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
+    ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
 };
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 use crate::mechanics::tie::TieMemory;
@@ -164,7 +165,7 @@ impl<'a, const L: usize> Motion<'a, L> {
         let joints = structure.joints.len();
         let ties = structure.ties.iter();
         let ties = ties.map(|bound| TieMemory::undeformed(&bound.tie));
-        let inverse = |body: &Body| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
+        let inverse = |body: &Block| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
             gravity_m_s2,

@@ -504,10 +504,8 @@ impl<'a> LandingStepper<'a> {
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
         for (joint, _) in self.program.open_joints() {
-            self.turning[joint] = Some(match self.program.active[joint] {
-                [false, true] => Edge::Extrados,
-                _ => Edge::Intrados,
-            });
+            let edge = Edge::only(self.program.active[joint]);
+            self.turning[joint] = edge.or(Some(Edge::Intrados));
         }
     }
 

@@ -73,12 +73,8 @@ impl RowOptions {
             allow(friction.is_none(), "shortest_step_s", shortest_s, allowed)?;
             let longest_s = self.longest_step_s.unwrap_or(f64::INFINITY);
             let allowed = format_args!("at least the shortest step, {shortest_s:?}");
-            allow(
-                longest_s >= shortest_s,
-                "longest_step_s",
-                longest_s,
-                allowed,
-            )?;
+            let fits = longest_s >= shortest_s;
+            allow(fits, "longest_step_s", longest_s, allowed)?;
         }
         Ok(self)
     }

@@ -23,7 +23,7 @@ use crate::dynamics::history::{EventKind, Sample, Sliding};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO, SWAY_RATIO, Summit};
 use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, only};
+use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step};
 use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
@@ -413,7 +413,7 @@ impl<'a> SlidingStepper<'a> {
         for (joint, mode) in self.program.modes.iter().enumerate() {
             let stood = self.rest.touching[joint];
             if mode.pressed != stood && mode.pressed != [true; 2] {
-                let edge = only(mode.pressed);
+                let edge = Edge::only(mode.pressed);
                 opened.push(Hinge::Joint { joint, edge });
             }
             let gaps = &self.contacts[joint].coordinates_m;

@@ -12,7 +12,7 @@ use crate::dynamics::peak::Peak;
 pub const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
 
 /// Strength of a record.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Intensity {
     /// Peak ground acceleration, in m/s2.
     pub acceleration_m_s2: Peak,
@@ -34,12 +34,9 @@ impl Intensity {
     #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
         let mut intensity = Self {
-            acceleration_m_s2: Peak::default(),
-            velocity_m_s: Peak::default(),
-            displacement_m: Peak::default(),
-            arias_m_s: 0.0,
             significant_s: [samples.first().map_or(0.0, |sample| sample.0); 2],
             course: vec![[0.0; 3]; samples.len()],
+            ..Self::default()
         };
         for &(time_s, acceleration) in samples {
             intensity.acceleration_m_s2.note(acceleration.abs(), time_s);
@@ -102,15 +99,12 @@ struct Line {
 impl Line {
     fn between(from: (f64, f64), to: (f64, f64)) -> Self {
         let duration_s = to.0 - from.0;
+        let slope = (to.1 - from.1) / duration_s;
         Self {
             start_s: from.0,
             duration_s,
             acceleration: from.1,
-            slope: if duration_s > 0.0 {
-                (to.1 - from.1) / duration_s
-            } else {
-                0.0
-            },
+            slope: if duration_s > 0.0 { slope } else { 0.0 },
         }
     }
 

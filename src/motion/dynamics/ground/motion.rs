@@ -129,19 +129,15 @@ impl GroundMotion {
 
     /// Returns the motion under the right foot of a row; `None` if both feet move alike, or for a stack, which has only a left foot.
     pub(in crate::dynamics) fn right_foot_of(&self, row: &Row) -> Option<&Self> {
-        match row.supports {
-            Supports::Both => self.right_foot(),
-            Supports::Left => None,
-        }
+        let right = self.right_foot();
+        right.filter(|_| row.supports == Supports::Both)
     }
 
     /// Returns this motion for a structure whose feet move differently: the ground stops at its end, at any velocity.
     #[must_use]
-    pub fn stopping(self) -> Self {
-        Self {
-            stops: true,
-            ..self
-        }
+    pub fn stopping(mut self) -> Self {
+        self.stops = true;
+        self
     }
 
     /// Returns this motion with both feet delayed by a time in seconds, from 0 to 1e9.

@@ -136,17 +136,12 @@ pub enum EngineError {
     /// The integration failed.
     #[error(transparent)]
     Integrator(#[from] IntegratorError),
-    /// Too many events.
+    /// More events than allowed, by this time in seconds: with the largest number allowed.
     #[error(
-        "more than {max_transitions} transitions by {time_s:?} s: the motion chatters; raise rest_energy_ratio to bring \
+        "more than {1} transitions by {0:?} s: the motion chatters; raise rest_energy_ratio to bring \
          it to rest earlier, or shorten duration_s"
     )]
-    TooManyTransitions {
-        /// Time in seconds.
-        time_s: f64,
-        /// The largest number allowed.
-        max_transitions: usize,
-    },
+    TooManyTransitions(f64, usize),
 }
 
 /// Runs `system` from time zero until it is over, until the end in the settings, or until `observer` breaks.
@@ -189,10 +184,8 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
         let now = &mut finish.now;
         transitions += 1;
         if transitions > settings.max_transitions {
-            return Err(EngineError::TooManyTransitions {
-                time_s: now.time_s,
-                max_transitions: settings.max_transitions,
-            });
+            let most = settings.max_transitions;
+            return Err(EngineError::TooManyTransitions(now.time_s, most));
         }
         let (to, after) = system.reset(guard, now);
         let transition = Transition {

@@ -258,18 +258,9 @@ pub fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
-/// Returns the edge of the only corner, intrados or extrados, with the value true; `None` if none or both are true.
-pub fn only(corners: [bool; 2]) -> Option<Edge> {
-    match corners {
-        [true, false] => Some(Edge::Intrados),
-        [false, true] => Some(Edge::Extrados),
-        _ => None,
-    }
-}
-
 /// Returns the edge about which a joint with these gaps turns; `None` for parted and closed joints.
 fn turning(gaps: [f64; 2]) -> Option<Edge> {
-    only(gaps.map(|gap| gap == 0.0))
+    Edge::only(gaps.map(|gap| gap == 0.0))
 }
 
 /// Returns a joint with these gaps as a hinge; `None` if it is closed.

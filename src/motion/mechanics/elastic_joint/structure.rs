@@ -8,7 +8,7 @@ use super::contact::{Contact, ElasticJoint, Fibre, Law, Memory, Pressing, Rubbin
 use super::kinematics::{Action, Link, Place};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, allow, within};
-use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::blocks::{Block, Joint, Row, Supports};
 use crate::mechanics::lanes::{Lanes, Real};
 use crate::mechanics::tie::square_frequency;
 
@@ -143,22 +143,11 @@ impl ElasticProperties {
 }
 
 fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
-    let (normal_pa_m, range) = (
-        stiffness.normal_pa_m,
-        ElasticProperties::NORMAL_STIFFNESS_PA_M,
-    );
+    let range = ElasticProperties::NORMAL_STIFFNESS_PA_M;
+    let normal_pa_m = stiffness.normal_pa_m;
     within("normal_stiffness_pa_m", normal_pa_m, range)?;
     let shear_ratio = stiffness.shear_pa_m / normal_pa_m;
     within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
-}
-
-/// Rigid body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
-    /// Mass in kg.
-    pub mass_kg: f64,
-    /// Polar moment of inertia about the centre, in kg m2.
-    pub inertia_kg_m2: f64,
 }
 
 /// Rigid bodies with elastic joints between them. In a joint, the index after the last body is the left (or only) support; larger indices are the
@@ -166,7 +155,7 @@ pub struct Body {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElasticStructure {
     /// Rigid bodies.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<Block>,
     /// Displacements (m) and rotations (rad) of the supports.
     pub supports: [[f64; 3]; 2],
     /// Elastic joints.
@@ -190,11 +179,7 @@ impl ElasticStructure {
         properties.check()?;
         let blocks = &row.blocks;
         let ground = blocks.len();
-        let bodies = blocks.iter().map(|block| Body {
-            mass_kg: block.mass_kg,
-            inertia_kg_m2: block.inertia_kg_m2,
-        });
-        let joint = |(index, joint): (usize, &crate::mechanics::blocks::Joint)| {
+        let joint = |(index, joint): (usize, &Joint)| {
             let right = if index < ground { index } else { ground + 1 };
             let pair = [index.checked_sub(1).unwrap_or(ground), right];
             let middle_m = joint.middle_m();
@@ -233,14 +218,14 @@ impl ElasticStructure {
         Ok(Self {
             ties: ties.collect(),
             ties_square_frequency: square_frequency(&row.ties, blocks),
-            ..Self::new(bodies.collect(), joints?, properties)
+            ..Self::new(blocks.clone(), joints?, properties)
         })
     }
 
     /// Returns a structure of given bodies and joints, without ties.
     #[must_use]
     pub fn new(
-        bodies: Vec<Body>,
+        bodies: Vec<Block>,
         joints: Vec<ElasticJoint>,
         properties: &ElasticProperties,
     ) -> Self {

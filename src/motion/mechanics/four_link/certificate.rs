@@ -231,7 +231,6 @@ fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twi
 /// may leave only the reduced ones.
 fn settings() -> DefaultSettings<f64> {
     DefaultSettings {
-        verbose: false,
         tol_gap_abs: 1e-11,
         tol_gap_rel: 1e-11,
         tol_feas: 1e-10,

@@ -113,11 +113,8 @@ impl Chain {
                 restitution: 1.0,
                 impulse_line: None,
             };
-            return Some(ArchLink::new(
-                self.profile(index),
-                first,
-                ImpactLaw::from(self.law.model),
-            ));
+            let theory = ImpactLaw::from(self.law.model);
+            return Some(ArchLink::new(self.profile(index), first, theory));
         };
         let (profile, model) = (self.profile(index), self.law.model);
         let mechanism = |index: usize| Some(self.links[index].get()?.as_ref()?.mechanism);

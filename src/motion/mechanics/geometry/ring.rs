@@ -31,6 +31,16 @@ impl Edge {
             Self::Extrados => Self::Intrados,
         }
     }
+
+    /// Returns the only edge, intrados or extrados, with the value true; `None` if none or both are true.
+    #[must_use]
+    pub const fn only(edges: [bool; 2]) -> Option<Self> {
+        match edges {
+            [true, false] => Some(Self::Intrados),
+            [false, true] => Some(Self::Extrados),
+            _ => None,
+        }
+    }
 }
 
 /// Longest straight line with which an arc of an outline is drawn.

@@ -135,11 +135,7 @@ impl Pins {
         let open = placement.gaps_m.iter().enumerate();
         let mut hinges = Vec::with_capacity(3);
         for (joint, gaps) in open.filter(|(_, gaps)| **gaps != [0.0; 2]) {
-            let edge = match gaps {
-                [0.0, _] => Edge::Intrados,
-                [_, 0.0] => Edge::Extrados,
-                _ => return None,
-            };
+            let edge = Edge::only(gaps.map(|gap| gap == 0.0))?;
             hinges.push(Pin { joint, edge });
         }
         (hinges.len() >= 3).then(|| Self::new(row, hinges))

@@ -6,7 +6,7 @@ use super::{LandingStepper, Piece};
 use crate::dynamics::history::Sample;
 use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO};
 use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, only, open_hinge};
+use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, open_hinge};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -119,7 +119,7 @@ impl LandingStepper<'_> {
         opened.clear();
         for joint in 0..self.load.touching.len() {
             if self.closed[joint] != [true; 2] && self.placement.is_shut(joint) {
-                let edge = only(self.closed[joint].map(|closed| !closed));
+                let edge = Edge::only(self.closed[joint].map(|closed| !closed));
                 shut.push(Hinge::Joint { joint, edge });
             }
         }
@@ -129,7 +129,7 @@ impl LandingStepper<'_> {
             let opens = rates[0].max(rates[1]) > LEAST_OPENING * fastest;
             let was_shut = self.closed[joint] == [true; 2] || self.placement.is_shut(joint);
             if was_shut && opens {
-                let edge = only(self.program.active[joint]);
+                let edge = Edge::only(self.program.active[joint]);
                 opened.push(Hinge::Joint { joint, edge });
             }
         }

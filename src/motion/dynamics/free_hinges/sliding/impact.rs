@@ -3,9 +3,10 @@
 use nalgebra::Vector2;
 
 use super::{APART_RATIO, SlidingStepper};
-use crate::dynamics::row::stepper::{Stepper as _, only};
+use crate::dynamics::row::stepper::Stepper as _;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Along, Mode};
+use crate::mechanics::geometry::ring::Edge;
 
 /// Impact that began in the last step. Its energy is complete after the next step.
 pub(super) struct Landing {
@@ -58,7 +59,7 @@ impl SlidingStepper<'_> {
             let (before, after) = (before[joint].pressed, after[joint].pressed);
             // A parted joint that lands on one corner does not close.
             if *landed != [false; 2] && (after == [true; 2] || before != [false; 2]) {
-                let edge = only(before.map(|pressed| !pressed));
+                let edge = Edge::only(before.map(|pressed| !pressed));
                 shut.push(Hinge::Joint { joint, edge });
             }
         }
@@ -79,7 +80,7 @@ impl SlidingStepper<'_> {
                 .iter()
                 .any(|hinge| matches!(hinge, Hinge::Joint { joint: shuts, .. } if *shuts == joint));
             if (shuts || before.pressed == [true; 2]) && after.pressed != [true; 2] {
-                let edge = only(after.pressed);
+                let edge = Edge::only(after.pressed);
                 opened.push(Hinge::Joint { joint, edge });
             }
         }
