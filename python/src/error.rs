@@ -6,7 +6,7 @@ use std::fmt::Display;
 use archrock::MemoryError;
 use archrock::output::OutputError;
 use archrock::scenario::{ScenarioError, ScenarioErrors};
-use archrock::studies::part::PartError;
+use archrock::studies::part::{PartError, PartErrorKind};
 use archrock::studies::runner::RunnerError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
@@ -37,7 +37,6 @@ pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
 pub fn not_run(error: RunnerError) -> PyErr {
     match error {
         RunnerError::Part(error) => unusable(error),
-        RunnerError::Folder { .. } => PyOSError::new_err(error.to_string()),
         RunnerError::Cancelled(_) | RunnerError::Threads(_) => {
             PyRuntimeError::new_err(error.to_string())
         }
@@ -46,8 +45,8 @@ pub fn not_run(error: RunnerError) -> PyErr {
 
 /// Why a part cannot be used.
 pub fn unusable(error: PartError) -> PyErr {
-    match error {
-        PartError::Io { .. } => PyOSError::new_err(error.to_string()),
+    match error.kind {
+        PartErrorKind::System | PartErrorKind::Folder => PyOSError::new_err(error.message),
         _ => refused(error),
     }
 }

@@ -41,6 +41,6 @@ pub fn at_once(
     let style = Style::of(figure.get()?);
     let session = Session::new(Some(&input), Work::default(), style, options);
     let place = figure.printed(input.results(arguments.out.as_deref())?);
-    let place = place.locked_for(Writer::of(kind), &Origin::of(&scenario))?;
+    place.lock(Writer::of(kind), &Origin::of(&scenario), false)?;
     session.finish(kind, &scenario, &place, arguments.format)
 }

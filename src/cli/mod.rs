@@ -29,7 +29,7 @@ use archrock::dynamics::model::SimulationError;
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
 use archrock::studies::catalogue::{Options, VERIFY};
-use archrock::studies::results::Results;
+use archrock::studies::results::{Results, StudyError};
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
@@ -137,12 +137,7 @@ impl From<ScenarioErrors> for Failure {
 
 impl From<SimulationError> for Failure {
     fn from(error: SimulationError) -> Self {
-        match error {
-            SimulationError::Row(_) | SimulationError::Computation(_) => {
-                Self::Work(error.to_string())
-            }
-            _ => Self::Input(error.to_string()),
-        }
+        StudyError::from(error).into()
     }
 }
 

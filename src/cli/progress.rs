@@ -84,9 +84,7 @@ impl Display {
         {
             *said = Instant::now();
             say(&words(elapsed));
-        } else if let Some(patience) = self.patience
-            && elapsed >= patience
-        {
+        } else if self.patience.is_some_and(|patience| elapsed >= patience) {
             if self.bar.is_hidden() {
                 self.bar.set_draw_target(ProgressDrawTarget::stderr());
             }

@@ -1,10 +1,12 @@
 //! The scenario of a command: its file, the options that change it, and the folder of its results.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::env;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use archrock::output::print::PictureFormat;
 use archrock::output::{Batch, Folder, OutputError};
@@ -70,19 +72,21 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// Scenarios that differ only in their model of motion, and the folder for their results, if any. The name is that of the record of the
-/// suite that shakes them, or empty.
+/// Scenarios that differ only in their model of motion, and the folder for their results, if any. They are named after their file and the
+/// record of the suite that shakes them.
 pub type Task = (String, Vec<Scenario>, Option<Destination>);
 
 impl SuiteOption {
-    /// The scenarios, which differ in their model of motion, with the folder `root`. With `--suite`, once for each record of the suite,
-    /// shaken by it, with a folder inside `root`. All scenarios must pass the check.
+    /// The scenarios of a file, which differ in their model of motion, with the folder `root`. With `--suite`, once for each record of the
+    /// suite, shaken by it, with a folder inside `root`. All scenarios must pass the check.
     pub fn tasks(
         self,
+        input: &Input<'_>,
         models: Vec<Scenario>,
         root: Option<&Destination>,
         check: impl Fn(&Scenario) -> Result<(), String>,
     ) -> Result<Vec<Task>, Failure> {
+        let file = input.path.display().to_string();
         let mut tasks: Vec<Task> = Vec::new();
         let records = models.iter();
         let records = records.flat_map(|model| model.by_record().into_iter().enumerate());
@@ -90,19 +94,20 @@ impl SuiteOption {
             if let Some((_, scenarios, _)) = tasks.get_mut(index) {
                 scenarios.push(scenario);
             } else {
-                let place = root.map(|root| root.of_record(&record)).transpose()?;
-                tasks.push((record, vec![scenario], place));
+                let place = root.map(|root| root.of_record(&record)).transpose();
+                let place = place.map_err(|wrong| input.about(wrong))?;
+                tasks.push((format!("{file}, {record}"), vec![scenario], place));
             }
         }
         if !self.suite {
-            tasks.push((String::new(), models, root.cloned()));
+            tasks.push((file, models, root.cloned()));
         } else if tasks.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
-            return Err(message.into());
+            return Err(input.wrong(message));
         }
-        for (_, scenarios, _) in &tasks {
-            check(&scenarios[0])?;
-        }
+        let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
+        let checked = scenarios.try_for_each(check);
+        checked.map_err(|message| input.wrong(message))?;
         Ok(tasks)
     }
 }
@@ -185,7 +190,8 @@ impl Input<'_> {
         }
         let path = Path::new("results").join(self.stem());
         let origin = (!is_stdin(self.path)).then(|| origin(self.path));
-        Destination::checked(path, origin)
+        let place = Destination::of(&path);
+        Destination { origin, ..place }.checked()
     }
 }
 
@@ -205,8 +211,8 @@ pub struct Destination {
     origin: Option<String>,
     /// The format of pictures beside SVG.
     pictures: Option<PictureFormat>,
-    /// The command whose results go there, once the folder is locked.
-    locked: Option<(Batch, Writer)>,
+    /// The command whose results go there, once the folder is locked. Folders inside this one share the lock.
+    locked: Rc<OnceCell<(Batch, Writer)>>,
 }
 
 impl Destination {
@@ -219,47 +225,35 @@ impl Destination {
     }
 
     /// Locks the folder and everything below it for a command, before anything is written. The results of its last run are removed when
-    /// those of this run are published. Warns of results of other commands that come from another scenario.
-    pub fn locked_for(mut self, writer: Writer, origin: &Origin) -> Result<Self, Failure> {
-        let batch = Batch::lock(&self.path, true).map_err(elsewhere)?;
-        batch.replace(writer.last_run(&self.path));
-        super::warn(&writer.warnings(&self.path, origin));
-        self.locked = Some((batch, writer));
-        Ok(self)
+    /// those of this run are published. Warns of results of other commands that come from another scenario. Several parts of a study may be
+    /// computed in one folder at the same time.
+    pub fn lock(&self, writer: Writer, origin: &Origin, is_part: bool) -> Result<(), Failure> {
+        let batch = Batch::lock(&self.path, !is_part).map_err(elsewhere)?;
+        if !is_part {
+            batch.replace(writer.last_run(&self.path));
+            super::warn(&writer.warnings(&self.path, origin));
+        }
+        self.locked.get_or_init(|| (batch, writer));
+        Ok(())
     }
 
-    /// Locks the folder for a part of a study: other parts may be computed in it at the same time.
-    pub fn locked_for_a_part(mut self, writer: Writer) -> Result<Self, Failure> {
-        let batch = Batch::lock(&self.path, false).map_err(elsewhere)?;
-        self.locked = Some((batch, writer));
-        Ok(self)
-    }
-
-    /// Destination in a folder that this command has already locked.
-    pub fn locked_with(mut self, outer: &Self) -> Self {
-        self.locked.clone_from(&outer.locked);
-        self
+    fn locked(&self) -> &(Batch, Writer) {
+        self.locked.get().expect("the folder is locked")
     }
 
     /// The folder inside this one for the comparison of several models.
     pub fn of_models(&self) -> Self {
-        let writer = self.locked.as_ref().map(|(_, writer)| *writer);
-        self.within(writer.map_or_else(String::new, |writer| writer.models(&self.path)))
+        self.within(self.locked().1.models(&self.path))
     }
 
     /// Gives all results their names.
     pub fn publish(&self) -> Result<(), Failure> {
-        match &self.locked {
-            Some((batch, _)) => Ok(batch.publish()?),
-            None => Ok(()),
-        }
+        Ok(self.locked().0.publish()?)
     }
 
     /// Drops the results that are not published.
     pub fn abandon(&self) {
-        if let Some((batch, _)) = &self.locked {
-            batch.abandon();
-        }
+        self.locked().0.abandon();
     }
 
     /// The folder.
@@ -289,14 +283,13 @@ impl Destination {
         Self { pictures, ..self }
     }
 
-    /// Refuses two results in one place; each place comes with the name of its scenario.
-    pub fn check_distinct<'d>(
-        places: impl IntoIterator<Item = (&'d str, &'d Self)>,
-    ) -> Result<(), Failure> {
+    /// Refuses results of two tasks in one place.
+    pub fn check_distinct(tasks: &[Task]) -> Result<(), Failure> {
         let mut first = BTreeMap::new();
         let mut wrong = Vec::new();
-        for (name, Self { path, .. }) in places {
-            if let Some(other) = first.insert(path, name) {
+        for (name, _, place) in tasks {
+            let path = place.iter().map(|place| &place.path);
+            for (path, other) in path.filter_map(|path| Some((path, first.insert(path, name)?))) {
                 wrong.push(format!(
                     "{other} and {name} would both have their results in {}: rename one, or run them one by one with --out",
                     path.display()
@@ -309,29 +302,34 @@ impl Destination {
     /// The folder inside this one for the results of one record of the suite.
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
-        let place = Self::checked(self.path.join(name), self.origin.clone())?;
-        Ok(place.with_pictures(self.pictures).locked_with(self))
+        let origin = self.origin.clone();
+        Self {
+            origin,
+            ..self.within(name)
+        }
+        .checked()
     }
 
     /// The folder, unless it holds the results of another scenario file.
-    fn checked(path: PathBuf, origin: Option<String>) -> Result<Self, Failure> {
-        let known = path.join(ORIGIN);
+    fn checked(self) -> Result<Self, Failure> {
+        let known = self.path.join(ORIGIN);
         // Reading a pipe of that name would never end.
         if known.is_file()
-            && let (Some(ours), Ok(theirs)) = (&origin, fs::read_to_string(known))
+            && let (Some(ours), Ok(theirs)) = (&self.origin, fs::read_to_string(known))
             && ours != theirs.trim_end()
         {
-            let (path, theirs) = (path.display(), shown(theirs.trim_end()));
+            let (path, theirs) = (self.path.display(), shown(theirs.trim_end()));
             let remedy = "choose another folder with --out, or remove that one";
             return Err(format!("{path} holds the results of {theirs}: {remedy}").into());
         }
-        let mut place = Self::of(&path);
-        place.origin = origin;
-        Ok(place)
+        Ok(self)
     }
 
-    /// Prepares results in the folder, which are not published yet.
+    /// Prepares results in the folder, which are not published yet. A history has written its files already.
     pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
+        if results.files.is_empty() {
+            return Ok(());
+        }
         Ok(results.write(self.open(&results.names())?)?)
     }
 
@@ -347,24 +345,26 @@ impl Destination {
     }
 
     /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.
-    pub fn open(&self, names: &[&str]) -> Result<Folder, Failure> {
+    pub fn open(&self, names: &[&str]) -> Result<Folder, String> {
         let mut all = names.to_vec();
         if self.origin.is_some() {
             all.insert(0, ORIGIN);
         }
-        let folder = match &self.locked {
-            Some((batch, _)) => batch.folder(&self.path, &all),
-            None => Folder::open(&self.path, &all),
-        };
+        let (batch, writer) = self.locked();
+        let folder = batch.folder(&self.path, &all);
         let mut folder = folder.map_err(elsewhere)?;
+        // A killed run may have left others.
+        let others = writer.files.iter().filter(|name| !names.contains(name));
+        others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {
-            folder.write(ORIGIN, format!("{origin}\n"))?;
+            let written = folder.write(ORIGIN, format!("{origin}\n"));
+            written.map_err(elsewhere)?;
         }
         Ok(folder.with_pictures(self.pictures))
     }
 }
 
 /// Error for a folder that cannot be used.
-fn elsewhere(error: OutputError) -> Failure {
-    Failure::Input(format!("{error}; choose another folder with --out"))
+fn elsewhere(error: OutputError) -> String {
+    format!("{error}; choose another folder with --out")
 }

@@ -78,12 +78,11 @@ impl MapOption {
             ));
         }
         let factors = self.dimensionless.then(|| Style::dimensionless(scenario));
+        let factors = factors.transpose();
         Ok(Style {
             figure,
             by_peak,
-            factors: factors
-                .transpose()
-                .map_err(|wrong| format!("--dimensionless {wrong}"))?,
+            factors: factors.map_err(|wrong| format!("--dimensionless {wrong}"))?,
         })
     }
 
@@ -94,18 +93,18 @@ impl MapOption {
         scenario: Option<&Scenario>,
         figure: Figure,
     ) -> Result<Style, String> {
-        let is_given = self.color != Color::Outcome;
-        match scenario {
-            Some(scenario) if kind == catalogue::MAP => self.style(scenario, figure),
-            Some(_) if kind == catalogue::UNCERTAIN_MAP && is_given => Err(
+        let by_peak = self.color == Color::Peak;
+        let maps = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
+        match scenario.filter(|_| maps.contains(&kind)) {
+            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => Err(
                 "--color is about maps of outcomes, and these are parts of a map of probability"
                     .to_owned(),
             ),
-            Some(scenario) if kind == catalogue::UNCERTAIN_MAP => self.style(scenario, figure),
-            _ if self.dimensionless || is_given => {
+            Some(scenario) => self.style(scenario, figure),
+            None if self.dimensionless || by_peak => {
                 Err("--color and --dimensionless are for maps only".to_owned())
             }
-            _ => Ok(Style::of(figure)),
+            None => Ok(Style::of(figure)),
         }
     }
 }
@@ -143,17 +142,17 @@ fn compute(
     style: Style,
 ) -> Result<(), Failure> {
     let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
-    let place = study.work.lock(place, Writer::of(kinds[0]), &origin)?;
+    place.lock(Writer::of(kinds[0]), &origin, study.work.is_part())?;
     let mut session = study.session(input, style, Options::default());
     let several = scenarios.len() > 1;
     let mut all = Vec::new();
     for one in scenarios.chunks(1) {
         let place = place.of_model(&one[0], several);
-        let found = session.with_samples(kinds, one, &place)?;
+        let found = session.with_samples(kinds, one, Some(&place))?;
         all.extend(found.map(|found| (one[0].motion.words(), found)));
     }
-    let compared = session.compare(scenarios[0].title.as_deref(), &all, &place)?;
-    session.publish(&place)?;
+    let compared = session.compare(scenarios[0].title.as_deref(), &all, Some(&place))?;
+    session.publish(Some(&place))?;
     if let (false, [(_, results)]) = (several, &all[..]) {
         return show(results, &place, study.format);
     }
@@ -186,7 +185,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let (kind, results) = merged(parts, None, &mut style)?;
     let origin = Origin::of_summary(&results.summary).unwrap_or_default();
     let writer = Writer::merge(kind);
-    let place = place.locked_for(writer, &origin)?;
+    place.lock(writer, &origin, false)?;
     // Samples are merged into a folder inside that of their command.
     let around = place.path().parent();
     if let Some(around) = around.filter(|_| place.path().ends_with(kind.name)) {

@@ -1,5 +1,6 @@
 //! Computes a study of a scenario, and the study of its samples, for all commands.
 
+use std::io::{self, BufWriter};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -9,9 +10,8 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Done, Options, Rows, StudyKind, THRESHOLD};
-use archrock::studies::kept::{Origin, Writer};
-use archrock::studies::part::{PartError, PartFile, Shard};
+use archrock::studies::catalogue::{Done, Options, RUN, Rows, StudyKind, THRESHOLD};
+use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
@@ -19,7 +19,7 @@ use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use super::figure::FigureOption;
 use super::models::ModelsOption;
 use super::progress::{
-    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, pace, say, say_always,
+    Display, INTERRUPTED, INTERRUPTED_CODE, left, listen_to_interrupts, pace, say, say_always,
 };
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format, show};
@@ -58,21 +58,21 @@ pub struct Work {
 }
 
 impl From<PartError> for Failure {
-    fn from(error: PartError) -> Self {
-        let remedy = match &error {
-            PartError::Io { .. } => return Self::Work(error.to_string()),
-            PartError::Unusable { .. } => String::new(),
-            PartError::Other { .. } => {
-                ": remove it, or choose another folder with --out".to_owned()
+    fn from(PartError { kind, message }: PartError) -> Self {
+        Self::Input(match kind {
+            PartErrorKind::System => return Self::Work(message),
+            PartErrorKind::Folder => format!("{message}; choose another with --out"),
+            PartErrorKind::Unusable => message,
+            PartErrorKind::Other => {
+                format!("{message}: remove it, or choose another folder with --out")
             }
-            PartError::Interrupted { .. } => {
-                ": continue with --resume, or remove it to start over".to_owned()
+            PartErrorKind::Interrupted => {
+                format!("{message}: continue with --resume, or remove it to start over")
             }
-            PartError::Incomplete { shard, .. } => {
-                format!(": finish it with --shard {shard} --resume")
+            PartErrorKind::Incomplete(shard) => {
+                format!("{message}: finish it with --shard {shard} --resume")
             }
-        };
-        Self::Input(format!("{error}{remedy}"))
+        })
     }
 }
 
@@ -82,9 +82,6 @@ impl From<StudyError> for Failure {
             StudyError::Scenario(message) => Self::Input(message),
             StudyError::Read(error) => error.into(),
             StudyError::Part(error) | StudyError::Runner(RunnerError::Part(error)) => error.into(),
-            StudyError::Runner(error @ RunnerError::Folder { .. }) => {
-                Self::Input(format!("{error}; choose another with --out"))
-            }
             StudyError::Output(error) => error.into(),
             StudyError::Failed(_) | StudyError::Runner(_) => Self::Work(error.to_string()),
         }
@@ -95,19 +92,6 @@ impl Work {
     /// True if only a part is requested.
     pub const fn is_part(self) -> bool {
         self.shard.is_some()
-    }
-
-    /// Locks the folder for the results of a command, or for a part of them.
-    pub fn lock(
-        self,
-        place: Destination,
-        writer: Writer,
-        origin: &Origin,
-    ) -> Result<Destination, Failure> {
-        match self.is_part() {
-            true => place.locked_for_a_part(writer),
-            false => place.locked_for(writer, origin),
-        }
     }
 }
 
@@ -135,7 +119,7 @@ pub struct Session<'s> {
 }
 
 /// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
-pub const ITSELF: &str = "the scenario itself:\n";
+const ITSELF: &str = "the scenario itself:\n";
 
 impl<'s> Session<'s> {
     /// The studies of a command, none of which is computed yet.
@@ -154,35 +138,43 @@ impl<'s> Session<'s> {
         }
     }
 
-    /// Publishes the results in a folder.
-    pub fn publish(&mut self, place: &Destination) -> Result<(), Failure> {
-        place.publish()?;
+    /// Publishes the results in a folder, if there is one.
+    pub fn publish(&mut self, place: Option<&Destination>) -> Result<(), Failure> {
+        place.map_or(Ok(()), Destination::publish)?;
         let mut pending = self.pending.drain(..);
         Ok(pending.try_for_each(PartFile::remove)?)
     }
 
-    /// Computes a study in a folder, and prepares its results there, which are returned. Of a part, reports the file and returns
-    /// `None`.
+    /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
     pub fn compute(
         &mut self,
         kind: StudyKind,
         scenarios: &[Scenario],
-        place: &Destination,
+        place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
         let work = self.work;
-        let task = Task {
+        let shard = work.shard.unwrap_or(Shard::WHOLE);
+        let task = place.map(|place| Task {
             folder: place.path(),
-            shard: work.shard.unwrap_or(Shard::WHOLE),
+            shard,
             resume: work.resume,
-        };
+        });
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let mut shown = None;
         let mut watch = |progress: Progress| {
             let Progress { done, all } = progress;
             let (display, before) = shown.get_or_insert_with(|| {
-                listen_to_interrupts();
-                (Display::new(Duration::ZERO), done)
+                // The system ends a history at once.
+                if kind != RUN {
+                    listen_to_interrupts();
+                }
+                let patience = if kind == RUN {
+                    PATIENCE
+                } else {
+                    Duration::ZERO
+                };
+                (Display::new(patience), done)
             });
             // All finished rows are in the file and none is being written, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
@@ -190,14 +182,27 @@ impl<'s> Session<'s> {
                 say_always(&interrupted(kind, task, progress));
                 process::exit(INTERRUPTED_CODE);
             }
-            display.show(done as f64 / all.max(1) as f64, |elapsed| {
-                let new = done.saturating_sub(*before);
-                let pace = pace(new, all.saturating_sub(done), elapsed);
-                format!("{done} of {all} cases, {pace}")
+            let new = done.saturating_sub(*before);
+            let part = done as f64 / all.max(1) as f64;
+            display.show(part, |elapsed| match kind == RUN {
+                true => simulated(progress, elapsed),
+                false => {
+                    let pace = pace(new, all.saturating_sub(done), elapsed);
+                    format!("{done} of {all} cases, {pace}")
+                }
             });
             ControlFlow::Continue(())
         };
-        let rows = Rows::Compute(runner, Some(task), &mut watch);
+        let mut open = |scenario: &Scenario, names: &[&str]| {
+            let place = place.map(|place| place.of_model(scenario, scenarios.len() > 1));
+            place.map(|place| place.open(names)).transpose()
+        };
+        let rows = if kind == RUN {
+            let rotations = self.options.run.no_rotations.then(stdout);
+            Rows::Stream(&mut open, rotations, &mut watch)
+        } else {
+            Rows::Compute(runner, task, &mut watch)
+        };
         let done = kind.compute(scenarios, &self.options, self.style, rows);
         drop(shown);
         let done = done.map_err(|error| match (error, self.input) {
@@ -206,12 +211,12 @@ impl<'s> Session<'s> {
         });
         match done? {
             Done::Whole(results, part) => {
-                place.prepare(&results)?;
+                place.map_or(Ok(()), |place| place.prepare(&results))?;
                 self.pending.extend(part);
                 Ok(Some(results))
             }
             Done::Part { part, cases, all } => {
-                let (shard, path) = (task.shard, part.path().display());
+                let path = part.path().display();
                 say(&format!(
                     "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
                 ));
@@ -228,57 +233,37 @@ impl<'s> Session<'s> {
         place: &Destination,
         format: Format,
     ) -> Result<(), Failure> {
-        let found = self.compute(kind, slice::from_ref(scenario), place)?;
-        self.publish(place)?;
+        let found = self.compute(kind, slice::from_ref(scenario), Some(place))?;
+        self.publish(Some(place))?;
         found.map_or(Ok(()), |found| {
             say(&format!("results in {}", place.holds(&found)));
             show(&found, format)
         })
     }
 
-    /// Computes a study, and that of the samples of its scenarios. Of a part, only the samples are computed if there are any.
+    /// Computes a study of scenarios that differ in their models of motion, after the samples of those that have `[uncertain]`, whose results
+    /// are in folders of their own inside `place`. The words on the samples come first, then a comparison of the models. Of a part, only the
+    /// samples are computed if there are any; without a folder there are none.
     pub fn with_samples(
         &mut self,
         [own, samples]: [StudyKind; 2],
         scenarios: &[Scenario],
-        place: &Destination,
+        place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
+        let several = scenarios.len() > 1;
         let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
-        let mut found = match has_samples && self.work.is_part() {
-            true => None,
-            false => self.compute(own, scenarios, place)?,
-        };
-        let mut of_part = Results::default();
-        let results = found.as_mut().unwrap_or(&mut of_part);
-        self.add_samples(samples, scenarios, place, results)?;
-        Ok(found)
-    }
-
-    /// Whether only a part of the samples is requested; an error if a scenario has no samples.
-    pub fn is_part(&self, scenarios: &[Scenario]) -> Result<bool, Failure> {
-        if self.work.is_part() && scenarios.iter().any(|one| one.uncertain.is_none()) {
+        if self.work.is_part() && !has_samples && WITHOUT_PARTS.contains(&own) {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
         }
-        Ok(self.work.is_part())
-    }
-
-    /// Computes the samples of scenarios that differ in their models of motion and have `[uncertain]`. Prepares their results in folders
-    /// of their own inside `place`, and adds them to `results`, of which their words come first. Returns the results of each model.
-    pub fn add_samples(
-        &mut self,
-        kind: StudyKind,
-        scenarios: &[Scenario],
-        place: &Destination,
-        results: &mut Results,
-    ) -> Result<Vec<(&'static str, Results)>, Failure> {
-        let several = scenarios.len() > 1;
         let (mut words, mut of_models) = (String::new(), Vec::new());
-        for scenario in scenarios.iter().filter(|one| one.uncertain.is_some()) {
-            let (name, model) = (scenario.motion.hinges().name(), scenario.motion.words());
-            let place = place.of_model(scenario, several).within(kind.name);
-            let Some(found) = self.compute(kind, slice::from_ref(scenario), &place)? else {
+        let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
+        for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
+            let model = scenario.motion.words();
+            let place = place.of_model(scenario, several).within(samples.name);
+            let scenario = slice::from_ref(scenario);
+            let Some(found) = self.compute(samples, scenario, Some(&place))? else {
                 continue;
             };
             if several {
@@ -286,17 +271,42 @@ impl<'s> Session<'s> {
             }
             let (found_words, place) = (&found.words, place.holds(&found));
             words += &format!("  {found_words}\n  results in {place}\n");
-            let summary = &mut results.summary;
-            let summary = if several { &mut summary[name] } else { summary };
-            summary["uncertain"] = found.summary.clone();
             of_models.push((model, found));
         }
+        let reports = of_models.iter().map(|(_, found)| found.words.clone());
+        self.options.run.samples = reports.collect();
+        if self.work.is_part() && has_samples {
+            return Ok(None);
+        }
+        let Some(mut results) = self.compute(own, scenarios, place)? else {
+            return Ok(None);
+        };
+        let summary = &mut results.summary;
+        for (scenario, (_, found)) in scenarios.iter().zip(&of_models) {
+            let name = scenario.motion.hinges().name();
+            let summary = if several {
+                &mut summary[name]
+            } else {
+                &mut *summary
+            };
+            summary["uncertain"] = found.summary.clone();
+        }
+        let title = scenarios[0].title.as_deref();
+        if own == RUN
+            && let Some(compared) = self.compare(title, &of_models, place)?
+        {
+            words += &format!("{}\n", compared.words);
+            summary["peaks"] = compared.summary;
+        }
         if !words.is_empty() {
-            let is_indented = results.words.starts_with(' ') || results.words.is_empty();
-            let indent = if is_indented { "" } else { "  " };
+            let indent = if results.words.starts_with(' ') {
+                ""
+            } else {
+                "  "
+            };
             results.words.insert_str(0, &(words + ITSELF + indent));
         }
-        Ok(of_models)
+        Ok(Some(results))
     }
 
     /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
@@ -304,13 +314,13 @@ impl<'s> Session<'s> {
         &self,
         title: Option<&str>,
         models: &[(&str, Results)],
-        place: &Destination,
+        place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
-        if models.len() < 2 {
-            return Ok(None);
-        }
         let models = models.iter().map(|(name, found)| (*name, &found.peaks[..]));
         let models: Vec<(&str, &[f64])> = models.collect();
+        let (2.., Some(place)) = (models.len(), place) else {
+            return Ok(None);
+        };
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peaks::results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
@@ -319,14 +329,37 @@ impl<'s> Session<'s> {
     }
 }
 
+/// A shorter history shows no progress.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Studies whose rows are not kept in a file.
+const WITHOUT_PARTS: [StudyKind; 2] = [RUN, THRESHOLD];
+
 /// The message when Ctrl-C ends a computation.
-fn interrupted(kind: StudyKind, task: Task<'_>, Progress { done, all }: Progress) -> String {
-    let file = task.folder.join(task.shard.file_name(kind.name));
-    if file.exists() {
-        format!("interrupted: {done} of {all} cases are done; continue with --resume")
-    } else if kind == THRESHOLD {
-        "interrupted".to_owned()
-    } else {
-        format!("interrupted; {} was removed meanwhile", file.display())
+fn interrupted(
+    kind: StudyKind,
+    task: Option<Task<'_>>,
+    Progress { done, all }: Progress,
+) -> String {
+    let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
+    match file {
+        _ if WITHOUT_PARTS.contains(&kind) => "interrupted".to_owned(),
+        Some(file) if !file.exists() => {
+            format!("interrupted; {} was removed meanwhile", file.display())
+        }
+        _ => format!("interrupted: {done} of {all} cases are done; continue with --resume"),
     }
+}
+
+/// The progress of a history, in milliseconds.
+fn simulated(Progress { done, all }: Progress, elapsed: Duration) -> String {
+    if done == all {
+        return "repeating the history with other steps".to_owned();
+    }
+    let [time_s, end_s] = [done, all].map(|time| time as f64 / 1e3);
+    let left = left(time_s / end_s, elapsed);
+    format!("{time_s:.2} of {end_s} s simulated, {left} left")
+}
+
+fn stdout() -> Box<dyn io::Write> {
+    Box::new(BufWriter::new(io::stdout().lock()))
 }

@@ -1,8 +1,8 @@
 //! The command `threshold`.
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{self, Options};
-use archrock::studies::kept::{ALONG, Origin, THRESHOLD};
+use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
+use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::results::Style;
 use archrock::studies::threshold::along::{AlongOptions, KeyRange};
 use archrock::studies::threshold::{Factors, check};
@@ -62,28 +62,22 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     let models = study.models.read(&input)?;
     let origin = Origin::of(&models[0]);
     let root = study.place(&input)?;
-    let tasks = arguments.suite.tasks(models, Some(&root), check);
-    let tasks = tasks.map_err(|failure| input.about(failure))?;
-    let places = tasks
-        .iter()
-        .filter_map(|(name, _, place)| Some((&**name, place.as_ref()?)));
-    Destination::check_distinct(places)?;
+    let tasks = arguments.suite.tasks(&input, models, Some(&root), check)?;
+    Destination::check_distinct(&tasks)?;
     let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         say(ignored);
     }
     let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    let root = study.work.lock(root, THRESHOLD, &origin)?;
+    root.lock(Writer::of(THRESHOLD), &origin, study.work.is_part())?;
     let mut all = Vec::new();
     for (_, scenarios, place) in &tasks {
         super::warn(&scenarios[0].unlikely());
-        session.is_part(scenarios)?;
-        let place = place.as_ref().unwrap_or(&root).clone().locked_with(&root);
-        let kinds = [catalogue::THRESHOLD, catalogue::UNCERTAIN_THRESHOLD];
-        let found = session.with_samples(kinds, scenarios, &place)?;
-        session.publish(&place)?;
-        if let Some(found) = &found {
+        let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
+        let found = session.with_samples(kinds, scenarios, place.as_ref())?;
+        session.publish(place.as_ref())?;
+        if let (Some(found), Some(place)) = (&found, place) {
             say(&format!("results in {}", place.holds(found)));
         }
         all.push(found.unwrap_or_default());
@@ -109,8 +103,7 @@ fn thresholds_along(
         return Err(input.wrong(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let place = study
-        .work
-        .lock(study.place(input)?, ALONG, &Origin::of(&scenario))?;
-    session.finish(catalogue::THRESHOLD_ALONG, &scenario, &place, study.format)
+    let (place, writer) = (study.place(input)?, Writer::of(THRESHOLD_ALONG));
+    place.lock(writer, &Origin::of(&scenario), study.work.is_part())?;
+    session.finish(THRESHOLD_ALONG, &scenario, &place, study.format)
 }

@@ -142,7 +142,7 @@ impl Batch {
             seals.extend(folder.pop());
             files.extend(folder);
         }
-        // Subfolders are sealed before the folder around them, which was prepared before them.
+        // The comparison of several models is prepared last and sealed first: it marks their folders as those of one run.
         for (path, file) in files.into_iter().chain(seals.into_iter().rev()) {
             let persisted = file.persist(&path);
             persisted.map_err(|error| failed(&path)(error.error))?;

@@ -1,6 +1,5 @@
 //! The list of all studies of a scenario. Each can be computed at once; those of many cases also in parts, which are merged.
 
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use nalgebra::Vector2;
@@ -15,7 +14,8 @@ use super::ensemble::records::Capacities;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::results::{Reported, Results, StudyError, Style};
-use super::runner::{Progress, Runner, Task};
+use super::run::{self, Open, Rotations, RunOptions};
+use super::runner::{Runner, Task, Watch};
 use super::spread::{self, Way};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
@@ -36,10 +36,10 @@ pub struct Options {
     /// The movements of a springing that `spread` follows.
     #[serde(skip)]
     pub ways: Vec<Way>,
+    /// The files and pictures of a run.
+    #[serde(skip)]
+    pub run: RunOptions,
 }
-
-/// Receives the progress of a study; the work stops when it returns a break.
-pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
 
 /// The source of the rows of a study.
 pub enum Rows<'w> {
@@ -47,6 +47,8 @@ pub enum Rows<'w> {
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
+    /// There is one row, a history, whose files are written while it is computed.
+    Stream(Open<'w>, Rotations<'w>, Watch<'w>),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -89,13 +91,25 @@ impl PartialEq for StudyKind {
 
 impl Eq for StudyKind {}
 
+/// The history of a scenario, with one or several models of motion.
+pub const RUN: StudyKind = StudyKind {
+    name: "run",
+    files: &run::FILES,
+    run: |scenarios, options, style, rows| {
+        let Rows::Stream(open, rotations, watch) = rows else {
+            return Err(StudyError::scenario("a run has no parts"));
+        };
+        let (options, figure) = (&options.run, style.figure);
+        run::results(scenarios, options, figure, open, rotations, watch).map(whole)
+    },
+};
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
-    run(OverturningMap::of(&scenarios[0]), style, rows)
+    computed(OverturningMap::of(&scenarios[0]), style, rows)
 });
 /// The records that overturn the structure.
 pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows| {
-    run(RecordSuite::of(&scenarios[0]), style, rows)
+    computed(RecordSuite::of(&scenarios[0]), style, rows)
 });
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
 pub const THRESHOLD: StudyKind = StudyKind {
@@ -115,7 +129,7 @@ pub const THRESHOLD_ALONG: StudyKind =
         let along =
             along.ok_or("a threshold along a range needs its key and its values".to_owned());
         let study = along.and_then(|along| Along::of(&scenarios[0], along));
-        run(study, style, rows)
+        computed(study, style, rows)
     });
 /// The capacity curves of the first mechanism.
 pub const CAPACITY: StudyKind = StudyKind {
@@ -157,24 +171,24 @@ pub const VERIFY: StudyKind = StudyKind {
 pub const UNCERTAIN: StudyKind =
     StudyKind::of::<Ensemble<'_, Histories>>(|scenarios, _, style, rows| {
         let question = Histories::of(&scenarios[0]);
-        run(Ensemble::new(&scenarios[0], question), style, rows)
+        computed(Ensemble::new(&scenarios[0], question), style, rows)
     });
 /// The factor from which samples of the uncertain numbers overturn.
 pub const UNCERTAIN_THRESHOLD: StudyKind =
     StudyKind::of::<Ensemble<'_, FirstEdges>>(|scenarios, options, style, rows| {
         let question = FirstEdges::of(&scenarios[0], options.factors);
-        run(Ensemble::new(&scenarios[0], question), style, rows)
+        computed(Ensemble::new(&scenarios[0], question), style, rows)
     });
 /// The records that overturn samples of the uncertain numbers.
 pub const UNCERTAIN_SUITE: StudyKind =
     StudyKind::of::<Ensemble<'_, Capacities>>(|scenarios, _, style, rows| {
         let question = Capacities::of(&scenarios[0]);
-        run(Ensemble::new(&scenarios[0], question), style, rows)
+        computed(Ensemble::new(&scenarios[0], question), style, rows)
     });
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind =
     StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows| {
-        run(CellsOfSamples::of(&scenarios[0]), style, rows)
+        computed(CellsOfSamples::of(&scenarios[0]), style, rows)
     });
 
 const fn whole(results: Results) -> Done {
@@ -183,7 +197,8 @@ const fn whole(results: Results) -> Done {
 
 impl StudyKind {
     /// All studies.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
+        RUN,
         MAP,
         SUITE,
         THRESHOLD,
@@ -227,13 +242,16 @@ impl StudyKind {
 }
 
 /// Finds the rows of a study, and turns them into results if they are those of all cases.
-fn run<S: Reported>(
+fn computed<S: Reported>(
     study: Result<S, String>,
     style: Style,
     rows: Rows<'_>,
 ) -> Result<Done, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
+        Rows::Stream(..) => {
+            return Err(StudyError::scenario("a study of many cases is no history"));
+        }
         Rows::Merge(parts) => (part::merge(parts)?.1, None),
         Rows::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
         Rows::Compute(runner, Some(task), watch) => match runner.rows_in(&study, task, watch)? {

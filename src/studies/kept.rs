@@ -20,7 +20,7 @@ pub struct Writer {
     /// The name of the command.
     pub name: &'static str,
     /// All files that the command may write in one folder, the seal last. The first JSON file contains the scenario.
-    files: &'static [&'static str],
+    pub files: &'static [&'static str],
     /// The study of the samples of `[uncertain]`. Its results are in a subfolder; `None` if the command has no such study.
     samples: Option<StudyKind>,
     /// The file whose presence shows that the results of several models of motion are in subfolders; `None` if the command has no such
@@ -31,21 +31,21 @@ pub struct Writer {
 }
 
 /// `archrock run`.
-pub const RUN: Writer = Writer {
+const RUN: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN),
     of_models: Some(run::OVERLAY),
     of_records: true,
-    ..Writer::new("run", &run::FILES)
+    ..Writer::of_study(catalogue::RUN)
 };
 /// `archrock threshold`.
-pub const THRESHOLD: Writer = Writer {
+const THRESHOLD: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_THRESHOLD),
     of_models: Some("threshold.json"),
     of_records: true,
     ..Writer::of_study(catalogue::THRESHOLD)
 };
 /// `archrock threshold --along`.
-pub const ALONG: Writer = Writer::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
+const ALONG: Writer = Writer::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
 const MAP: Writer = Writer {
     samples: Some(catalogue::UNCERTAIN_MAP),
     ..Writer::of_study(catalogue::MAP)
@@ -96,10 +96,9 @@ impl Writer {
         }
     }
 
-    /// Returns `run`, and the command of each study.
+    /// Returns the command of each study.
     fn all() -> impl Iterator<Item = Self> {
-        let studies = StudyKind::ALL.into_iter().map(Self::of);
-        [RUN].into_iter().chain(studies)
+        StudyKind::ALL.into_iter().map(Self::of)
     }
 
     /// Returns the command whose results end with this seal; `None` if no command writes it.

@@ -6,6 +6,7 @@
 //! machines.
 
 use std::collections::BTreeMap;
+use std::fmt::{self, Display};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -61,8 +62,8 @@ impl Shard {
     }
 }
 
-impl std::fmt::Display for Shard {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.index, self.count)
     }
 }
@@ -209,60 +210,43 @@ pub type Rows<R> = BTreeMap<usize, R>;
 
 /// Errors of part files.
 #[derive(Debug, Error)]
-pub enum PartError {
-    /// The system reported an error.
-    #[error("cannot {what} {}: {source}", path.display())]
-    Io {
-        /// The failed action.
-        what: &'static str,
-        /// The file.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
-    /// The file is not a part file of this program, is damaged, or is in use.
-    #[error("{}: {what}", path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// The problem, and its remedy.
-        what: String,
-    },
-    /// The file holds rows of another study.
-    #[error("{}: belongs to another study: {difference}", path.display())]
-    Other {
-        /// The file.
-        path: PathBuf,
-        /// The first difference.
-        difference: String,
-    },
-    /// The file already holds some of the requested cases, and resuming was not requested.
-    #[error("{}: has {done} cases of this study, from an interrupted run", path.display())]
-    Interrupted {
-        /// The file.
-        path: PathBuf,
-        /// Number of cases in the file.
-        done: usize,
-    },
-    /// A shard to be merged lacks cases.
-    #[error("{}: part {shard} has {done} of its {all} cases", path.display())]
-    Incomplete {
-        /// The file.
-        path: PathBuf,
-        /// Shard of the file.
-        shard: Shard,
-        /// Number of cases in the file.
-        done: usize,
-        /// The expected number of cases.
-        all: usize,
-    },
+#[error("{message}")]
+pub struct PartError {
+    /// Its kind.
+    pub kind: PartErrorKind,
+    /// The file and the problem.
+    pub message: String,
 }
 
-fn unusable(path: &Path, what: impl Into<String>) -> PartError {
-    PartError::Unusable {
-        path: path.to_owned(),
-        what: what.into(),
+/// The kind of a [`PartError`], on which the remedy depends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartErrorKind {
+    /// The system reported an error.
+    System,
+    /// The folder cannot be created.
+    Folder,
+    /// The file is not a part file of this program, is damaged, or is in use.
+    Unusable,
+    /// The file holds rows of another study.
+    Other,
+    /// The file already holds some of the requested cases, and resuming was not requested.
+    Interrupted,
+    /// A shard to be merged lacks cases.
+    Incomplete(Shard),
+}
+
+impl PartErrorKind {
+    /// An error of this kind in a file.
+    fn of(self, path: &Path, problem: impl Display) -> PartError {
+        PartError {
+            kind: self,
+            message: format!("{}: {problem}", path.display()),
+        }
     }
+}
+
+fn unusable(path: &Path, problem: impl Display) -> PartError {
+    PartErrorKind::Unusable.of(path, problem)
 }
 
 /// Returns an error for a path that exists but is not a file: reading a pipe would never end.
@@ -403,16 +387,16 @@ impl PartFile {
                 // Only a header without rows may be overwritten without `resume`.
                 let begun = resume || lines.count() > 0;
                 if begun && let Some(difference) = header.other(&found) {
-                    let path = path.to_owned();
-                    return Err(PartError::Other { path, difference });
+                    let problem = format!("belongs to another study: {difference}");
+                    return Err(PartErrorKind::Other.of(path, problem));
                 }
                 lines.rows(header)?
             }
         };
         let done = rows.len();
         if !resume && (1..header.shard_cases()).contains(&done) {
-            let path = path.to_owned();
-            return Err(PartError::Interrupted { path, done });
+            let problem = format!("has {done} cases of this study, from an interrupted run");
+            return Err(PartErrorKind::Interrupted.of(path, problem));
         }
         let length = match rows.is_empty() {
             true => 0,
@@ -420,7 +404,7 @@ impl PartFile {
         };
         part.file.set_len(length).map_err(part.cannot("shorten"))?;
         if length == 0 {
-            let mut line = serde_json::to_string(header).map_err(part.cannot_write())?;
+            let mut line = serde_json::to_string(header).map_err(part.cannot("write"))?;
             line.push('\n');
             part.write(&line)?;
         }
@@ -440,7 +424,7 @@ impl PartFile {
     pub fn append<R: Serialize>(&mut self, rows: &[(usize, R)]) -> Result<(), PartError> {
         let mut lines = String::new();
         for (index, row) in rows {
-            lines += &to_line(*index, row).map_err(self.cannot_write())?;
+            lines += &to_line(*index, row).map_err(self.cannot("write"))?;
         }
         self.write(&lines)
     }
@@ -468,19 +452,16 @@ impl PartFile {
         if self.path.exists() {
             return Ok(());
         }
-        let what = "it was removed while it was written; compute this part again";
-        let gone = io::Error::new(io::ErrorKind::NotFound, what);
+        let gone = "it was removed while it was written; compute this part again";
         Err(self.cannot("keep")(gone))
     }
 
-    fn cannot(&self, what: &'static str) -> impl FnOnce(io::Error) -> PartError + use<> {
-        let path = self.path.clone();
-        move |source| PartError::Io { what, path, source }
-    }
-
-    fn cannot_write(&self) -> impl FnOnce(serde_json::Error) -> PartError + use<> {
-        let cannot = self.cannot("write");
-        move |error| cannot(error.into())
+    fn cannot<E: Display>(&self, what: &str) -> impl FnOnce(E) -> PartError + use<E> {
+        let what = format!("cannot {what} {}", self.path.display());
+        move |error| PartError {
+            kind: PartErrorKind::System,
+            message: format!("{what}: {error}"),
+        }
     }
 }
 
@@ -508,13 +489,8 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
         let rows = lines.rows(&header)?;
         let (done, all) = (rows.len(), header.shard_cases());
         if done < all {
-            let path = path.clone();
-            return Err(PartError::Incomplete {
-                path,
-                shard,
-                done,
-                all,
-            });
+            let problem = format!("part {shard} has {done} of its {all} cases");
+            return Err(PartErrorKind::Incomplete(shard).of(path, problem));
         }
         if let Some(earlier) = places.insert(shard.index, path) {
             let what = format!("is part {shard}, and so is {}", earlier.display());

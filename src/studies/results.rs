@@ -9,6 +9,7 @@ use thiserror::Error;
 
 use super::part::PartError;
 use super::runner::{RunnerError, Study};
+use crate::dynamics::model::SimulationError;
 use crate::output::summary::summary_of;
 use crate::output::template::render;
 use crate::output::{Figure, Folder, OutputError, pretty};
@@ -46,6 +47,15 @@ impl StudyError {
     /// Returns the error for a failed computation.
     pub(super) fn failed(reason: impl fmt::Display) -> Self {
         Self::Failed(reason.to_string())
+    }
+}
+
+impl From<SimulationError> for StudyError {
+    fn from(error: SimulationError) -> Self {
+        match error {
+            SimulationError::Row(_) | SimulationError::Computation(_) => Self::failed(error),
+            _ => Self::scenario(error),
+        }
     }
 }
 

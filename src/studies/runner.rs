@@ -31,11 +31,10 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io;
 use std::num::NonZeroUsize;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::panic::resume_unwind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, TryRecvError};
 use std::thread;
@@ -50,7 +49,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use super::part::{Header, PartError, PartFile, Rows, Shard};
+use super::part::{Header, PartError, PartErrorKind, PartFile, Rows, Shard};
 use crate::scenario::Scenario;
 
 /// A study: many cases, each a function of its index alone. So the cases can be computed in any order, by any number of threads, on several
@@ -133,6 +132,9 @@ pub struct Progress {
     pub all: usize,
 }
 
+/// Receives the progress of a study; the work stops when it returns a break.
+pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
+
 /// Why the rows of a study are not complete.
 #[derive(Debug, Error)]
 pub enum RunnerError {
@@ -142,14 +144,6 @@ pub enum RunnerError {
     /// The file of the part cannot be used.
     #[error(transparent)]
     Part(#[from] PartError),
-    /// The folder cannot be created.
-    #[error("cannot make the folder {}: {source}", path.display())]
-    Folder {
-        /// Its path.
-        path: PathBuf,
-        /// The error of the system.
-        source: io::Error,
-    },
     /// The threads could not be started.
     #[error("cannot start the threads: {0}")]
     Threads(String),
@@ -245,9 +239,9 @@ impl Runner {
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<RowsInFile<S::Row>, RunnerError> {
         let (folder, shard) = (task.folder, task.shard);
-        fs::create_dir_all(folder).map_err(|source| {
-            let path = folder.to_owned();
-            RunnerError::Folder { path, source }
+        fs::create_dir_all(folder).map_err(|error| PartError {
+            kind: PartErrorKind::Folder,
+            message: format!("cannot make the folder {}: {error}", folder.display()),
         })?;
         let path = folder.join(shard.file_name(S::NAME));
         let header = Header::new(study, shard);

@@ -1,5 +1,7 @@
 //! Vertical ground acceleration along with the horizontal one.
 
+use std::ops::ControlFlow;
+
 use crate::common::motions::{G, Random, run, scaled, semicircle, synthetic};
 use crate::common::program::{archrock, refused, scenarios, stdout};
 use crate::common::results::Table;
@@ -7,7 +9,8 @@ use crate::common::{impact_times_s, pairs, parsed};
 use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
-use archrock::studies::run::{Run, RunOptions};
+use archrock::output::Figure;
+use archrock::studies::run::{self, RunOptions};
 use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -220,10 +223,16 @@ fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
              [ground.rectangular]\namplitude_g = -0.2\nvertical_amplitude_g = {vertical_g:?}\nduration_s = 0.1\n\
              [simulation]\nduration_s = 0.2\ngravity_m_s2 = 10.0\n"
         ));
-        let run = Run::new(&scenario, RunOptions::default()).unwrap();
         let mut text = Vec::new();
-        let stdout: Box<dyn std::io::Write> = Box::new(&mut text);
-        run.compute(None, Some(stdout), &mut |_| {}).unwrap();
+        run::results(
+            &[scenario],
+            &RunOptions::default(),
+            Figure::SCREEN,
+            &mut |_, _| Ok(None),
+            Some(Box::new(&mut text)),
+            &mut |_| ControlFlow::Continue(()),
+        )
+        .unwrap();
         let text = String::from_utf8(text).unwrap();
         let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
         assert_eq!(lines[0][11], "friction_demand");

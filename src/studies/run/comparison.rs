@@ -2,18 +2,17 @@
 
 use std::fmt::Write as _;
 
-use super::{Run, RunResults};
+use super::{OneModel, Run};
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::Varied;
 use crate::scenario::Hinges;
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
-#[must_use]
-pub fn compared(runs: &[RunResults<'_>]) -> String {
+pub(super) fn compared(runs: &[OneModel<'_>]) -> String {
     let rows: Vec<[String; 3]> = runs
         .iter()
-        .map(|RunResults { run, history, .. }| {
+        .map(|OneModel { run, history, .. }| {
             let peak = match history.outcome {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
@@ -43,7 +42,7 @@ fn ends(history: &Summary) -> String {
 
 /// Returns the conclusion: the model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other
 /// models.
-fn believed(runs: &[RunResults<'_>]) -> String {
+fn believed(runs: &[OneModel<'_>]) -> String {
     let trust = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
         return String::new();

@@ -5,7 +5,7 @@ mod comparison;
 mod feet;
 mod film;
 mod open_joints;
-pub mod overlay;
+mod overlay;
 mod packed;
 mod picture;
 mod points;
@@ -19,15 +19,15 @@ mod words;
 use std::fmt::Write as _;
 use std::fs;
 use std::io;
+use std::mem;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use nalgebra::Vector2;
 use serde_json::Value;
-use thiserror::Error;
 
 pub use self::caveats::warnings;
-pub use self::comparison::compared;
+use self::comparison::compared;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MOST_POINTS;
@@ -39,9 +39,11 @@ pub use self::summary::{Ended, summary};
 use self::summary::{Evidence, Summary};
 pub use self::words::heading;
 use self::words::{Notable, VerdictLine, Words};
+use super::results::{Results, StudyError};
+use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary as History};
-use crate::dynamics::model::{Model, Recorder, SimulationError};
+use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::{Variations, Varied};
 use crate::mechanics::sway::Sway;
@@ -71,105 +73,124 @@ pub const FILES: [&str; 10] = [
 ];
 
 /// Options of a run; the defaults are those of the program without options.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunOptions {
-    /// Width of the pictures, and the size of their text.
-    pub figure: Figure,
-    /// Whether rotations are written to a file.
-    pub rotations: bool,
+    /// Whether rotations are not written to a file.
+    pub no_rotations: bool,
     /// Whether that file has dimensionless columns; for mechanisms only.
     pub dimensionless: bool,
-    /// Whether computations in steps are repeated, to find results that depend on the steps.
-    pub repeat: bool,
-    /// Whether to write a page with an animation of the structure.
-    pub report: bool,
+    /// Whether computations in steps are not repeated; repetitions find results that depend on the steps.
+    pub no_repeat: bool,
+    /// Whether to write no page with an animation of the structure.
+    pub no_report: bool,
     /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
     /// Pictures a second of a film of the structure; `None` without film.
     pub film_a_second: Option<f64>,
-    /// Factor on the displacements in snapshots and film.
-    pub exaggeration: f64,
+    /// Factor on the displacements in snapshots and film; `None`: they are not exaggerated.
+    pub exaggeration: Option<f64>,
     /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
-    /// The models of all runs that are reported together, including this one.
-    pub beside: Vec<Hinges>,
     /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MOST_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
+    /// The report on the samples of `[uncertain]` for each model, with which its page begins; empty without samples.
+    pub samples: Vec<String>,
 }
 
-impl Default for RunOptions {
-    fn default() -> Self {
-        Self {
-            figure: Figure::SCREEN,
-            rotations: true,
-            dimensionless: false,
-            repeat: true,
-            report: true,
-            snapshots_s: Vec::new(),
-            film_a_second: None,
-            exaggeration: 1.0,
-            poses: false,
-            beside: Vec::new(),
-            points_m: Vec::new(),
-        }
-    }
-}
+/// Opens the folder for the results of a scenario with its model of motion, for files of these names; `None`: no files are written.
+pub type Open<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option<Folder>, String>;
 
-/// The progress of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stage {
-    /// The simulation has reached this time, in seconds.
-    Reached(f64),
-    /// The history is complete, and its repetitions are being computed.
-    Repeating,
-}
+/// Receives the rotations in place of a file.
+pub type Rotations<'w> = Option<Box<dyn io::Write + 'w>>;
 
-/// The results of a run. Its pictures and page are written by [`RunResults::complete`].
-pub struct RunResults<'r> {
-    /// The verdict, a line for people.
-    pub verdict: String,
-    /// The other lines for people.
-    pub words: String,
-    /// For programs, as in `summary.json`.
-    pub summary: Value,
-    /// The summary of the motion.
-    pub history: History,
-    /// The motions with other properties that are equally likely.
-    pub varied: Vec<Varied>,
+/// The results of one model of motion.
+struct OneModel<'r> {
     run: &'r Run<'r>,
-    collected: Collected,
-    folder: Option<Folder>,
-    /// Number of rows of the rotations.
-    rows: usize,
-}
-
-/// Why a run has no results.
-#[derive(Debug, Error)]
-pub enum RunError {
-    /// There is no history.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-    /// The results cannot be written.
-    #[error(transparent)]
-    Output(#[from] OutputError),
+    /// The folder of its files, if there is one.
+    folder: Option<PathBuf>,
+    words: String,
+    /// As in `summary.json`.
+    summary: Value,
+    /// The summary of the motion.
+    history: History,
+    /// The motions with other properties that are equally likely.
+    varied: Vec<Varied>,
+    curves: Curves,
 }
 
 /// A scenario to run.
-#[derive(Debug)]
-pub struct Run<'a> {
+struct Run<'a> {
     scenario: &'a Scenario,
     model: Box<dyn Model>,
-    options: RunOptions,
+    options: &'a RunOptions,
+    figure: Figure,
+    /// The models of all runs that are reported together.
+    beside: &'a [Hinges],
     scales: Option<Scales>,
     points: Points,
 }
 
+/// Checks that options of a run fit a scenario.
+///
+/// # Errors
+/// Explains that the structure has no such model of motion, or that an option does not fit it.
+pub fn check(scenario: &Scenario, options: &RunOptions) -> Result<(), String> {
+    Run::new(scenario, options, Figure::SCREEN, &[]).map(drop)
+}
+
+/// Runs scenarios that differ only in their models of motion. The files of each are written to a folder of its own while it is computed.
+/// `watch` receives the progress in milliseconds of simulated time; all of it is done while the history is repeated.
+///
+/// # Errors
+/// When the options do not fit, a motion cannot be computed, a result cannot be written, or the work is cancelled.
+pub fn results(
+    scenarios: &[Scenario],
+    options: &RunOptions,
+    figure: Figure,
+    open: Open<'_>,
+    mut rotations: Rotations<'_>,
+    watch: Watch<'_>,
+) -> Result<Results, StudyError> {
+    let beside = scenarios.iter().map(|one| one.motion.hinges());
+    let beside: Vec<Hinges> = beside.collect();
+    let runs = scenarios.iter();
+    let runs = runs.map(|one| Run::new(one, options, figure, &beside));
+    let runs: Result<Vec<Run<'_>>, String> = runs.collect();
+    let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
+    for (number, run) in runs.iter().enumerate() {
+        // Opened before the work starts, so that a folder that cannot be written costs no time.
+        let folder = open(run.scenario, &run.files()).map_err(StudyError::Scenario)?;
+        let samples = options.samples.get(number).map_or("", String::as_str);
+        all.push(run.compute(folder, rotations.take(), samples, &mut *watch)?);
+    }
+    let mut results = Results::default();
+    if let [one] = &mut all[..] {
+        results.words = mem::take(&mut one.words);
+        results.summary = one.summary.take();
+        return Ok(results);
+    }
+    results.words = compared(&all);
+    for one in &mut all {
+        let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
+        let model = one.run.scenario.motion.hinges();
+        results.summary[model.name()] = one.summary.take();
+    }
+    if let Some(folder) = &all[0].folder {
+        results.files = vec![(OVERLAY, overlay(&all).into_bytes())];
+        let number = if all.len() > 2 { "all" } else { "both" };
+        let path = folder.with_file_name(OVERLAY);
+        let _ = writeln!(results.words, "{number} in {}", path.display());
+    }
+    Ok(results)
+}
+
 impl<'a> Run<'a> {
-    /// Prepares the run of a scenario.
-    ///
-    /// # Errors
-    /// Explains that the structure has no such model of motion, or that an option does not fit it.
-    pub fn new(scenario: &'a Scenario, options: RunOptions) -> Result<Self, String> {
+    fn new(
+        scenario: &'a Scenario,
+        options: &'a RunOptions,
+        figure: Figure,
+        beside: &'a [Hinges],
+    ) -> Result<Self, String> {
         if options.dimensionless && scenario.motion.hinges().has_joints() {
             return Err(
                 "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
@@ -191,23 +212,23 @@ impl<'a> Run<'a> {
             scenario,
             model,
             options,
+            figure,
+            beside,
             scales,
             points,
         })
     }
 
     /// The name of its model in words.
-    #[must_use]
-    pub fn name(&self) -> &'static str {
+    fn name(&self) -> &'static str {
         self.scenario.motion.words()
     }
 
     /// The files that it writes, the seal last.
-    #[must_use]
-    pub fn files(&self) -> Vec<&'static str> {
+    fn files(&self) -> Vec<&'static str> {
         let is_written = |file: &&str| match *file {
-            ROTATIONS => self.options.rotations,
-            REPORT => self.options.report,
+            ROTATIONS => !self.options.no_rotations,
+            REPORT => !self.options.no_report,
             SNAPSHOTS => !self.options.snapshots_s.is_empty(),
             POSES => self.options.poses,
             JOINTS => self.model.row().is_some(),
@@ -219,39 +240,41 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(is_written).collect()
     }
 
-    /// Simulates the scenario. The tables go into a folder that was opened for them; [`RunResults::complete`] writes the other files. Rotations go to
-    /// `rotations` instead, if it is given.
-    ///
-    /// # Errors
-    /// When the motion cannot be computed, or a result not written.
-    pub fn compute(
+    /// Simulates the scenario and writes its files into the folder, if there is one. The page begins with the report on the `samples` of
+    /// `[uncertain]`. Rotations go to `rotations` instead, if it is given.
+    fn compute(
         &self,
         mut folder: Option<Folder>,
-        rotations: Option<Box<dyn io::Write + '_>>,
-        watch: &mut dyn FnMut(Stage),
-    ) -> Result<RunResults<'_>, RunError> {
+        rotations: Rotations<'_>,
+        samples: &str,
+        watch: Watch<'_>,
+    ) -> Result<OneModel<'_>, StudyError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut collected = Collected::new(self, folder.is_some());
-        let repeats = self.options.repeat && model.row().is_some();
+        let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
-        let variations = self.options.repeat.then(|| scenario.variations());
-        let variations = variations.transpose();
-        let variations = variations.map_err(SimulationError::computation)?;
-        let variations = Variations::start(variations.unwrap_or_default(), ground, &request);
+        let variations = match self.options.no_repeat {
+            true => Vec::new(),
+            false => scenario.variations().map_err(StudyError::failed)?,
+        };
+        let variations = Variations::start(variations, ground, &request);
+        let all = (request.end_s * MILLISECONDS) as usize;
         let (history, rows) = {
             let mut recording = Recording {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
                 collected: &mut collected,
-                watch,
-                written: Ok(()),
+                watch: &mut *watch,
+                all,
+                broken: Ok(()),
             };
             let history = model.simulate(ground, &request, Some(&mut recording))?;
-            recording.written?;
+            recording.broken?;
             (history, recording.tables.finish()?)
         };
         let repeated = repetitions.map(|repetitions| {
-            watch(Stage::Repeating);
+            // Repetitions that were started are finished.
+            let _ = watch(Progress { done: all, all });
             repetitions.compare(&history)
         });
         let varied = variations.ended();
@@ -267,20 +290,30 @@ impl<'a> Run<'a> {
             evidence,
             summary: &summary,
             impacts: &collected.notable,
-            beside: &self.options.beside,
+            beside: self.beside,
         };
-        let (verdict, words) = (render(&VerdictLine(evidence)), render(&words));
+        let (verdict, mut words) = (render(&VerdictLine(evidence)), render(&words));
+        words.insert_str(0, "  ");
         let summary = summary_of(&summary)?;
-        Ok(RunResults {
-            verdict,
-            words: format!("  {words}"),
+        let path = folder.as_ref().map(|folder| folder.path().to_owned());
+        if let Some(mut folder) = folder {
+            let opening = [samples, &verdict];
+            collected.write(self, &mut folder, &history, opening, &mut words)?;
+            folder.write(SUMMARY, pretty(&summary))?;
+            let counted = format!("{ROTATIONS} ({rows} rows)");
+            let files = self.files().join(", ").replacen(ROTATIONS, &counted, 1);
+            let path = folder.path().display();
+            let _ = writeln!(words, "  results in {path}: {files}");
+            folder.complete()?;
+        }
+        Ok(OneModel {
+            run: self,
+            folder: path,
+            words: format!("  {verdict}{words}"),
             summary,
             history,
             varied,
-            run: self,
-            collected,
-            folder,
-            rows,
+            curves: collected.curves,
         })
     }
 
@@ -296,44 +329,18 @@ impl<'a> Run<'a> {
     }
 }
 
-impl RunResults<'_> {
-    /// Writes the pictures, and the page, which begins with the report on the samples of `[uncertain]`; then completes the folder.
-    ///
-    /// # Errors
-    /// When a file cannot be written.
-    pub fn complete(&mut self, samples: &str) -> Result<(), OutputError> {
-        let Some(mut folder) = self.folder.take() else {
-            return Ok(());
-        };
-        let (text, opening) = (&mut self.words, [samples, &self.verdict]);
-        let collected = &self.collected;
-        collected.write(self.run, &mut folder, &self.history, opening, text)?;
-        folder.write(SUMMARY, pretty(&self.summary))?;
-        let path = folder.path().to_owned();
-        folder.complete()?;
-        let files = self.run.files().into_iter().map(|name| match name {
-            ROTATIONS => format!("{ROTATIONS} ({} rows)", self.rows),
-            name => name.to_owned(),
-        });
-        let files = files.collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "  results in {}: {files}", path.display());
-        Ok(())
-    }
-}
-
-/// One picture of several runs that differ in their models of motion.
-#[must_use]
-pub fn overlay(runs: &[RunResults<'_>]) -> String {
-    let names: Vec<_> = runs.iter().map(|results| results.run.name()).collect();
-    let first = runs[0].run;
-    let mut all = names.join(" and ");
-    if let Some(initial) = all.get_mut(..1) {
+/// One picture of several models of motion.
+fn overlay(all: &[OneModel<'_>]) -> String {
+    let names: Vec<_> = all.iter().map(|one| one.run.name()).collect();
+    let first = all[0].run;
+    let mut title = names.join(" and ");
+    if let Some(initial) = title.get_mut(..1) {
         initial.make_ascii_uppercase();
     }
-    let subject = first.subject(first.scenario.title.as_deref().unwrap_or(&all));
-    let curves = runs.iter().map(|results| &results.collected.curves);
+    let subject = first.subject(first.scenario.title.as_deref().unwrap_or(&title));
+    let curves = all.iter().map(|one| &one.curves);
     let named: Vec<_> = names.into_iter().zip(curves).collect();
-    overlay::draw(first.options.figure, &subject, &named)
+    overlay::draw(first.figure, &subject, &named)
 }
 
 /// The drawable parts of a structure, as a model moves them.
@@ -394,7 +401,8 @@ impl Collected {
     /// The page and the snapshots are collected only if there is a folder.
     fn new(run: &Run<'_>, has_folder: bool) -> Self {
         let (model, options) = (&*run.model, &run.options);
-        let snapshots = || Snapshots::new(scene(run.scenario, model), options.exaggeration);
+        let factor = options.exaggeration.unwrap_or(1.0);
+        let snapshots = || Snapshots::new(scene(run.scenario, model), factor);
         let film = options.film_a_second;
         let film = film.map(|a_second| snapshots().every(1.0 / a_second));
         let times_s = Some(&options.snapshots_s).filter(|times_s| !times_s.is_empty());
@@ -402,7 +410,7 @@ impl Collected {
         let snapshots = film.into_iter().chain(chosen).filter(|_| has_folder);
         Self {
             picture: Timeline::new(model),
-            report: (has_folder && options.report).then(|| Report::new(run.scenario, model)),
+            report: (has_folder && !options.no_report).then(|| Report::new(run.scenario, model)),
             snapshots: snapshots.collect(),
             notable: Notable::default(),
             points: run.points.clone(),
@@ -436,7 +444,7 @@ impl Collected {
         opening: [&str; 2],
         words: &mut String,
     ) -> Result<(), OutputError> {
-        let (scenario, figure) = (run.scenario, run.options.figure);
+        let (scenario, figure) = (run.scenario, run.figure);
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
         let subject = run.subject(title);
         let picture = self.picture.draw(figure, &subject, history, &self.points);
@@ -476,7 +484,7 @@ impl<'f> Tables<'f> {
     fn new(
         run: &Run<'_>,
         folder: Option<&'f mut Folder>,
-        rotations: Option<Box<dyn io::Write + 'f>>,
+        rotations: Rotations<'f>,
     ) -> Result<Self, OutputError> {
         type File<'f> = Box<dyn io::Write + 'f>;
         let model = &*run.model;
@@ -537,26 +545,45 @@ impl<'f> Tables<'f> {
 struct Recording<'r, 'f> {
     tables: Tables<'f>,
     collected: &'r mut Collected,
-    watch: &'r mut dyn FnMut(Stage),
-    /// The error of a table that could not be written, which ends the history.
-    written: Result<(), OutputError>,
+    watch: Watch<'r>,
+    /// The simulated time, in milliseconds.
+    all: usize,
+    /// The reason to end the history: a table that could not be written, or the work was cancelled.
+    broken: Result<(), StudyError>,
+}
+
+/// Milliseconds in a second, for the progress.
+const MILLISECONDS: f64 = 1e3;
+
+impl Recording<'_, '_> {
+    /// Breaks off for a reason.
+    const fn flow(&self) -> ControlFlow<()> {
+        match self.broken {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        }
+    }
 }
 
 impl Recorder for Recording<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        (self.watch)(Stage::Reached(sample.time_s));
+        let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.all);
+        let progress = Progress { done, all };
         self.collected.sample(sample);
-        self.written = self.tables.sample(sample);
-        flow(&self.written)
+        self.broken = match (self.watch)(progress) {
+            ControlFlow::Continue(()) => self.tables.sample(sample).map_err(StudyError::from),
+            ControlFlow::Break(()) => Err(RunnerError::Cancelled(progress).into()),
+        };
+        self.flow()
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
         self.collected.event(event);
         // If a failed table ended the history, that end is not an event.
-        if self.written.is_ok() {
-            self.written = self.tables.event(event);
+        if self.broken.is_ok() {
+            self.broken = self.tables.event(event).map_err(StudyError::from);
         }
-        flow(&self.written)
+        self.flow()
     }
 
     fn wants_thrust_line(&self) -> bool {
@@ -583,13 +610,5 @@ impl Recorder for Recording<'_, '_> {
         if let Some(report) = &mut self.collected.report {
             report.end_fall(end);
         }
-    }
-}
-
-/// Breaks off after a failure.
-const fn flow(written: &Result<(), OutputError>) -> ControlFlow<()> {
-    match written {
-        Ok(()) => ControlFlow::Continue(()),
-        Err(_) => ControlFlow::Break(()),
     }
 }

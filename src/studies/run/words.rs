@@ -21,9 +21,11 @@ use crate::output::range_ends;
 use crate::output::template::filters;
 use crate::scenario::{Hinges, Scenario, Series};
 
-/// Returns the heading of the words for the runs of a scenario: title, and one line per record.
+/// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
+/// ignored table.
 #[must_use]
-pub fn heading(scenario: &Scenario) -> String {
+pub fn heading(scenarios: &[Scenario]) -> String {
+    let scenario = &scenarios[0];
     let title = scenario.title.as_deref();
     let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
     text.extend(scenario.series().map(|series: &Series| {
@@ -31,6 +33,8 @@ pub fn heading(scenario: &Scenario) -> String {
         let peak_g = series.peak_g(scenario.gravity_m_s2());
         format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
     }));
+    let ignored = scenarios.iter().find_map(Scenario::ignored);
+    text.extend(ignored.map(|ignored| format!("  {ignored}\n")));
     text
 }
 

@@ -30,9 +30,9 @@ use super::results::{Results, StudyError};
 use super::runner::{Progress, Runner};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Summary;
+
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::repeatability::checked;
+use crate::dynamics::repeatability::{Checked, checked};
 use crate::dynamics::until::Until;
 use crate::output::Figure;
 use crate::scenario::Scenario;
@@ -60,40 +60,17 @@ pub enum NoHistory {
     Failed(String),
 }
 
-impl FactorSample {
-    /// Computes the histories for several factors, in their order.
-    fn all_of(
-        model: &dyn Model,
-        ground: &GroundMotion,
-        request: &Request,
-        factors: &[f64],
-    ) -> Vec<Self> {
-        let cases = factors
-            .iter()
-            .map(|factor| Ok((ground.scaled(*factor)?, *request)));
-        let summaries = answered(cases, |cases| {
-            let checked = checked(model, cases, Until::End).into_iter();
-            checked.map(|case| Ok((case.own?, case.doubt))).collect()
-        });
-        let samples = factors.iter().zip(summaries);
-        samples
-            .map(|(factor, summary)| Self::of(*factor, summary))
-            .collect()
-    }
-
-    fn of(factor: f64, summary: Result<(Summary, Option<String>), SimulationError>) -> Self {
-        let result = match summary {
-            Ok((summary, doubt)) => {
-                Ending::from_summary(&summary, None, doubt).map_err(NoHistory::Failed)
-            }
-            Err(error @ SimulationError::FreeFall(_)) => {
-                Err(NoHistory::GroundFalls(error.to_string()))
-            }
-            Err(error) => Err(NoHistory::Failed(error.to_string())),
+impl From<SimulationError> for NoHistory {
+    fn from(error: SimulationError) -> Self {
+        let kind = match error {
+            SimulationError::FreeFall(_) => Self::GroundFalls,
+            _ => Self::Failed,
         };
-        Self { factor, result }
+        kind(error.to_string())
     }
+}
 
+impl FactorSample {
     /// Returns the outcome by its name in results, or the reason why there is no history.
     #[must_use]
     pub const fn outcome_name(&self) -> &'static str {
@@ -313,8 +290,24 @@ struct Shaking<'a> {
 }
 
 impl Shaking<'_> {
+    /// Histories of a model for several factors, in their order.
     fn samples(&self, model: usize, factors: &[f64]) -> Vec<FactorSample> {
-        FactorSample::all_of(self.models[model].1, self.ground, self.request, factors)
+        let cases = factors.iter();
+        let cases = cases.map(|factor| {
+            let ground = self.ground.scaled(*factor);
+            Ok((ground.map_err(SimulationError::from)?, *self.request))
+        });
+        let endings = answered(cases, |cases| {
+            let checked = checked(self.models[model].1, cases, Until::End).into_iter();
+            let ending = |case: Checked| {
+                let ending = Ending::from_summary(&case.own?, None, case.doubt);
+                ending.map_err(NoHistory::Failed)
+            };
+            checked.map(ending).collect()
+        });
+        let samples = factors.iter().copied().zip(endings);
+        let sample = |(factor, result)| FactorSample { factor, result };
+        samples.map(sample).collect()
     }
 
     /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
