@@ -1,4 +1,4 @@
-//! The circular masonry arch: its shape, its size and its material.
+//! Circular masonry arch: shape, size and material.
 
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
@@ -11,30 +11,29 @@ use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::ring::Ring;
 
-/// Range of lengths in metres and of densities in kg/m3: wide enough for any arch, and no product of them leaves
-/// the range of an `f64`.
+/// Range of lengths in metres and of densities in kg/m3, wide enough for any arch; their products stay in the range of an `f64`.
 pub const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;
 
-/// A thinner arch is lost in rounding.
+/// Least thickness over mean radius; rounding errors dominate in thinner arches.
 pub const MIN_THICKNESS_RATIO: f64 = 1e-6;
 
-/// An arch as thick as its diameter has no hole.
+/// Upper bound of thickness over mean radius: the ring then has no hole.
 pub const THICKNESS_RATIO_BOUND: f64 = 2.0;
 
-/// Below one degree a straight thrust line fits into all but the thinnest rings, and no push moves them.
+/// Range of embrace angles, in degrees. Below one degree a straight thrust line fits into almost all rings, and no push moves them.
 pub const EMBRACE_DEG: RangeInclusive<f64> = 1.0..=180.0;
 
-/// Voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
+/// Range of the number of voussoirs: a mechanism has four hinges, and three voussoirs have four joints.
 pub const VOUSSOIRS: RangeInclusive<usize> = 3..=200;
 
-/// Depth where none is given.
+/// Default depth, in metres.
 pub const DEPTH_M: f64 = 1.0;
 
-/// Density where none is given.
+/// Default density, in kg/m3.
 pub const DENSITY_KG_M3: f64 = 2000.0;
 
 named! {
-    /// A line of an arch along which lengths are measured.
+    /// Line of an arch along which lengths are measured.
     pub enum MeasuredAt {
         /// The lower side: the clear span.
         Intrados = "intrados",
@@ -46,7 +45,7 @@ named! {
 }
 
 impl MeasuredAt {
-    /// The line along which lengths are measured, in words.
+    /// Returns the line in words.
     #[must_use]
     pub const fn in_words(self) -> &'static str {
         match self {
@@ -56,7 +55,7 @@ impl MeasuredAt {
         }
     }
 
-    /// The distance outwards from this line to the mean line, in thicknesses.
+    /// Returns the distance outwards from this line to the mean line, in thicknesses.
     #[must_use]
     pub const fn to_mean(self) -> f64 {
         match self {
@@ -91,18 +90,17 @@ pub struct Arch {
     pub depth_m: f64,
     /// Density, in kg/m3.
     pub density_kg_m3: f64,
-    /// Number of equal voussoirs; `None` where hinges may open at any section.
+    /// Number of equal voussoirs; `None` if hinges may open at any section.
     pub voussoirs: Option<usize>,
-    /// The line whose span and rise drawings and captions give, if it was set.
+    /// Line whose span and rise are given in drawings and captions; `None` if not set.
     #[serde(skip)]
     pub measured_at: Option<MeasuredAt>,
-    /// Onset of rocking, computed on the first request. It depends on the shape alone, so arches of the
-    /// same shape share it.
+    /// Onset of rocking, computed at the first request. It depends on the shape only, so arches of the same shape share it.
     #[serde(skip)]
     incipient: Arc<OnceLock<Result<Incipient, LimitError>>>,
 }
 
-/// Arches are equal if their shape, size and material are.
+/// Arches are equal if shape, size and material are equal.
 impl PartialEq for Arch {
     fn eq(&self, other: &Self) -> bool {
         let shape = |arch: &Self| (arch.thickness_ratio, arch.embrace_deg, arch.voussoirs);
@@ -138,7 +136,10 @@ impl Arch {
         arch.reshaped()
     }
 
-    /// The arch with its new shape, checked.
+    /// Returns the arch after a change of its shape.
+    ///
+    /// # Errors
+    /// If the thickness is out of range.
     fn reshaped(mut self) -> Result<Self, ArgumentError> {
         let ratio = self.thickness_ratio;
         let range = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
@@ -148,7 +149,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// This arch with another mean radius, in metres: its thickness grows with it.
+    /// Returns this arch with another mean radius, in metres, and a proportional thickness.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -157,7 +158,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// This arch with another thickness, in mean radii.
+    /// Returns this arch with another thickness, in mean radii.
     ///
     /// # Errors
     /// When it is not from 1e-6 to below 2.
@@ -166,7 +167,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// This arch with another embrace angle, in degrees.
+    /// Returns this arch with another embrace angle, in degrees.
     ///
     /// # Errors
     /// When it is outside 1 to 180.
@@ -175,7 +176,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// This arch cut into equal voussoirs, so that hinges open at their joints only.
+    /// Returns this arch cut into equal voussoirs, so that hinges open at their joints only.
     ///
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
@@ -184,7 +185,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// This arch with another depth out of plane, in metres.
+    /// Returns this arch with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -193,7 +194,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// This arch with another density, in kg/m3.
+    /// Returns this arch with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -202,20 +203,20 @@ impl Arch {
         Ok(self)
     }
 
-    /// Makes drawings and captions of the arch give span and rise of this line.
+    /// Returns this arch with a line whose span and rise are given in drawings and captions.
     #[must_use]
     pub const fn with_measured_at(mut self, line: Option<MeasuredAt>) -> Self {
         self.measured_at = line;
         self
     }
 
-    /// Radius of a line, in metres.
+    /// Returns the radius of a line, in metres.
     #[must_use]
     pub fn radius_at_m(&self, line: MeasuredAt) -> f64 {
         self.mean_radius_m * (1.0 - line.to_mean() * self.thickness_ratio)
     }
 
-    /// Span and rise of a line, in metres.
+    /// Returns span and rise of a line, in metres.
     #[must_use]
     pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
         let radius_m = self.radius_at_m(line);
@@ -223,10 +224,10 @@ impl Arch {
         [2.0 * radius_m * sin, radius_m * (1.0 - cos)]
     }
 
-    /// Its voussoirs as a row of blocks.
+    /// Returns its voussoirs as a row of blocks.
     ///
     /// # Errors
-    /// When it has none.
+    /// If it has no voussoirs.
     pub fn row(&self) -> Result<Row, RowError> {
         Row::arch(
             &self.ring(),
@@ -237,28 +238,28 @@ impl Arch {
         )
     }
 
-    /// Sections at which hinges may open.
+    /// Returns the sections at which hinges may open.
     #[must_use]
     pub fn sites(&self) -> HingeSites {
         (self.voussoirs).map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
-    /// Sections at which lines of thrust are reported, in radians from the left springing: the joints, or 61 sections
-    /// of an arch that hinges anywhere.
+    /// Returns the sections at which thrust lines are reported, in radians from the left springing: the joints, or 61 sections of an arch with hinges
+    /// anywhere.
     #[must_use]
     pub(crate) fn thrust_sections_rad(&self) -> Vec<f64> {
         let parts = self.voussoirs.unwrap_or(60);
         self.ring().sections(parts)
     }
 
-    /// The shape: the ring of unit mean radius.
+    /// Returns the shape: the ring of unit mean radius.
     #[must_use]
     pub fn ring(&self) -> Ring {
         Ring::new(self.thickness_ratio, self.embrace_deg.to_radians())
             .expect("the constructors check what makes a ring")
     }
 
-    /// Onset of rocking by limit analysis; see [`incipient`].
+    /// Returns the onset of rocking by limit analysis; see [`incipient`].
     ///
     /// # Errors
     /// When the arch cannot stand, or does not start as a four-link mechanism.

@@ -8,7 +8,7 @@ use super::geometry::curve::{Curve, polygon};
 use super::geometry::rigid::{MassMoments, mirrored};
 use super::geometry::ring::Edge;
 
-/// A rigid block in the undeformed row.
+/// Rigid block in the undeformed row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Block {
     /// Mass in kg.
@@ -20,14 +20,14 @@ pub struct Block {
 }
 
 impl Block {
-    /// A prism whose outline is a simple polygon, given by its corners (m) in order, either way round.
+    /// Returns a prism with a simple polygon as outline, given by its corners (m) in order, clockwise or anticlockwise.
     #[must_use]
     pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
         let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
         Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
     }
 
-    /// A prism with a closed outline (m), either way round; `pole_m` is a point near it, which keeps rounding small.
+    /// Returns a prism with a closed outline (m), clockwise or anticlockwise; `pole_m` is a point near it, which limits rounding errors.
     #[must_use]
     pub(crate) fn bounded(
         outline_m: impl IntoIterator<Item = Curve>,
@@ -46,7 +46,7 @@ impl Block {
         }
     }
 
-    /// This block and another one as one rigid body.
+    /// Returns this block and another one combined as one rigid body.
     #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let mass_kg = self.mass_kg + other.mass_kg;
@@ -60,7 +60,7 @@ impl Block {
         }
     }
 
-    /// The mirror image about the y axis.
+    /// Returns the mirror image about the y axis.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl Block {
         }
     }
 
-    /// Mass, first and polar moment about the origin, when the centre of gravity is at `centre_m`.
+    /// Returns mass, first and polar moment about the origin, for a centre of gravity at `centre_m`.
     #[must_use]
     pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
         MassMoments {
@@ -80,7 +80,7 @@ impl Block {
     }
 }
 
-/// A joint of the undeformed row, shut.
+/// Closed joint of the undeformed row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
     /// Corner at the intrados in metres (of a stack: left).
@@ -90,31 +90,31 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// Distance of the corners in metres.
+    /// Returns the distance of the corners in metres.
     #[must_use]
     pub fn thickness_m(&self) -> f64 {
         (self.extrados_m - self.intrados_m).norm()
     }
 
-    /// Midpoint of the corners in metres.
+    /// Returns the midpoint of the corners in metres.
     #[must_use]
     pub fn middle_m(&self) -> Vector2<f64> {
         (self.intrados_m + self.extrados_m) * 0.5
     }
 
-    /// Unit vector from the intrados to the extrados.
+    /// Returns the unit vector from the intrados to the extrados.
     #[must_use]
     pub fn along(&self) -> Vector2<f64> {
         (self.extrados_m - self.intrados_m) / self.thickness_m()
     }
 
-    /// Corner on the given edge, in metres.
+    /// Returns the corner on an edge, in metres.
     #[must_use]
     pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         [self.intrados_m, self.extrados_m][edge as usize]
     }
 
-    /// The mirror image about the y axis.
+    /// Returns the mirror image about the y axis.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {
@@ -123,7 +123,7 @@ impl Joint {
         }
     }
 
-    /// Corners of the quadrilateral between this joint and the next one, in order around it.
+    /// Returns the corners of the quadrilateral between this joint and the next one, in order around it.
     #[must_use]
     pub const fn outline_m(&self, next: &Self) -> [Vector2<f64>; 4] {
         [
@@ -134,7 +134,7 @@ impl Joint {
         ]
     }
 
-    /// Whether two joints have a point in common.
+    /// Returns whether two joints have a point in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
         let side = |joint: &Self, point: Vector2<f64>| {
             (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))

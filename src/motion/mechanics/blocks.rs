@@ -1,11 +1,10 @@
-//! A row of rigid blocks: what an arch of voussoirs and a column of drums have in common.
+//! Row of rigid blocks, the common form of an arch of voussoirs and a column of drums.
 //!
-//! Blocks `0..N` stand side by side, and joint `j` lies before block `j`. The first joint is on the left support. A
-//! row between [`Supports::Both`] has a joint `N` on the right support; one on [`Supports::Left`] alone is a
-//! free-standing stack, in which left and right are below and above. A joint is a plane face from its
-//! *intrados* corner to its *extrados* corner; in a stack these are the left and the right corner of a bed.
+//! Blocks `0..N` are side by side, and joint `j` is before block `j`. The first joint is on the left support. A row between [`Supports::Both`] has a
+//! joint `N` on the right support. A row on [`Supports::Left`] only is a free-standing stack, in which left and right mean below and above. A joint
+//! is a plane face from its *intrados* corner to its *extrados* corner; in a stack these are the left and the right corner of a bed joint.
 //!
-//! Nothing here moves: `joints` places the blocks, `contact` finds their velocities.
+//! This module describes the undeformed row only: `joints` computes positions of the blocks, `contact` their velocities.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -15,29 +14,28 @@ use super::geometry::rigid::mirrored;
 use super::geometry::ring::{Edge, Ring};
 use super::tie::{Tie, TieError};
 
-/// The most blocks that a row may have. The work of a step grows with their number and so does the number of
-/// impacts, while thresholds hardly change beyond a few dozen voussoirs.
+/// Maximum number of blocks of a row. The effort of a step and the number of impacts increase with the number of blocks, while thresholds hardly
+/// change beyond a few dozen voussoirs.
 pub const MAX_BLOCKS: usize = 500;
 
-/// Gravity where none is given.
+/// Default gravity, in m/s2.
 pub(crate) const GRAVITY_M_S2: f64 = 9.81;
 
-/// The size of a row is at least this fraction of its extent.
+/// Least size of a row, over its extent.
 const LEAST_SIZE_RATIO: f64 = 1e-6;
 
-/// Why blocks and joints do not make a row.
+/// Reason why blocks and joints do not form a row.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum RowError {
-    /// The joint of this index, from 0, has this thickness, in metres.
+    /// The thickness of a joint is out of range: index of the joint, from 0, and thickness in metres.
     #[error(
         "thickness in m of joint {0} is {1}: it must be finite, and positive beside the size of the row"
     )]
     Thickness(usize, f64),
-    /// A number of a block is not finite, or not in its range: its name with the unit, the index of the block, from 0, the number, and
-    /// the allowed range.
+    /// A number of a block is not finite, or not in its range: name with unit, index of the block from 0, number, and allowed range.
     #[error("{0} of block {1} is {2}: {3}")]
     Block(&'static str, usize, f64, &'static str),
-    /// A dimension of the whole row, with its unit, is out of range: it has this value.
+    /// A dimension of the whole row is out of range: name with unit, and value.
     #[error("{0} is {1}: it must be positive and finite")]
     Dimension(&'static str, f64),
     /// The size is negligible beside the row.
@@ -71,7 +69,7 @@ pub enum RowError {
     /// Two neighbouring joints have a point in common.
     #[error("joints {0} and {next} cross or touch", next = .0 + 1)]
     Crossing(usize),
-    /// A block lies on the wrong side of one of its joints, or intrados and extrados are exchanged there.
+    /// A block is on the wrong side of one of its joints, or intrados and extrados are exchanged there.
     #[error(
         "block {block} is not on its side of joint {joint}: corners must be in the same order at every joint"
     )]
@@ -114,27 +112,27 @@ pub struct Row {
     pub joints: Vec<Joint>,
     /// The supports of the row.
     pub supports: Supports,
-    /// The length, in metres, that scales energies and steps.
+    /// Length, in metres, that scales energies and steps.
     pub size_m: f64,
-    /// Closed polygons that the blocks are drawn as, from left to right, in metres.
+    /// Closed polygons to draw the blocks, from left to right, in metres.
     pub outlines_m: Vec<Vec<Vector2<f64>>>,
-    /// `e x n` of its joints: -1 in an arch, 1 in a stack.
+    /// Sign of `e x n` of its joints: -1 in an arch, 1 in a stack.
     pub handedness: f64,
-    /// Whether the left and the right support extend beyond their joints.
+    /// Flags of the left and the right support: true if the support extends beyond its joint.
     pub supports_extend: [bool; 2],
-    /// Its ties.
+    /// Ties of the row.
     pub ties: Vec<Tie>,
-    /// The gravity that its ties were given with, in m/s2.
+    /// Gravity for which the ties were given, in m/s2.
     pub gravity_m_s2: f64,
 }
 
 impl Row {
-    /// A row of given blocks and joints. `size_m` is the length that scales energies and steps: the mean radius of an arch, the half
-    /// diagonal of a stack.
+    /// Returns a row of given blocks and joints. `size_m` is the length that scales energies and steps: the mean radius of an arch, the half diagonal
+    /// of a stack.
     ///
     /// # Errors
-    /// When a number is not finite, or not positive where it must be, when the size is negligible beside the row, when joints cross, or
-    /// when a block is not between its joints.
+    /// If a number is not finite, or not positive where required; if the size is too small for the row; if joints cross; or if a block is not between
+    /// its joints.
     pub fn new(
         blocks: Vec<Block>,
         joints: Vec<Joint>,
@@ -160,7 +158,7 @@ impl Row {
         for joint in 0..joints.len() {
             for (block, sign) in [(Some(joint), 1.0), (joint.checked_sub(1), -1.0)] {
                 let block = block.filter(|block| *block < count);
-                // No number is on no side.
+                // NaN is on neither side.
                 let is_on = |block: usize| sign * handedness * side(joint, block) > 0.0;
                 if let Some(block) = block.filter(|block| !is_on(*block)) {
                     return Err(RowError::Order { block, joint });
@@ -170,7 +168,7 @@ impl Row {
         let outlines_m = (0..count)
             .map(|block| {
                 let (before, centre_m) = (&joints[block], blocks[block].centre_m);
-                // The free top of a stack is drawn as its bottom turned about the centre.
+                // Draw the free top of a stack as its bottom rotated about the centre.
                 let after = joints.get(block + 1).copied().unwrap_or(Joint {
                     intrados_m: 2.0 * centre_m - before.extrados_m,
                     extrados_m: 2.0 * centre_m - before.intrados_m,
@@ -191,10 +189,10 @@ impl Row {
         })
     }
 
-    /// This row with these ties and no others, under this gravity.
+    /// Returns this row with these ties in place of its own, under this gravity.
     ///
     /// # Errors
-    /// When a tie is none: with its index.
+    /// If a tie is not valid, with its index.
     pub fn with_ties(
         mut self,
         ties: Vec<Tie>,
@@ -209,23 +207,22 @@ impl Row {
         Ok(self)
     }
 
-    /// This row without its ties.
+    /// Returns this row without ties.
     #[must_use]
     pub fn without_ties(mut self) -> Self {
         self.ties.clear();
         self
     }
 
-    /// This row drawn with other outlines of its blocks: closed polygons, in metres.
+    /// Returns this row with other outlines to draw its blocks: closed polygons, in metres.
     #[must_use]
     pub(crate) fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
         debug_assert_eq!(outlines_m.len(), self.blocks.len());
         Self { outlines_m, ..self }
     }
 
-    /// This row with left and right supports that extend beyond their joints or not (a stack has only the left one, its base). A
-    /// support that extends, as the ground does around a base, carries the block however far it slides; otherwise the block can slide
-    /// off. Where joints do not slip the two are the same.
+    /// Returns this row with supports, left and right, that extend beyond their joints or not (a stack has only the left one, its base). A support
+    /// that extends, as the ground around a base, carries the block at any slip. Otherwise the block can slide off. Without slip both are equivalent.
     #[must_use]
     pub const fn with_supports_that_extend(mut self, sides: [bool; 2]) -> Self {
         let right = matches!(self.supports, Supports::Both);
@@ -233,7 +230,7 @@ impl Row {
         self
     }
 
-    /// This row with a body fixed to a block.
+    /// Returns this row with a body fixed to a block.
     #[must_use]
     pub fn carrying(mut self, block: usize, body: &Block) -> Self {
         if let Some(block) = self.blocks.get_mut(block) {
@@ -242,8 +239,8 @@ impl Row {
         self
     }
 
-    /// The mirror image about the y axis: the right support becomes the left one. `None` for a stack, whose blocks
-    /// would keep their order.
+    /// Returns the mirror image about the y axis, in which the right support becomes the left one. `None` for a stack, whose blocks would keep their
+    /// order.
     #[must_use]
     pub fn mirrored(&self) -> Option<Self> {
         if self.supports == Supports::Left {
@@ -264,8 +261,8 @@ impl Row {
         })
     }
 
-    /// Annular voussoirs between sections of a ring (radians from the left springing, ascending, both springings
-    /// included): the exact sectors. Its mean radius is the size.
+    /// Returns annular voussoirs between sections of a ring (radians from the left springing, ascending, both springings included), with exact
+    /// sectors. The size is the mean radius.
     ///
     /// # Errors
     /// When a dimension is not positive and finite, or the sections are fewer than two or not ascending.
@@ -300,7 +297,7 @@ impl Row {
         Ok(row.with_outlines_m(outlines_m.collect()))
     }
 
-    /// An arch of `voussoirs` equal annular voussoirs.
+    /// Returns an arch of `voussoirs` equal annular voussoirs.
     ///
     /// # Errors
     /// When a dimension is not positive and finite, or the number of voussoirs out of range.
@@ -316,8 +313,8 @@ impl Row {
         Self::annular(ring, &sections_rad, mean_radius_m, depth_m, density_kg_m3)
     }
 
-    /// A free-standing stack of drums from the bottom up, all on one vertical axis. Drums of different width
-    /// touch on the narrower face. Its size is half the diagonal of its height and the width of its base.
+    /// Returns a free-standing stack of drums from the bottom up, on one vertical axis. Drums of different width touch on the narrower face. The size
+    /// is half the diagonal of total height and base width.
     ///
     /// # Errors
     /// When a dimension is not positive and finite, or the number of drums out of range.
@@ -346,8 +343,7 @@ impl Row {
         Ok(Self::new(blocks, joints, Supports::Left, size_m)?.with_outlines_m(outlines_m))
     }
 
-    /// A stack of drums of given heights from the bottom up, whose width changes in a straight line from
-    /// `base_width_m` to `top_width_m`.
+    /// Returns a stack of drums of given heights from the bottom up, with a width that varies linearly from `base_width_m` to `top_width_m`.
     ///
     /// # Errors
     /// Those of [`Row::stack`].
@@ -373,7 +369,7 @@ impl Row {
         Self::stack(&drums.collect::<Vec<_>>(), depth_m, density_kg_m3)
     }
 
-    /// Middles of the joints on its left and its right support; a stack has one support.
+    /// Returns the middles of the joints on the left and the right support, in metres; twice the same point for a stack.
     #[must_use]
     pub fn feet_m(&self) -> [Vector2<f64>; 2] {
         let last = match self.supports {
@@ -383,7 +379,7 @@ impl Row {
         [0, last].map(|joint| self.joints[joint].middle_m())
     }
 
-    /// Mass of all blocks in kg.
+    /// Returns the mass of all blocks in kg.
     #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.blocks.iter().map(|block| block.mass_kg).sum()
@@ -396,7 +392,7 @@ fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
     holds.then_some(()).ok_or(error)
 }
 
-/// Mass per unit of area.
+/// Returns the mass per unit area, in kg/m2.
 fn surface_density(depth_m: f64, density_kg_m3: f64) -> Result<f64, RowError> {
     positive("depth in m", depth_m)?;
     positive("density in kg/m3", density_kg_m3)?;
@@ -408,7 +404,7 @@ fn counted(blocks: usize) -> Result<(), RowError> {
     holds.then_some(()).ok_or(RowError::Count(blocks))
 }
 
-/// Refuses joints without a thickness, too large a row for its size, and joints that cross.
+/// Returns an error for joints without thickness, for a size too small for the row, and for joints that cross.
 fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
     for (index, joint) in joints.iter().enumerate() {
         let value = joint.thickness_m();
@@ -427,7 +423,7 @@ fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
     crossing.map_or(Ok(()), |first| Err(RowError::Crossing(first)))
 }
 
-/// Refuses blocks without mass or inertia, or with a centre that is no number.
+/// Returns an error for blocks without mass or inertia, and for centres that are not finite.
 fn check_blocks(blocks: &[Block]) -> Result<(), RowError> {
     let (positive, finite) = ("it must be positive and finite", "it must be finite");
     for (index, block) in blocks.iter().enumerate() {

@@ -33,18 +33,17 @@ use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::MassMoments;
 use crate::mechanics::sway::Sway;
 
-/// The column turning about its right toe; lengths in half diagonals, unit density and depth.
+/// Column that rotates about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]
 pub struct Tilting {
-    /// Sine and cosine of the slenderness, computed from the sides. The angle would not do: for a
-    /// flat column it has lost the height in rounding.
+    /// Sine and cosine of the slenderness, computed from the sides: the angle of a flat column would lose the height in rounding errors.
     sin: f64,
     cos: f64,
     mass: f64,
 }
 
 impl Tilting {
-    /// Sine and cosine of `alpha - angle_rad`.
+    /// Returns sine and cosine of `alpha - angle_rad`.
     fn sin_cos_from(&self, angle_rad: f64) -> (f64, f64) {
         let (sin, cos) = angle_rad.sin_cos();
         (
@@ -53,18 +52,17 @@ impl Tilting {
         )
     }
 
-    /// Where the line of thrust crosses each section normal to the axis, from the base up: the distance to the right over
-    /// the width, for the resultant of the load on the part above. `None` where the part below would have to pull.
+    /// Returns the crossings of the thrust line with sections normal to the axis, from the base up: the distance to the right over the width, for the
+    /// resultant of the load on the part above. `None` if the section would be in tension.
     ///
-    /// No part lies above the top section. There the value is the limit for a thin slice, to which the inertia of its
-    /// rotation contributes.
+    /// There is no part above the top section. Its value is the limit for a thin slice, which includes the inertia of the slice's rotation.
     fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
         let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
         let crossing = |part: f64| {
             let section = Vector2::new(0.0, part * height);
             let above = height * (1.0 - part);
             let centre = section + Vector2::new(0.0, 0.5 * above);
-            // Per mass, which cancels.
+            // Values per mass, which cancels.
             let resultant = load.resultant(&MassMoments {
                 mass: 1.0,
                 first: centre,
@@ -79,7 +77,7 @@ impl Tilting {
 }
 
 impl Mechanism for Tilting {
-    /// The column.
+    /// Rotation of the column.
     type Rotations = [f64; 1];
     const BODIES: &'static [&'static str] = &[""];
 
@@ -104,7 +102,7 @@ impl Mechanism for Tilting {
         }
     }
 
-    /// Differences of sines and cosines are written as products, which keep their digits at small rotations.
+    /// Differences of sines and cosines are written as products, to avoid cancellation at small rotations.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let chord = 2.0 * self.mass * (0.5 * q_rad).sin();
         let (sin, cos) = self.sin_cos_from(0.5 * q_rad);
@@ -129,7 +127,7 @@ impl Mechanism for Tilting {
     }
 }
 
-/// Range of sizes in metres and of densities in kg/m3: no product of them leaves the range of an `f64`.
+/// Range of sizes in metres and of densities in kg/m3; their products stay in the range of an `f64`.
 const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
 
 /// A free-standing column: a rectangular block on rigid ground, which does not slide.
@@ -154,16 +152,16 @@ pub struct Column {
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
-    /// Its ties.
+    /// Ties of the column.
     #[serde(skip)]
     pub ties: Vec<Tie>,
-    /// The gravity that its ties were given with, in m/s2.
+    /// Gravity for which the ties were given, in m/s2.
     #[serde(skip)]
     gravity_m_s2: f64,
 }
 
 impl Column {
-    /// A column of the given height and width (in the plane of the motion), 1 m deep, of 2000 kg/m3.
+    /// Returns a column of given height and width (in the plane of the motion), with a depth of 1 m and a density of 2000 kg/m3.
     ///
     /// # Errors
     /// When a size is outside 1e-9 to 1e12 m.
@@ -181,10 +179,10 @@ impl Column {
         })
     }
 
-    /// This column cut into equal drums.
+    /// Returns this column cut into equal drums.
     ///
     /// # Errors
-    /// When there is none, or more than a row of blocks may have.
+    /// If there is none, or more than a row of blocks may have.
     pub fn with_drums(mut self, drums: usize) -> Result<Self, ArgumentError> {
         let count = drums as f64;
         within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
@@ -192,7 +190,7 @@ impl Column {
         Ok(self)
     }
 
-    /// This column cut into drums of these heights in metres, from the base up.
+    /// Returns this column cut into drums of these heights in metres, from the base up.
     ///
     /// # Errors
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
@@ -210,7 +208,7 @@ impl Column {
         Ok(self)
     }
 
-    /// This column with another width at the top, in metres: it changes in a straight line.
+    /// Returns this column with another width at the top, in metres; the width varies linearly.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -219,17 +217,17 @@ impl Column {
         Ok(self)
     }
 
-    /// This column on a pedestal as wide as its base, off which it falls if it slips too far; if `false`, on ground that
-    /// extends beyond the base.
+    /// Returns this column on a pedestal as wide as its base (`true`), from which it can slide off, or on ground that extends beyond the base
+    /// (`false`).
     #[must_use]
     pub fn on_pedestal(self, pedestal: bool) -> Self {
         Self { pedestal, ..self }
     }
 
-    /// This column with these ties, under this gravity: it is then a row of blocks, also if it is one prism.
+    /// Returns this column with these ties, under this gravity. A column with ties is a row of blocks, also if it is one prism.
     ///
     /// # Errors
-    /// When a tie is none: with its index.
+    /// If a tie is not valid, with its index.
     pub fn with_ties(self, ties: Vec<Tie>, gravity_m_s2: f64) -> Result<Self, (usize, TieError)> {
         let (blocks, size_m) = (self.drum_heights_m().len(), self.half_diagonal_m());
         for (index, tie) in ties.iter().enumerate() {
@@ -242,17 +240,16 @@ impl Column {
         })
     }
 
-    /// Half the diagonal of its outline, in metres, as if it were as wide at the top as at the base.
+    /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
     #[must_use]
     pub fn half_diagonal_m(&self) -> f64 {
         0.5 * self.height_m.hypot(self.width_m)
     }
 
-    /// Its drums as a row of blocks, on ground that extends beyond the base unless it stands on a
-    /// pedestal.
+    /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
     ///
     /// # Errors
-    /// When the drums do not make a row.
+    /// If the drums do not form a row.
     pub fn row(&self) -> Result<Row, RowError> {
         let row = Row::tapered_stack(
             &self.drum_heights_m(),
@@ -266,27 +263,27 @@ impl Column {
         Ok(tied.expect("the ties were checked with the same blocks"))
     }
 
-    /// Heights of its drums from the base up, in metres; its own height where it is one block.
+    /// Returns the heights of its drums from the base up, in metres; its own height for a single block.
     #[must_use]
     pub fn drum_heights_m(&self) -> Vec<f64> {
         let drums = self.drum_heights_m.clone();
         drums.unwrap_or_else(|| vec![self.height_m])
     }
 
-    /// Whether it is one block with upright sides, which nothing but the ground holds, as in Housner's model.
+    /// Returns whether it is one prismatic block without ties, as in Housner's model.
     #[must_use]
     pub fn is_one_prism(&self) -> bool {
         let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
         prism && self.ties.is_empty()
     }
 
-    /// Width at the top, in metres.
+    /// Returns the width at the top, in metres.
     #[must_use]
     pub fn top_width_m(&self) -> f64 {
         self.top_width_m.unwrap_or(self.width_m)
     }
 
-    /// This column with another depth out of plane, in metres.
+    /// Returns this column with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -295,7 +292,7 @@ impl Column {
         Ok(self)
     }
 
-    /// This column with another density, in kg/m3.
+    /// Returns this column with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -304,37 +301,36 @@ impl Column {
         Ok(self)
     }
 
-    /// Sections at which the line of thrust of a single block is reported, in metres above the base: 21, from the base to the
-    /// top.
+    /// Returns the sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top.
     #[must_use]
     pub fn thrust_sections_m(&self) -> Vec<f64> {
         let parts = thrust_section_parts();
         parts.map(|part| part * self.height_m).collect()
     }
 
-    /// Slenderness `alpha`: angle of the diagonal with the vertical, in radians.
+    /// Returns the slenderness `alpha`, the angle of the diagonal with the vertical, in radians.
     #[must_use]
     pub fn slenderness_rad(&self) -> f64 {
         self.width_m.atan2(self.height_m)
     }
 }
 
-/// A free-standing column that rocks under an impact model.
+/// Free-standing column that rocks under an impact model.
 #[derive(Clone, Debug)]
 pub struct RockingColumn {
     half_diagonal_m: f64,
     mass_unit_kg: f64,
     incipient_g: f64,
     first: Link<Tilting>,
-    /// The link after one or more impacts; `None` if the first impact stops the column.
+    /// Link after one or more impacts; `None` if the first impact stops the column.
     next: Option<Link<Tilting>>,
 }
 
 impl RockingColumn {
-    /// The column under an impact model.
+    /// Returns the column under an impact model.
     ///
     /// # Errors
-    /// When a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
+    /// If a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
     pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
         let law = law.into();
         law.check()?;
@@ -373,13 +369,12 @@ impl RockingColumn {
     }
 }
 
-/// Rate after an impact for a unit rate before it. The closing motion, a rotation about one toe, is projected
-/// in the kinetic-energy metric onto the opening motion, the rotation about the other toe. That conserves
-/// angular momentum about the new toe, and gives `1 - 3/2 sin^2(alpha)`. The arguments are sine and cosine of
-/// the slenderness.
+/// Returns the rate after an impact for a unit rate before it, from sine and cosine of the slenderness. The closing motion, a rotation about one toe,
+/// is projected in the kinetic-energy metric onto the rotation about the other toe. This conserves angular momentum about the new toe, and gives `1 -
+/// 3/2 sin^2(alpha)`.
 ///
-/// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: so flat a column would
-/// drive the toe that it has turned about into the ground. It stops instead.
+/// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: the old toe of such a flat column would move into the ground.
+/// The column stops instead.
 fn rate_ratio(sin: f64, cos: f64) -> f64 {
     // About the middle of the base; the mass cancels.
     let moments = MassMoments {
@@ -392,12 +387,12 @@ fn rate_ratio(sin: f64, cos: f64) -> f64 {
     opening.power(&closing) / opening.power(&opening.momentum(&moments))
 }
 
-/// Sections at which the line of thrust is reported, as fractions of the height.
+/// Returns the sections at which the thrust line is reported, as fractions of the height.
 fn thrust_section_parts() -> impl Iterator<Item = f64> {
     (0..=20_u8).map(|section| f64::from(section) / 20.0)
 }
 
-/// Demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
+/// Returns the demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
 fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
     let width = 2.0 * mechanism.sin;
     let base = SectionResultant {
@@ -425,8 +420,7 @@ impl MechanismChain for RockingColumn {
         self.incipient_g
     }
 
-    /// The column is one stone: its only section is the base, which the ground's reaction crosses at the
-    /// toe. The excess is zero unless the ground would have to pull.
+    /// The only section of the column is the base, where the ground's reaction acts at the toe. The excess is zero unless the reaction is tensile.
     fn demand(&self, mechanism: &Tilting, motion: &Motion) -> Demand {
         // Acceleration of the centre of gravity, on its circle about the toe.
         let (sin, cos) = mechanism.sin_cos_from(motion.q_rad);
@@ -472,7 +466,7 @@ impl MechanismChain for RockingColumn {
         link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 
-    /// None: the restitution coefficient alone describes the impact of a column.
+    /// Returns an empty list: the restitution coefficient alone describes the impact of a column.
     fn hinge_impulses(&self, _: usize, _: Sway) -> Vec<Vector2<f64>> {
         Vec::new()
     }

@@ -7,16 +7,16 @@
 
 use nalgebra::DMatrix;
 
-/// Pivots per unknown before the method gives up.
+/// Maximum number of pivots per unknown.
 const PIVOTS: usize = 20;
-/// Entries below this do not serve as pivots, in a matrix of unit diagonal.
+/// Least pivot, in a matrix with unit diagonal.
 const LEAST_PIVOT: f64 = 1e-11;
-/// The artificial variable is zero below this fraction of the largest constant.
+/// Value of the artificial variable, over the largest constant, that counts as zero.
 const ROUNDING: f64 = 1e-12;
 
-/// Solves for `z`. `matrix` should be scaled to a unit diagonal where it has one.
+/// Solves for `z`. `matrix` should be scaled to a unit diagonal where the diagonal is not zero.
 ///
-/// `None` when the method ends on a ray or takes too long.
+/// `None` if the method ends on a ray or needs too many pivots.
 #[must_use]
 pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     let n = constant.len();
@@ -45,14 +45,14 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
         if left == artificial {
             return Some(values(&table, &basis));
         }
-        // The complement of the variable that left enters.
+        // The complement of the leaving variable enters.
         entering = if left < n { left + n } else { left - n };
         let mut least: Option<(f64, usize)> = None;
         for candidate in 0..n {
             let slope = table[(candidate, entering)];
             if slope > LEAST_PIVOT {
                 let ratio = table[(candidate, right)].max(0.0) / slope;
-                // Among equal ratios the artificial variable leaves, or else the row with the larger pivot.
+                // Among equal ratios, prefer the artificial variable to leave, otherwise the row with the larger pivot.
                 let better = least.is_none_or(|(ratio_least, row_least)| {
                     let same = (ratio - ratio_least).abs() <= 1e-12 * ratio_least.abs();
                     if same {
@@ -69,7 +69,7 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
             }
         }
         let Some((_, leaving)) = least else {
-            // A ray, unless rounding is all that is left of the artificial variable.
+            // The method ends on a ray, unless the artificial variable is zero within rounding error.
             let rest = basis.iter().position(|variable| *variable == artificial)?;
             let most = constant.iter().fold(0.0_f64, |most, q| most.max(q.abs()));
             return (table[(rest, right)] <= ROUNDING * most).then(|| values(&table, &basis));
@@ -79,13 +79,13 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     None
 }
 
-/// Coefficient of the artificial variable in a row: it differs from row to row, so that ties are rare.
+/// Returns the coefficient of the artificial variable in a row; it differs between rows, so that equal ratios are rare.
 fn cover(row: usize) -> f64 {
     let golden = row as f64 * 0.618_033_988_749_894_9;
     1.0 + 0.5 * golden.fract()
 }
 
-/// Values of the unknowns in a basis.
+/// Returns the values of the unknowns in a basis.
 fn values(table: &DMatrix<f64>, basis: &[usize]) -> Vec<f64> {
     let n = basis.len();
     let mut z = vec![0.0; n];

@@ -22,7 +22,7 @@ use serde::Serialize;
 use super::chain::{Link, Mechanism, MechanismChain};
 use super::sway::Sway;
 
-/// A free-standing block.
+/// Free-standing block.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Block {
     /// Frequency parameter `p = sqrt(3 g / (4 R))`, in rad/s.
@@ -32,19 +32,18 @@ pub struct Block {
     pub half_diagonal_m: f64,
 }
 
-/// The blocks equivalent to a structure.
+/// Blocks equivalent to a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Equivalent {
-    /// Slenderness `alpha = atan(A_L)` of both, in radians.
+    /// Slenderness `alpha = atan(A_L)` of both blocks, in radians.
     pub slenderness_rad: f64,
-    /// The block whose disturbances grow as fast at rest; `None` if those of the structure do not grow
-    /// there.
+    /// Block with the same growth rate of disturbances at rest; `None` if disturbances of the structure do not grow there.
     pub at_rest: Option<Block>,
-    /// The block whose disturbances grow as fast at the unstable equilibrium.
+    /// Block with the same growth rate of disturbances at the unstable equilibrium; `None` if they do not grow.
     pub at_critical: Option<Block>,
 }
 
-/// The blocks equivalent to the mechanism that starts `structure` to a side under gravity.
+/// Returns the blocks equivalent to the first mechanism of `structure` to a side under gravity. `None` without such a mechanism.
 #[must_use]
 pub fn equivalent_towards<C: MechanismChain>(
     structure: &C,
@@ -67,11 +66,11 @@ pub fn equivalent_towards<C: MechanismChain>(
     })
 }
 
-/// `n^2` for unit gravity and length.
+/// Returns `n^2` for unit gravity and length.
 fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
     let rise = |q| link.mechanism.coefficients(q).s_y;
-    // Central difference over five points. The step is a thousandth of the way to q_c: the relative
-    // error is its fourth power, and as much again by rounding.
+    // Five-point central difference. The step is a thousandth of the way to q_c: its relative error is of the order of the fourth power of that, as
+    // is the rounding error.
     let step = 1e-3 * link.critical_rad;
     let near = rise(q_rad + step) - rise(q_rad - step);
     let far = rise(q_rad + 2.0 * step) - rise(q_rad - 2.0 * step);

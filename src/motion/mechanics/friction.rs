@@ -1,9 +1,9 @@
-//! Limit analysis of a row whose joints slip by Coulomb's law.
+//! Limit analysis of a row with sliding joints by Coulomb's law.
 //!
-//! A joint carries compression at its two corners, `N_I, N_E >= 0`, and `|T| <= mu (N_I + N_E)` along itself. The largest push under
-//! which such forces balance the row is a linear programme. Its multipliers are the mechanism: which joints open, about which edge,
-//! and which slip. They obey the associated flow rule: a joint that slips also opens, by `mu` times the slip. Stone joints do not,
-//! so the push is an upper bound of what the row bears. It is exact where no joint of the mechanism slips.
+//! A joint carries compression at its two corners, `N_I, N_E >= 0`, and a shear force `|T| <= mu (N_I + N_E)`. The largest push in equilibrium with
+//! such forces is the solution of a linear program. Its multipliers are the mechanism: which joints open, about which edge, and which slip. They obey
+//! the associated flow rule: a joint that slips also opens, by `mu` times the slip. Stone joints do not dilate, so the push is an upper bound of the
+//! capacity. It is exact if no joint of the mechanism slips.
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, SolverStatus};
@@ -16,47 +16,47 @@ use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::stance::Stance;
 use crate::mechanics::sway::Sway;
 
-/// Rates below this fraction of the largest one count as zero.
+/// Rate, over the largest one, that counts as zero.
 const LEAST_RATE: f64 = 1e-4;
-/// The least coefficient is found to within this.
+/// Tolerance of the least coefficient of friction.
 const COEFFICIENT_TOLERANCE: f64 = 1e-7;
-/// Coefficients beyond this one are taken to prevent all sliding.
+/// Coefficient of friction that is assumed to prevent all slip.
 const LARGEST_COEFFICIENT: f64 = 100.0;
-/// A shortage of friction below this many times the weight at every joint counts as none.
+/// Excess of friction over its bound, over the weight, that counts as zero.
 const LEAST_SHORTAGE: f64 = 1e-8;
 
-/// A joint that opens or slips in a mechanism.
+/// Joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Yield {
     /// Index of the joint.
     pub joint: usize,
-    /// Whether it opens at the intrados and at the extrados, beyond what slipping needs.
+    /// Flags of opening at the intrados and at the extrados, beyond the dilation due to slip.
     pub opens: [bool; 2],
-    /// The edge towards which the right block slips, if it does.
+    /// Edge towards which the right block slips; `None` without slip.
     pub slips: Option<Edge>,
 }
 
-/// The push that starts a row whose joints may slip.
+/// Push of the first motion of a row with sliding joints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionOnset {
-    /// Ground acceleration, without its sign, in units of gravity: the associated bound.
+    /// Ground acceleration, without its sign, in multiples of gravity: upper bound by the associated flow rule.
     pub acceleration_g: f64,
     /// Joints that open or slip, from left to right.
     pub yields: Vec<Yield>,
 }
 
 impl FrictionOnset {
-    /// Whether a joint of the mechanism slips.
+    /// Returns whether a joint of the mechanism slips.
     #[must_use]
     pub fn sliding_governs(&self) -> bool {
         self.yields.iter().any(|joint| joint.slips.is_some())
     }
 }
 
-/// Why there is no such push.
+/// Reason why there is no such push.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FrictionError {
-    /// No forces balance its weight.
+    /// No joint forces are in equilibrium with the weight for this coefficient.
     #[error(
         "with a coefficient of friction of {0:?} the row cannot carry its own weight; give a larger friction_coefficient"
     )]
@@ -64,18 +64,17 @@ pub enum FrictionError {
     /// The row falls with any coefficient.
     #[error("the row cannot carry its own weight, whatever the friction")]
     NeverStands,
-    /// The programme was not solved.
+    /// The linear program was not solved.
     #[error(
         "the limit analysis with friction was not solved ({0}): give another friction_coefficient"
     )]
     NotSolved(SolverStatus),
 }
 
-/// The largest horizontal push towards a side that a row bears, and the mechanism in which it then gives way; `None` if it
-/// bears any push.
+/// Computes the largest horizontal push to a side that an undeformed row carries, and its mechanism; `None` if the row carries any push.
 ///
 /// # Errors
-/// When the row does not stand with this coefficient, or the programme is not solved.
+/// If the row is not stable with this coefficient, or the linear program is not solved.
 pub fn onset(
     row: &Row,
     coefficient: f64,
@@ -84,7 +83,7 @@ pub fn onset(
     onset_at(row, &Stance::undeformed(row), coefficient, sway)
 }
 
-/// The largest horizontal push that a row bears where it stands, with the ties pulling as they do there.
+/// Computes the largest horizontal push that a row in a given state carries, with the tie forces of this state.
 ///
 /// # Errors
 /// Those of [`onset`].
@@ -100,7 +99,8 @@ pub fn onset_at(
     onset_of_standing(row, stance, coefficient, sway)
 }
 
-/// The largest push of a row that is known to stand there with this coefficient. Open joints press only at the corner that touches.
+/// Computes the largest push of a row that is known to be stable in a given state with this coefficient. Open joints are in contact only at their
+/// closed corner.
 pub(crate) fn onset_of_standing(
     row: &Row,
     stance: &Stance,
@@ -115,15 +115,15 @@ pub(crate) fn onset_of_standing(
     }))
 }
 
-/// Whether a row carries its own weight with this coefficient.
+/// Returns whether an undeformed row carries its own weight with this coefficient.
 ///
 /// # Errors
-/// When it falls with any coefficient, or the programme is not solved.
+/// If the row falls with any coefficient, or the linear program is not solved.
 pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
     stands_at(row, &Stance::undeformed(row), coefficient)
 }
 
-/// Whether a row carries its own weight where it stands. Open joints press only at the corner that touches.
+/// Returns whether a row in a given state carries its own weight. Open joints are in contact only at their closed corner.
 ///
 /// # Errors
 /// Those of [`stands`].
@@ -137,10 +137,10 @@ pub(crate) fn stands_at(
     Ok(found.is_none_or(|(shortage, _)| shortage <= LEAST_SHORTAGE))
 }
 
-/// The least coefficient of friction with which a row carries its own weight, to within 1e-7.
+/// Returns the least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.
 ///
 /// # Errors
-/// When the row falls with any coefficient, or a programme is not solved.
+/// If the row falls with any coefficient, or a linear program is not solved.
 pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
     if !stands(row, LARGEST_COEFFICIENT)? {
         return Err(FrictionError::NeverStands);
@@ -152,17 +152,17 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
     Ok(least)
 }
 
-/// The goal of a programme.
+/// Objective of a linear program.
 #[derive(Clone, Copy, PartialEq)]
 enum Goal {
-    /// The largest push, in units of gravity.
+    /// Largest push, in multiples of gravity.
     Push,
-    /// Excess of friction over its bound at every joint that the row needs to stand, in units of the weight.
+    /// Least excess of friction over its bound, common to all joints, for which the row is stable; in units of the weight.
     Shortage,
 }
 
-/// Unknowns: the goal, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: the equilibrium of every
-/// block, that open corners do not press, then four conditions a joint.
+/// Linear program. Unknowns: the objective, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: equilibrium of every block, zero
+/// forces at open corners, then four conditions per joint.
 struct Program {
     matrix: CscMatrix,
     right: Vec<f64>,
@@ -171,7 +171,7 @@ struct Program {
     joints: usize,
 }
 
-/// Weights of the blocks less the pulls of ties, three numbers for each: what the forces at its joints have to balance.
+/// Returns the loads of the blocks, three numbers each: weights minus tie forces. The joint forces balance them.
 fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
     let (size_m, mass_kg, centres_m) = (row.size_m, row.mass_kg(), &stance.placement.centres_m);
     let weights = row.blocks.iter().map(|block| block.mass_kg / mass_kg);
@@ -234,7 +234,7 @@ impl Program {
             let [intrados, extrados, along] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
             let first = equations + 4 * index;
             for (edge, corner) in [intrados, extrados].into_iter().enumerate() {
-                // A variable that is zero already needs no other bound.
+                // A variable that is fixed to zero needs no other bound.
                 if open[edge] {
                     right.push(1.0);
                 } else {
@@ -261,8 +261,10 @@ impl Program {
         }
     }
 
-    /// Minimises `factor` times the goal. Returns the goal, and the joints that open or slip; `None` if the goal has no bound, and this error
-    /// if no forces balance the row.
+    /// Minimises `factor` times the objective. Returns the objective, and the joints that open or slip; `None` if the objective is unbounded.
+    ///
+    /// # Errors
+    /// `unbalanced` if no forces are in equilibrium with the row.
     fn solve(
         &self,
         factor: f64,
@@ -289,7 +291,7 @@ impl Program {
         let yields = rates.chunks(4).enumerate().map(|(joint, rates)| Yield {
             joint,
             opens: [moves(rates[0]), moves(rates[1])],
-            // The friction that reaches its bound acts against the slip.
+            // Friction at its bound acts against the slip.
             slips: Edge::only([moves(rates[2]), moves(rates[3])]),
         });
         let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());

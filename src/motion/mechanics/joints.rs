@@ -1,14 +1,13 @@
 //! Positions of the blocks of a row, from the gaps of its joints.
 //!
-//! A joint that neither slides nor is penetrated has two coordinates, the gaps `g_I, g_E >= 0` at its corners. With
-//! `s` the handedness of the row and `t` the thickness of the joint, the right face is turned against the left one
-//! by `s delta`, `delta = (g_E - g_I)/t`, and the smaller gap parts the nearer corners along the normal of the joint
-//! at the mean angle of its faces. A hinge, where that gap is zero, is thus an exact pin at its corner, at any rotation; the larger
-//! gap is the arc `t |delta|`, not the chord.
+//! A joint without slip or overlap has two coordinates, the gaps `g_I, g_E >= 0` at its corners. Let `s` be the handedness of the row and `t` the
+//! thickness of the joint. The right face is rotated relative to the left one by `s delta`, `delta = (g_E - g_I)/t`. The smaller gap separates the
+//! nearer corners along the normal of the joint in the mean direction of its faces. At a hinge this gap is zero, so the hinge is an exact pin at its
+//! corner at any rotation. The larger gap is the arc `t |delta|`, not the chord.
 //!
-//! Positions follow from the left support to the right. In an arch the blocks to the right of the last open joint stand where the
-//! right support holds them, and the rotation of that joint closes the row. What rounding leaves between its two faces is the
-//! [`Placement::closure_error`]. Supports stand where they were built, or where they have gone since.
+//! Positions are computed from left to right. In an arch, the blocks right of the last open joint are fixed to the right support, and the rotation of
+//! that joint closes the row. The remaining gap between its two faces, due to rounding errors, is the [`Placement::closure_error`]. Supports are in
+//! their original or a moved position.
 
 use nalgebra::Vector2;
 
@@ -17,14 +16,14 @@ use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::{Pose, product, unit};
 use crate::mechanics::geometry::ring::Edge;
 
-/// A corner of a joint counts as shut when its gap is below this fraction of the thickness.
+/// Gap, over the thickness, below which a corner of a joint counts as closed.
 pub const SHUT_RATIO: f64 = 1e-12;
 
-/// The line on which the faces of a joint press each other, in its present position.
+/// Contact line of a joint in its current position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
-    /// Its intrados corner: midway between the intrados corners of the two faces if these are the nearer ones,
-    /// else one thickness along the joint from the midpoint of the extrados corners.
+    /// Intrados corner of the line. It is midway between the intrados corners of the two faces if these are the nearer ones; otherwise it is one
+    /// thickness along the joint from the midpoint of the extrados corners.
     pub intrados_m: Vector2<f64>,
     /// Unit vector to the extrados.
     pub along: Vector2<f64>,
@@ -35,7 +34,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Its corner on the given edge.
+    /// Returns the corner on an edge, in metres.
     #[must_use]
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         match edge {
@@ -45,7 +44,7 @@ impl Frame {
     }
 }
 
-/// Constants of a joint, kept so that they are not computed at each step.
+/// Constants of a joint, computed once.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     joint: Joint,
@@ -54,38 +53,38 @@ struct Face {
     thickness: f64,
 }
 
-/// The positions of all blocks and joints of a row.
+/// Positions of all blocks and joints of a row.
 #[derive(Clone, Debug)]
 pub struct Placement {
     faces: Vec<Face>,
     undeformed_m: Vec<Vector2<f64>>,
     handedness: f64,
     supports: Supports,
-    /// Positions of the left and the right support.
+    /// Poses of the left and the right support.
     pub support_poses: [Pose; 2],
     /// Gaps of every joint at intrados and extrados, in metres.
     pub gaps_m: Vec<[f64; 2]>,
-    /// Placements of the blocks.
+    /// Poses of the blocks.
     pub poses: Vec<Pose>,
     /// Centres of gravity of the blocks, in metres.
     pub centres_m: Vec<Vector2<f64>>,
-    /// Frames of the joints, at which these press.
+    /// Contact lines of the joints.
     pub frames: Vec<Frame>,
-    /// The mismatch by rounding at the last open joint of an arch; `None` for stacks, and while all joints are shut.
+    /// Closure error at the last open joint of an arch; `None` for stacks, and if all joints are closed.
     pub closure: Option<Closure>,
 }
 
-/// The mismatch between the two parts of an arch.
+/// Closure error between the two parts of an arch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closure {
-    /// The last open joint.
+    /// Index of the last open joint.
     pub joint: usize,
-    /// From where the left part ends to where the right part begins, in metres.
+    /// Vector from the end of the left part to the start of the right part, in metres.
     pub error_m: Vector2<f64>,
 }
 
 impl Placement {
-    /// The undeformed row.
+    /// Returns the placement of the undeformed row.
     #[must_use]
     pub fn new(row: &Row) -> Self {
         let faces = row.joints.iter().map(|joint| Face {
@@ -112,39 +111,38 @@ impl Placement {
         placement
     }
 
-    /// Moves the left and the right support, with the gaps as they are: the next [`Placement::open`] or [`Placement::turn`] places the
-    /// blocks between them.
+    /// Sets the poses of the supports without changing the gaps. The next [`Placement::open`] or [`Placement::turn`] places the blocks between them.
     pub const fn move_supports(&mut self, poses: [Pose; 2]) {
         self.support_poses = poses;
     }
 
-    /// Length of the closure error in metres.
+    /// Returns the length of the closure error in metres.
     #[must_use]
     pub fn closure_error(&self) -> f64 {
         self.closure.map_or(0.0, |closure| closure.error_m.norm())
     }
 
-    /// Whether both corners of a joint touch.
+    /// Returns whether both corners of a joint are in contact.
     #[must_use]
     pub(crate) fn is_shut(&self, joint: usize) -> bool {
         self.gaps_m[joint] == [0.0; 2]
     }
 
-    /// The first joint that is open at both edges.
+    /// Returns the first joint that is open at both edges.
     #[must_use]
     pub(crate) fn parted_joint(&self) -> Option<usize> {
         let mut gaps_m = self.gaps_m.iter();
         gaps_m.position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
     }
 
-    /// Number of corners that do not touch.
+    /// Returns the number of open corners.
     #[must_use]
     pub(crate) fn open_corners(&self) -> usize {
         let corners = self.gaps_m.iter().flatten();
         corners.filter(|gap| **gap > 0.0).count()
     }
 
-    /// The largest gap over the thickness of its joint.
+    /// Returns the largest gap over the thickness of its joint.
     #[must_use]
     pub(crate) fn largest_gap_ratio(&self) -> f64 {
         let corners = self.gaps_m.iter().zip(&self.faces);
@@ -152,8 +150,7 @@ impl Placement {
         ratios.fold(0.0, f64::max)
     }
 
-    /// Shuts the corners that are open by less than this fraction of the thickness, and places the blocks anew. Returns false if
-    /// there are none.
+    /// Closes the corners with gaps below this fraction of the thickness, and updates the positions. Returns false if there are none.
     pub(crate) fn shut_below(&mut self, ratio: f64) -> bool {
         let mut found = false;
         for (gaps, face) in self.gaps_m.iter_mut().zip(&self.faces) {
@@ -170,7 +167,7 @@ impl Placement {
         found
     }
 
-    /// Takes over the positions of another placement of the same row.
+    /// Copies the positions of another placement of the same row.
     pub fn copy_from(&mut self, other: &Self) {
         self.gaps_m.copy_from_slice(&other.gaps_m);
         self.poses.copy_from_slice(&other.poses);
@@ -180,7 +177,7 @@ impl Placement {
         self.closure = other.closure;
     }
 
-    /// Sets the gaps of hinges that turn the blocks by the given rotations in radians; every joint stays shut at one corner.
+    /// Sets the gaps of hinges for given rotations of the blocks in radians. Every joint stays closed at one corner.
     pub fn turn(&mut self, rotations_rad: &[f64]) {
         let [first, last] = self.support_poses.map(|pose| pose.rotation_rad());
         for joint in 0..self.faces.len() {
@@ -192,7 +189,7 @@ impl Placement {
         self.place();
     }
 
-    /// Adds to the gaps, shuts what is below [`SHUT_RATIO`], and places the blocks anew.
+    /// Adds changes to the gaps, closes those below [`SHUT_RATIO`], and updates the positions.
     pub fn open(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
         for joint in 0..self.faces.len() {
             for (gap, change) in self.gaps_m[joint].iter_mut().zip(change_m(joint)) {
@@ -202,7 +199,7 @@ impl Placement {
         self.place();
     }
 
-    /// Positions from the gaps, left to right.
+    /// Computes the positions from the gaps, from left to right.
     fn place(&mut self) {
         let last_open = match self.supports {
             Supports::Left => None,
@@ -214,7 +211,7 @@ impl Placement {
             let face = &self.faces[joint];
             let closing = last_open == Some(joint);
             let right = if closing {
-                // Its rotation brings the rotation of the row to that of the right support.
+                // The rotation of the closing joint follows from the rotation of the right support.
                 let opening = self.handedness * (last.rotation_rad() - left.rotation_rad());
                 let [intrados, extrados] = self.gaps_m[joint];
                 let gaps = hinged(opening * face.thickness, intrados.min(extrados));
@@ -236,7 +233,7 @@ impl Placement {
         }
     }
 
-    /// Sets the frame of a joint and completes the placement of its right block, whose rotation is given.
+    /// Computes the contact line of a joint, and completes the pose of its right block, whose rotation is given.
     fn frame(&mut self, joint: usize, left: &Pose, mut right: Pose, closing: bool) -> Pose {
         let face = &self.faces[joint];
         let s = self.handedness;
@@ -259,7 +256,7 @@ impl Placement {
         let start = left.of(face.middle) + normal * (nearer + chord);
         if closing {
             let mut error_m = right.of(face.middle) - start;
-            // A joint that is open at both corners takes the error normal to it as a change of its gaps.
+            // In a joint that is open at both corners, a change of the gaps removes the normal part of the error.
             if nearer > 0.0 {
                 let change = normal.dot(&error_m).max(-nearer);
                 self.gaps_m[joint] = gaps.map(|gap| gap + change);
@@ -286,12 +283,13 @@ impl Placement {
     }
 }
 
-/// Gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), and parted by `nearer_m`.
+/// Returns the gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), with an additional gap `nearer_m` at both
+/// corners.
 fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
-/// The gap, or zero below [`SHUT_RATIO`].
+/// Returns the gap, or zero if it is below [`SHUT_RATIO`].
 fn shut(gap: f64, face: &Face) -> f64 {
     let least = SHUT_RATIO * face.thickness;
     if gap < least { 0.0 } else { gap }

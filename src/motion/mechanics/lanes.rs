@@ -1,13 +1,13 @@
-//! Numbers side by side, so that the same code computes one motion, several at once, or derivatives.
+//! Parallel numbers, so that the same code computes one motion, several motions in parallel, or derivatives.
 //!
-//! Code written for any [`Real`] never branches on a value: it selects. So each lane of [`Lanes`] has the bits that it would have alone,
-//! whatever the others hold.
+//! Code for any [`Real`] never branches on a value: it selects. Each lane of [`Lanes`] therefore has exactly the result of a single computation, for
+//! any values in the other lanes.
 
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A pair: an expression with 0 and with 1 for the name. It is written out, not mapped: in functions as large as a step the compiler
-/// does not inline `map`.
+/// Pair of an expression with 0 and with 1 in place of the name. The code is written out, because the compiler does not inline `map` in functions as
+/// large as a step.
 macro_rules! both {
     ($index:ident: $value:expr) => {
         [
@@ -24,7 +24,7 @@ macro_rules! both {
 }
 pub(crate) use both;
 
-/// The numbers that the mechanics of elastic joints computes with.
+/// Number type of the mechanics of elastic joints.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -36,39 +36,39 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// A constant.
+    /// Returns a constant.
     fn of(value: f64) -> Self;
 
-    /// The square root.
+    /// Returns the square root.
     #[must_use]
     fn sqrt(self) -> Self;
 
-    /// `yes` where this is above another number, else `no`. The difference of two infinities is NaN, so it compares instead of subtracting.
+    /// Returns `yes` if this is above another number, else `no`. It compares and does not subtract, because the difference of two infinities is NaN.
     #[must_use]
     fn above(self, other: Self, yes: Self, no: Self) -> Self;
 
-    /// `yes` where this is positive, else `no`.
+    /// Returns `yes` if this is positive, else `no`.
     #[inline(always)]
     #[must_use]
     fn positive(self, yes: Self, no: Self) -> Self {
         self.above(Self::of(0.0), yes, no)
     }
 
-    /// The larger of the two.
+    /// Returns the larger one of two numbers.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         self.above(other, self, other)
     }
 
-    /// The smaller of the two.
+    /// Returns the smaller one of two numbers.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         other.above(self, self, other)
     }
 
-    /// The magnitude.
+    /// Returns the absolute value.
     #[inline(always)]
     #[must_use]
     fn abs(self) -> Self {
@@ -76,11 +76,11 @@ pub trait Real:
     }
 }
 
-/// `L` numbers side by side.
+/// `L` parallel numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const L: usize>(pub [f64; L]);
 
-/// Applies an expression lane by lane. It is a loop, not a closure, so that the compiler vectorises it wherever it stands.
+/// Applies an expression lane by lane, in a loop and not a closure, so that the compiler vectorises it everywhere.
 macro_rules! by_lane {
     ($lane:ident: $value:expr) => {{
         let mut lanes = [0.0; L];
@@ -108,7 +108,7 @@ macro_rules! operators {
 }
 operators!(Add add +, Sub sub -, Mul mul *, Div div /);
 
-/// Implements the operators that assign, by those that do not.
+/// Implements the assignment operators by the corresponding operators.
 macro_rules! assigning {
     ($($number:ident),+) => {$(
         impl<const N: usize> AddAssign for $number<N> {
@@ -163,12 +163,12 @@ impl<const L: usize> Real for Lanes<L> {
     }
 }
 
-/// Implements access to single lanes of a struct: fields, after a semicolon fields that are pairs, and after another one fields that are
-/// such structs themselves.
+/// Implements access to single lanes of a struct. Its arguments are fields, after a semicolon fields that are pairs, and after another semicolon
+/// fields that are such structs themselves.
 macro_rules! remembered {
     ($type:ident { $($field:ident),* $(; $($pair:ident),+ $(; $($part:ident: $of:ident),+)?)? }) => {
         impl<R: Real> $type<R> {
-            /// Nothing has happened.
+            /// Returns the initial state, with all values zero.
             #[must_use]
             pub fn none() -> Self {
                 let zero = R::of(0.0);
@@ -186,7 +186,7 @@ macro_rules! remembered {
                 })+ $($(self.$part.set(lane, &alone.$part);)+)?)?
             }
 
-            /// One lane.
+            /// Returns one lane.
             #[must_use]
             pub(crate) fn lane(&self, lane: usize) -> $type<Lanes<1>> {
                 $type {
@@ -199,7 +199,7 @@ macro_rules! remembered {
 }
 pub(crate) use remembered;
 
-/// A number with its derivatives with respect to `D` variables.
+/// Number with its derivatives with respect to `D` variables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dual<const D: usize> {
     /// The number.
@@ -209,13 +209,13 @@ pub struct Dual<const D: usize> {
 }
 
 impl<const D: usize> Dual<D> {
-    /// The variable of this index.
+    /// Returns the variable with this index.
     #[must_use]
     pub(crate) fn variable(value: f64, index: usize) -> Self {
         Self::with(value, |other| if other == index { 1.0 } else { 0.0 })
     }
 
-    /// A function of this number, given by its value and derivative.
+    /// Returns a function of this number, given by its value and derivative.
     #[must_use]
     pub(crate) fn chained(self, value: f64, derivative: f64) -> Self {
         Self::with(value, |i| self.slope[i] * derivative)

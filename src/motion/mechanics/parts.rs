@@ -1,4 +1,4 @@
-//! The parts of a structure and their places: the same interface for an arch, a column and a row of blocks.
+//! Parts of a structure and their positions, as a common interface of arch, column and row of blocks.
 
 use nalgebra::Vector2;
 
@@ -8,14 +8,14 @@ use super::column::Column;
 use super::geometry::curve::{distance, sides};
 use super::geometry::ring::{Edge, Ring};
 
-/// Number of equal parts that stand for a continuous ring: the participating mass errs by the square of their size, 1e-6.
+/// Number of equal parts that represent a continuous ring. The relative error of the participating mass is of the order of the square of their size,
+/// 1e-6.
 const PARTS: usize = 720;
 
-/// A part of a structure that no hinge divides.
+/// Part of a structure that no hinge divides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Place of its middle along the structure: an angle from the left springing in radians, or the number of the joint before
-    /// it plus one half.
+    /// Position of its middle along the structure: angle from the left springing in radians, or index of the joint before it plus one half.
     pub place: f64,
     /// Its mass, in kg.
     pub mass_kg: f64,
@@ -26,13 +26,13 @@ pub struct Part {
 /// Bodies of a drawing of a structure, in metres.
 #[derive(Clone, Debug)]
 pub enum Outline {
-    /// A ring that is cut at its hinges, drawn with these joints.
+    /// Ring that is cut at its hinges, drawn with these joints.
     Ring {
         /// The ring.
         ring: Ring,
         /// Its mean radius.
         mean_radius_m: f64,
-        /// Its joints, in radians from the left springing; none where hinges open anywhere.
+        /// Its joints, in radians from the left springing; empty if hinges open anywhere.
         joints_rad: Vec<f64>,
     },
     /// One body.
@@ -47,35 +47,35 @@ pub enum Outline {
     },
 }
 
-/// A section at which the position of the line of thrust is known, in metres, undeformed.
+/// Undeformed section at which the position of the thrust line is known, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
     /// Its midpoint.
     pub middle_m: Vector2<f64>,
-    /// From its intrados end to its extrados end; in a column, from left to right.
+    /// Vector from its intrados end to its extrados end; in a column, from left to right.
     pub across_m: Vector2<f64>,
-    /// For an arch that is cut at its hinges: its angle, in radians from the left springing.
+    /// Angle, in radians from the left springing, for an arch that is cut at its hinges; `None` for other structures.
     pub angle_rad: Option<f64>,
 }
 
-/// The parts and places of a structure.
+/// Access to the parts of a structure and their positions.
 pub trait Parts {
-    /// Its parts from left to right, or upwards.
+    /// Returns its parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
 
-    /// The bodies of its drawing.
+    /// Returns the bodies of its drawing.
     fn outline(&self) -> Outline;
 
-    /// The sections at which the position of the line of thrust is known, from left to right, or upwards.
+    /// Returns the sections at which the position of the thrust line is known, from left to right, or upwards.
     fn sections(&self) -> Vec<Section>;
 
-    /// The parts in words.
+    /// Returns the parts in words.
     fn parts_in_words(&self) -> String;
 
-    /// Its crown, the highest point: place along the structure, and position in metres.
+    /// Returns its crown, the highest point: position along the structure, and coordinates in metres.
     fn crown(&self) -> (f64, Vector2<f64>);
 
-    /// Place along the structure of a point in metres; `None` for a point outside the structure.
+    /// Returns the position along the structure of a point in metres; `None` for a point outside the structure.
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64>;
 }
 
@@ -147,7 +147,7 @@ impl Parts for Column {
         }]
     }
 
-    /// One block, whatever its drums; or these, where ties hold them.
+    /// Draws one block for all drums, or the separate drums of a column with ties.
     fn outline(&self) -> Outline {
         if let Some(row) = self.tied_row() {
             return row.outline();
@@ -193,7 +193,7 @@ impl Parts for Column {
 }
 
 impl Column {
-    /// Its blocks, if it has ties.
+    /// Returns its blocks; `None` without ties.
     fn tied_row(&self) -> Option<Row> {
         self.row().ok().filter(|row| !row.ties.is_empty())
     }
@@ -232,7 +232,7 @@ impl Parts for Row {
         }
     }
 
-    /// For a stack on one support with a level top: the middle of the top.
+    /// For a stack on one support with a level top, the crown is the middle of the top.
     fn crown(&self) -> (f64, Vector2<f64>) {
         let outlines = self.outlines_m.iter().enumerate();
         let corners = outlines.flat_map(|(block, outline)| {
@@ -261,7 +261,7 @@ impl Parts for Row {
 }
 
 impl Row {
-    /// The blocks that a point in metres is in, or on the edge of.
+    /// Returns the blocks that contain a point, given in metres, or have it on their edge.
     #[must_use]
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
         let blocks = 0..self.outlines_m.len();
@@ -270,7 +270,7 @@ impl Row {
             .collect()
     }
 
-    /// Distance of a point from a block, in metres; 0 inside it.
+    /// Returns the distance of a point from a block, in metres; 0 inside the block.
     #[must_use]
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
         let outline = &self.outlines_m[block];
@@ -286,7 +286,7 @@ fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5
 }
 
-/// Whether a point is in a polygon or on its edge.
+/// Returns whether a point is inside a polygon or on its edge.
 fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     let mut inside = false;
     for [from, to] in sides(outline) {

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::sway::Sway;
 
-/// A result for either direction of sway.
+/// Result for both directions of sway.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Sides<T> {
-    /// Swaying to the right.
+    /// Result for a sway to the right.
     pub right: T,
-    /// Swaying to the left.
+    /// Result for a sway to the left.
     pub left: T,
 }
 
@@ -33,7 +33,7 @@ impl<T> Sides<T> {
         })
     }
 
-    /// The result to one side.
+    /// Returns the result for one side.
     pub const fn to(&self, sway: Sway) -> &T {
         match sway {
             Sway::Right => &self.right,
@@ -41,7 +41,7 @@ impl<T> Sides<T> {
         }
     }
 
-    /// The result to one side, to be changed.
+    /// Returns the result for one side, as a mutable reference.
     pub const fn to_mut(&mut self, sway: Sway) -> &mut T {
         match sway {
             Sway::Right => &mut self.right,
@@ -49,19 +49,19 @@ impl<T> Sides<T> {
         }
     }
 
-    /// Both results with their sides, the right one first.
+    /// Returns both results with their sides, the right one first.
     pub fn iter(&self) -> impl Iterator<Item = (Sway, &T)> {
         [(Sway::Right, &self.right), (Sway::Left, &self.left)].into_iter()
     }
 
-    /// Derives a result for either side from each of these.
+    /// Computes new results for both sides from these.
     pub fn map<U>(&self, mut result: impl FnMut(&T) -> U) -> Sides<U> {
         Sides::of(|sway| result(self.to(sway)))
     }
 }
 
 impl<T> From<Sides<T>> for [T; 2] {
-    /// The right one first.
+    /// Returns both results, the right one first.
     fn from(sides: Sides<T>) -> Self {
         [sides.right, sides.left]
     }

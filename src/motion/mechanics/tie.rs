@@ -1,7 +1,7 @@
-//! Ties: bars that pull between two points of blocks or supports, and never push.
+//! Ties: bars between two points of blocks or supports that carry tension only.
 //!
-//! Beyond its unstressed length a tie pulls with its stiffness times what it has stretched, at most with the force at which it yields; what
-//! it has yielded is lost to it. Stretched too far it breaks for good.
+//! The force of a tie is its stiffness times its stretch beyond the unstressed length, up to the yield force. Plastic elongation reduces the stretch.
+//! Beyond its strain limit the tie breaks permanently.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -10,17 +10,17 @@ use super::block::Block;
 use super::geometry::rigid::{Momentum, Twist, mirrored};
 use super::lanes::{Lanes, Real, both, remembered};
 
-/// An end of a tie.
+/// End of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Anchor {
-    /// Index of the block; `None`: a support, or the ground.
+    /// Index of the block; `None` for a support or the ground.
     pub block: Option<usize>,
-    /// Its position in the undeformed structure, in metres.
+    /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
 }
 
 impl Anchor {
-    /// Support of an end that is on no block, 0 or 1: the horizontally nearer one.
+    /// Returns the support of an end that is on no block, 0 or 1: the horizontally nearer one.
     #[must_use]
     pub fn support(&self, feet_m: [Vector2<f64>; 2]) -> usize {
         let [left, right] = feet_m.map(|foot_m| (self.at_m.x - foot_m.x).abs());
@@ -28,22 +28,22 @@ impl Anchor {
     }
 }
 
-/// A tie, as it is in the undeformed structure.
+/// Tie in the undeformed structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {
     /// Its two ends.
     pub ends: [Anchor; 2],
-    /// Force in N for each metre that it is stretched.
+    /// Stiffness: force in N per metre of stretch.
     pub stiffness_n_m: f64,
-    /// Its force in the undeformed structure, in N.
+    /// Force in the undeformed structure, in N.
     pub prestress_n: f64,
-    /// Its largest force, in N; infinite if it does not yield.
+    /// Yield force, in N; infinite if the tie does not yield.
     pub yield_force_n: f64,
-    /// Its stretch when it breaks, over its unstressed length; infinite if it does not break.
+    /// Strain at which the tie breaks, relative to its unstressed length; infinite if it does not break.
     pub breaks_at_strain: f64,
 }
 
-/// Why a tie is not possible. Blocks count from 1 in words.
+/// Reason why a tie is not valid. Messages number blocks from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum TieError {
     /// A number is out of range.
@@ -52,7 +52,7 @@ pub enum TieError {
     /// An end is on a block that does not exist.
     #[error("there is no block {number}", number = .0 + 1)]
     NoBlock(usize),
-    /// Both ends are at one place.
+    /// Both ends are at the same point.
     #[error("both ends are at one point: a tie has a length")]
     NoLength,
     /// Both ends are on one block.
@@ -66,11 +66,10 @@ pub enum TieError {
 const NOT_NEGATIVE: &str = "a number that is not negative: a tie does not push";
 
 impl Tie {
-    /// Checks its numbers, and that it is between two of so many blocks, or one of them and a support. `size_m` is the length of the
-    /// structure.
+    /// Checks the numbers of the tie, and that it connects two of `blocks` blocks, or a block and a support. `size_m` is the size of the structure.
     ///
     /// # Errors
-    /// When a number is out of range, or its ends are on one body.
+    /// If a number is out of range, or both ends are on one body.
     pub fn check(&self, blocks: usize, size_m: f64) -> Result<(), TieError> {
         let [from, to] = &self.ends;
         let (stiffness_n_m, prestress_n) = (self.stiffness_n_m, self.prestress_n);
@@ -125,25 +124,25 @@ impl Tie {
         Ok(())
     }
 
-    /// Length in the undeformed structure, in metres.
+    /// Returns the length in the undeformed structure, in metres.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         (self.ends[1].at_m - self.ends[0].at_m).norm()
     }
 
-    /// Length without stress, in metres.
+    /// Returns the unstressed length, in metres.
     #[must_use]
     pub fn slack_length_m(&self) -> f64 {
         self.length_m() - self.prestress_n / self.stiffness_n_m
     }
 
-    /// Unit vector from its first end to its second one.
+    /// Returns the unit vector from its first end to its second one, in the undeformed structure.
     #[must_use]
     pub fn along(&self) -> Vector2<f64> {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
-    /// Its line with its ends there.
+    /// Returns the line of action for given positions of its ends, in metres.
     #[must_use]
     pub fn line(&self, ends_m: [Vector2<f64>; 2]) -> TieLine {
         let moved = [0, 1].map(|end| ends_m[end] - self.ends[end].at_m);
@@ -156,7 +155,7 @@ impl Tie {
         }
     }
 
-    /// This tie with its ends mirrored about the y axis, in a row of so many blocks that is mirrored too.
+    /// Returns this tie mirrored about the y axis, in a mirrored row of `blocks` blocks.
     pub(super) fn mirrored(&self, blocks: usize) -> Self {
         let mirror = |anchor: Anchor| Anchor {
             block: anchor.block.map(|block| blocks - 1 - block),
@@ -168,9 +167,9 @@ impl Tie {
         }
     }
 
-    /// Its stretch and direction after these displacements of its ends, in m.
+    /// Returns stretch and direction after given displacements of its ends, in m.
     ///
-    /// The square of the length is taken less that at rest, so that small changes keep their digits.
+    /// The difference of the squared lengths avoids cancellation for small displacements.
     #[inline(always)]
     #[must_use]
     pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
@@ -188,8 +187,7 @@ impl Tie {
         }
     }
 
-    /// Its force in N, if it has yielded so much before, is now stretched so far beyond its unstressed length, and does not
-    /// break.
+    /// Returns the force in N for a plastic elongation and a stretch beyond the unstressed length, both in m. The tie does not break here.
     #[must_use]
     pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
         let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
@@ -197,7 +195,7 @@ impl Tie {
     }
 }
 
-/// Square of the highest angular frequency, in (rad/s)2, that ties make of blocks that nothing else holds, at most.
+/// Returns an upper bound of the square of the highest angular frequency, in (rad/s)2, of free blocks held by ties.
 #[must_use]
 pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
     let flexibility = |anchor: &Anchor| {
@@ -207,7 +205,7 @@ pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
             1.0 / block.mass_kg + arm_m.norm_squared() / block.inertia_kg_m2
         })
     };
-    // The largest eigenvalue of a sum is at most the sum of the largest.
+    // The largest eigenvalue of a sum is at most the sum of the largest eigenvalues.
     let each = ties.iter().map(|tie| {
         let ends = tie.ends.iter().map(flexibility);
         tie.stiffness_n_m * ends.sum::<f64>()
@@ -215,34 +213,34 @@ pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
     each.sum()
 }
 
-/// Ties shorter than this part of the size have no direction.
+/// Least length of a tie, over the size of the structure; shorter ties have no direction.
 const LEAST_LENGTH_RATIO: f64 = 1e-9;
 
-/// The stretch and the direction of a tie.
+/// Stretch and direction of a tie.
 #[derive(Clone, Copy, Debug)]
 pub struct TieSpan<R> {
-    /// Stretch beyond its unstressed length, in m.
+    /// Stretch beyond the unstressed length, in m.
     pub stretch_m: R,
     /// Unit vector from its first end to its second one.
     pub along: [R; 2],
 }
 
-/// The line of a tie between blocks in any position.
+/// Line of action of a tie between blocks in any position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieLine {
-    /// Indices of the blocks at its ends; `None`: a support, or the ground.
+    /// Indices of the blocks at its ends; `None` for a support or the ground.
     pub ends: [Option<usize>; 2],
-    /// Positions of its ends.
+    /// Positions of its ends, in metres.
     pub ends_m: [Vector2<f64>; 2],
     /// Unit vector from its first end to its second one.
     pub along: Vector2<f64>,
-    /// Stretch beyond its unstressed length, in m.
+    /// Stretch beyond the unstressed length, in m.
     pub stretch_m: f64,
 }
 
 impl TieLine {
-    /// Gains of the blocks at its ends, with their centres there, under an impulse of it: in velocity of the centre and in rate of
-    /// rotation.
+    /// Computes the effect of an impulse of the tie on the blocks at its ends, with given centres. `gain` receives block, change of velocity and
+    /// change of rotation rate.
     pub fn pull(
         &self,
         blocks: &[Block],
@@ -261,12 +259,12 @@ impl TieLine {
         }
     }
 
-    /// A pull of 1 on the block at its first end; the one at its second end gets it the other way.
+    /// Returns a unit force on the block at its first end; the force on the block at its second end is opposite.
     fn unit_pull(&self) -> Momentum {
         Momentum::applied_at(self.ends_m[0], self.along)
     }
 
-    /// Rate at which it lengthens while blocks move so and supports do not.
+    /// Returns the rate at which the tie lengthens for given velocities of the blocks; supports are at rest.
     #[must_use]
     pub fn lengthening(&self, velocities: &[Twist]) -> f64 {
         let pull = self.unit_pull();
@@ -276,7 +274,7 @@ impl TieLine {
     }
 }
 
-/// Impulses of ties on each block, summed.
+/// Returns the sum of the impulses of ties on each block.
 pub(crate) fn sum_pulls<'a>(
     blocks: usize,
     ties: impl Iterator<Item = (&'a TieLine, f64)>,
@@ -289,7 +287,7 @@ pub(crate) fn sum_pulls<'a>(
             }
         }
     };
-    // Of many ties, neighbours are between the same blocks: their sum stays in registers.
+    // Consecutive ties are often between the same blocks, so sum them in registers.
     let (mut ends, mut pull) = ([None; 2], Momentum::ZERO);
     for (line, impulse) in ties {
         if line.ends != ends {
@@ -302,7 +300,7 @@ pub(crate) fn sum_pulls<'a>(
     pulls
 }
 
-/// Adds to the velocities of blocks, with their centres there, what impulses of ties that lie so give them.
+/// Adds the effect of tie impulses to the velocities of blocks with given centres.
 pub(crate) fn pull_blocks<'a>(
     blocks: &[Block],
     centres_m: &[Vector2<f64>],
@@ -318,20 +316,20 @@ pub(crate) fn pull_blocks<'a>(
     }
 }
 
-/// Memory of a tie.
+/// State of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TieMemory<R> {
-    /// Stretch beyond its unstressed length, in m.
+    /// Stretch beyond the unstressed length, in m.
     pub stretch_m: R,
-    /// Its force, in N.
+    /// Current force, in N.
     pub force_n: R,
-    /// The most that it has pulled with, in N.
+    /// Largest force up to now, in N.
     pub peak_n: R,
-    /// Plastic lengthening, in m.
+    /// Plastic elongation, in m.
     pub yielded_m: R,
-    /// 1 until it breaks, then 0.
+    /// 1 for an intact tie, 0 after its break.
     pub intact: R,
-    /// Energy taken for good so far, by yielding and by breaking, in J.
+    /// Energy dissipated up to now by yield and break, in J.
     pub taken_j: R,
 }
 
@@ -345,8 +343,8 @@ remembered!(TieMemory {
 });
 
 impl<R: Real> TieMemory<R> {
-    /// Of a tie that had yielded so much before and is now stretched so far beyond its unstressed length, slowly. It has taken nothing
-    /// yet.
+    /// Returns the state of a tie after slow stretching to `stretch_m` beyond its unstressed length; `yielded_m` is the plastic elongation before.
+    /// The dissipated energy starts from zero.
     #[must_use]
     pub fn stretched(tie: &Tie, yielded_m: f64, stretch_m: R) -> Self {
         let mut memory = Self {
@@ -360,10 +358,10 @@ impl<R: Real> TieMemory<R> {
         memory
     }
 
-    /// The tie is stretched so far beyond its unstressed length, or shortened.
+    /// Updates the state for a new stretch beyond the unstressed length, in m.
     ///
-    /// The mean of the forces before and after, times what it yields, is what it takes: with the elastic energy that is, up to the steps in
-    /// which it begins to yield or goes slack, the trapezoid of its work.
+    /// The dissipated energy is the mean force of the step times the plastic elongation. Together with the elastic energy this equals the work by the
+    /// trapezoidal rule, except in steps in which the tie begins to yield or becomes slack.
     #[inline(always)]
     pub fn stretch(&mut self, tie: &Tie, stretch_m: R) {
         let zero = R::of(0.0);
@@ -372,7 +370,7 @@ impl<R: Real> TieMemory<R> {
         let more_m = (pulls_n - force_n) * (1.0 / tie.stiffness_n_m);
         // The unstressed length is positive.
         let breaks_m = R::of(tie.breaks_at_strain * tie.slack_length_m());
-        // A tie that breaks within the step pulls hardest where it breaks.
+        // A tie that breaks within the step has its largest force at the break.
         let pulls_n = (stretch_m.min(breaks_m) - self.yielded_m) * tie.stiffness_n_m;
         let hardest_n = pulls_n.max(zero).min(R::of(tie.yield_force_n));
         self.peak_n = self.peak_n.max(hardest_n * self.intact);
@@ -380,7 +378,7 @@ impl<R: Real> TieMemory<R> {
         let yielded_j = (self.force_n + force_n) * more_m * 0.5 * self.intact;
         let left_m = breaks_m - stretch_m;
         let intact = left_m.positive(self.intact, zero);
-        // Its energy as it broke, and the trapezoid of its work in that step, at whose end it no longer pulls.
+        // Elastic energy before the break, and the work of this step by the trapezoidal rule with zero force at its end.
         let last_j = self.force_n * (stretch_m - self.stretch_m) * 0.5;
         let lost_j = (self.energy_j(tie) + last_j) * (self.intact - intact);
         self.taken_j += yielded_j * intact + lost_j;
@@ -389,13 +387,13 @@ impl<R: Real> TieMemory<R> {
         self.intact = intact;
     }
 
-    /// Memory of a tie whose ends are where they are in the undeformed structure.
+    /// Returns the state of a tie in the undeformed structure.
     #[must_use]
     pub fn undeformed(tie: &Tie) -> Self {
         Self::stretched(tie, 0.0, R::of(tie.prestress_n / tie.stiffness_n_m))
     }
 
-    /// Elastic energy, in J.
+    /// Returns the elastic energy, in J.
     #[inline(always)]
     #[must_use]
     pub fn energy_j(&self, tie: &Tie) -> R {
@@ -404,7 +402,7 @@ impl<R: Real> TieMemory<R> {
 }
 
 impl TieMemory<Lanes<1>> {
-    /// Memory of the tie once it is stretched so far, slowly; it takes no energy.
+    /// Returns the state after slow stretching to `stretch_m`, without dissipated energy.
     #[must_use]
     pub fn then(&self, tie: &Tie, stretch_m: f64) -> Self {
         let stretch_m = Lanes([stretch_m]);
@@ -414,7 +412,7 @@ impl TieMemory<Lanes<1>> {
         Self::stretched(tie, self.yielded_m.0[0], stretch_m)
     }
 
-    /// Whether it has broken.
+    /// Returns whether the tie has broken.
     #[must_use]
     pub fn is_broken(&self) -> bool {
         self.intact.0[0] == 0.0

@@ -1,4 +1,4 @@
-//! An arch between its intrados and its extrados, cut into voussoirs.
+//! Arch between its intrados and its extrados, cut into voussoirs.
 
 use nalgebra::Vector2;
 
@@ -6,32 +6,32 @@ use super::Material;
 use crate::mechanics::blocks::{Block, Joint};
 use crate::mechanics::geometry::curve::Curve;
 
-/// Number of points with which the curved side of a voussoir is drawn.
+/// Number of points to draw the curved side of a voussoir.
 const DRAWN_POINTS: u32 = 4;
 
-/// A point of an edge: the piece of it, and the part of the way along that.
+/// Point of an edge: index of the piece, and fraction of its parameter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub piece: usize,
     pub part: f64,
 }
 
-/// The edges of an arch from left to right, and where its joints cut them.
+/// Edges of an arch from left to right, and the points at which its joints cut them.
 #[derive(Clone, Debug)]
 pub(super) struct CutArch {
     pub intrados: Vec<Curve>,
     pub extrados: Vec<Curve>,
-    /// On the intrados and on the extrados, springings included.
+    /// Points of every joint on the intrados and on the extrados, springings included.
     pub joints: Vec<[Place; 2]>,
 }
 
 impl CutArch {
-    /// Number of voussoirs.
+    /// Returns the number of voussoirs.
     pub fn voussoirs(&self) -> usize {
         self.joints.len() - 1
     }
 
-    /// Its joints, springings included.
+    /// Returns its joints, springings included.
     pub fn joints(&self) -> Vec<Joint> {
         let point = |edge: &[Curve], place: Place| edge[place.piece].point(place.part);
         let joints = self.joints.iter().map(|[intrados, extrados]| Joint {
@@ -41,13 +41,13 @@ impl CutArch {
         joints.collect()
     }
 
-    /// The extrados of a voussoir from left to right.
+    /// Returns the extrados of a voussoir from left to right.
     pub(crate) fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
         let ends = [self.joints[voussoir][1], self.joints[voussoir + 1][1]];
         pieces_between(&self.extrados, ends)
     }
 
-    /// Height of the highest point of the extrados, at or between joints.
+    /// Returns the height of the highest point of the extrados, at or between joints, in metres.
     pub fn crown_m(&self) -> f64 {
         let pieces = (0..self.voussoirs()).flat_map(|voussoir| self.extrados_of(voussoir));
         let tops = pieces.map(|piece| piece.point(top(&piece)).y);
@@ -68,7 +68,7 @@ impl CutArch {
         outline
     }
 
-    /// Its voussoirs as rigid blocks.
+    /// Returns its voussoirs as rigid blocks.
     pub fn blocks(&self, material: Material) -> Vec<Block> {
         let joints = self.joints();
         let block = |voussoir: usize| {
@@ -78,7 +78,7 @@ impl CutArch {
         (0..self.voussoirs()).map(block).collect()
     }
 
-    /// Corners of polygons that look like the voussoirs.
+    /// Returns the corners of polygons to draw the voussoirs.
     pub(crate) fn outlines_for_drawing(&self) -> Vec<Vec<Vector2<f64>>> {
         let drawn = |curve: &Curve| {
             let points = match curve {
@@ -94,7 +94,7 @@ impl CutArch {
     }
 }
 
-/// The highest point of a piece of an extrados: at one of its ends, or where it turns.
+/// Returns the parameter (0 to 1) of the highest point of a piece of an extrados: one of its ends, or where its slope is zero.
 pub(super) fn top(piece: &Curve) -> f64 {
     let falls = |part: f64| piece.at(part).1.y <= 0.0;
     match (falls(0.0), falls(1.0)) {

@@ -1,8 +1,7 @@
-//! Fill over an arch: dead weight and mass that move with the voussoir beneath.
+//! Fill above an arch, as weight and mass that move with the voussoir below.
 //!
-//! What lies vertically above the extrados of a voussoir, up to a level top, is part of its rigid block. That leaves
-//! out what real fill does besides: it presses sideways, spreads loads, resists the haunches that move into it, and
-//! shears between columns that move differently.
+//! The fill vertically above the extrados of a voussoir, up to a level top, is part of its rigid block. Other effects of real fill are neglected:
+//! lateral pressure, spreading of loads, passive resistance against the haunches, and shear between columns that move differently.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -17,17 +16,17 @@ use crate::mechanics::geometry::curve::Curve;
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fill {
-    /// Height of its top.
+    /// Level of its top.
     #[serde(flatten)]
     pub level: FillLevel,
     /// Its density in kg/m3.
     pub density_kg_m3: f64,
 }
 
-/// The level of the top of the fill.
+/// Level of the top of the fill.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum FillLevel {
-    /// Height above the extrados at the left springing, in metres: below the crown it fills the haunches.
+    /// Height above the extrados at the left springing, in metres; below the crown the fill covers the haunches only.
     #[serde(rename = "height_m")]
     AboveSpringing(f64),
     /// Height above the crown of the extrados, in metres.
@@ -55,7 +54,7 @@ impl Fill {
                 let outline = [piece].into_iter().chain(sides);
                 Block::bounded(outline, from, material.depth_m, self.density_kg_m3)
             });
-            // Slivers, as at a level joint, weigh nothing.
+            // Slivers without area, as at a level joint, have no weight.
             let heavy = columns.filter(|block| block.mass_kg > 0.0 && block.inertia_kg_m2 > 0.0);
             if let Some(below) = heavy.reduce(|sum, next| sum.with(&next)) {
                 *extra = Some(extra.map_or(below, |known| known.with(&below)));
@@ -64,7 +63,7 @@ impl Fill {
         Ok(())
     }
 
-    /// Height of its top, in metres.
+    /// Returns the height of its top, in metres.
     fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
             FillLevel::AboveSpringing(height_m) => {
@@ -78,7 +77,7 @@ impl Fill {
         }
     }
 
-    /// The fill above each voussoir: the voussoir, and corners of polygons that look like the fill.
+    /// Returns the fill above each voussoir: index of the voussoir, and corners of a polygon to draw the fill.
     pub(super) fn outlines_for_drawing(
         &self,
         arch: &CutArch,
@@ -100,17 +99,17 @@ impl Fill {
     }
 }
 
-/// The fill above a block: its index, and the corners of a polygon that looks like the fill, in metres.
+/// Fill above a block: index of the block, and corners of a polygon to draw the fill, in metres.
 pub type FillColumn = (usize, Vec<Vector2<f64>>);
 
-/// Parts that the curved side of a column of fill is drawn with.
+/// Number of segments to draw the curved side of a column of fill.
 const DRAWN_POINTS: u32 = 4;
 
-/// The parts of a piece of the extrados that lie below a level.
+/// Returns the parts of a piece of the extrados that lie below a level.
 fn below(piece: &Curve, level_m: f64) -> Vec<Curve> {
     let top = top(piece);
     let under = |part: f64| piece.point(part).y < level_m;
-    // It rises up to its top and falls from there.
+    // The piece rises up to its top and falls from there.
     let rising = (top > 0.0 && under(0.0)).then(|| {
         let half = piece.between(0.0, top);
         half.between(0.0, half.first(|part| half.point(part).y >= level_m))

@@ -10,10 +10,10 @@ use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
 use crate::mechanics::geometry::curve::{Curve, distance, sides};
 
-/// Corners that differ in height by less than this fraction of the size are at one level.
+/// Difference in height, over the size, below which corners are at one level.
 const LEVEL_RATIO: f64 = 1e-9;
 
-/// Why the outline of a block is not valid, in words. Blocks count from 1.
+/// Reason, in words, why the outline of a block is not valid. Blocks are numbered from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{0}")]
 pub struct OutlineError(String);
@@ -23,7 +23,7 @@ pub struct OutlineError(String);
 /// A block is the quadrilateral between its joints unless it has an outline. The last joint of a stack is its free top.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GivenBlocks {
-    /// File of the joints, if they were read from one.
+    /// Name of the file of the joints.
     #[serde(rename = "joints")]
     pub joints_file: String,
     /// File of the outlines.
@@ -36,15 +36,15 @@ pub struct GivenBlocks {
     /// Densities in kg/m3: one for all, or one for each block.
     #[serde(serialize_with = "one_or_more")]
     pub density_kg_m3: Vec<f64>,
-    /// Both corners of every joint.
+    /// Corners of every joint.
     #[serde(skip)]
     pub joints: Vec<Joint>,
-    /// Outlines of blocks that are more than the quadrilateral between their joints: index, corners in order.
+    /// Outlines of blocks that are not the quadrilateral between their joints: index, and corners in order.
     #[serde(skip)]
     pub outlines: Vec<(usize, Vec<Vector2<f64>>)>,
 }
 
-/// One number is written as such.
+/// Writes a single number without a list.
 fn one_or_more<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S::Error> {
     match numbers {
         [one] => serializer.serialize_f64(*one),
@@ -53,7 +53,7 @@ fn one_or_more<S: Serializer>(numbers: &[f64], serializer: S) -> Result<S::Ok, S
 }
 
 impl GivenBlocks {
-    /// Checks the numbers that are not in the files, and that there are joints.
+    /// Checks the numbers that are not in the files, and that there are at least two joints.
     ///
     /// # Errors
     /// When a number is out of range, or there are fewer joints than two.
@@ -107,7 +107,7 @@ impl GivenBlocks {
         Ok(())
     }
 
-    /// The outline of every block.
+    /// Returns the outline of every block.
     pub(super) fn outlines_m(&self) -> Vec<Vec<Vector2<f64>>> {
         let pairs = self.joints.windows(2);
         let between = pairs.map(|pair| pair[0].outline_m(&pair[1]).to_vec());
@@ -152,8 +152,7 @@ impl GivenBlocks {
         }
     }
 
-    /// Whether the faces on the left and the right support stand on ground that extends beyond them: they are level, and nothing
-    /// reaches lower.
+    /// Returns whether the left and the right support are ground that extends beyond the joint: the joint is level, and no corner is lower.
     pub(super) fn on_ground(&self) -> [bool; 2] {
         let corners = self.outlines_m().into_iter().flatten();
         let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
@@ -165,7 +164,7 @@ impl GivenBlocks {
         })
     }
 
-    /// Half the diagonal of the rectangle around the joints.
+    /// Returns half the diagonal of the rectangle around the joints, in metres.
     pub(super) fn size_m(&self) -> f64 {
         let corners = || {
             let joints = self.joints.iter();
@@ -178,7 +177,7 @@ impl GivenBlocks {
         0.5 * extent(|corner| corner.x).hypot(extent(|corner| corner.y))
     }
 
-    /// The block or joint that an error concerns, as a line of the file of joints: from 0 on.
+    /// Returns the index, from 0, of the block or joint of an error, as a line of the file of joints; `None` for other errors.
     #[must_use]
     pub fn joint_of(error: &RowError) -> Option<usize> {
         match error {
@@ -194,7 +193,7 @@ fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     sides(corners).any(|side| distance(side, point) <= 1e-6 * (side[1] - side[0]).norm())
 }
 
-/// Two sides of a polygon that cross, by their indices.
+/// Returns the indices of two sides of a polygon that cross; `None` if no sides cross.
 fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
     let sides: Vec<_> = sides(corners).collect();
     let turns =

@@ -1,4 +1,4 @@
-//! Masses on an arch, which move with the voussoirs that they stand on.
+//! Masses on an arch, which move with the voussoirs below.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -9,14 +9,14 @@ use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::Block;
 use crate::mechanics::geometry::ring::MassMoments;
 
-/// A mass on the extrados: at a point, or spread evenly over a width.
+/// Mass on the extrados, at a point or distributed uniformly over a width.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlacedLoad {
     /// The mass in kg.
     pub mass_kg: f64,
     /// Distance to the right of the middle of the span, in metres; for a patch, of its middle.
     pub x_m: f64,
-    /// Width over which it is spread, in metres; zero for a point.
+    /// Width of the patch, in metres; zero for a point.
     #[serde(skip_serializing_if = "is_zero")]
     pub width_m: f64,
 }
@@ -78,7 +78,7 @@ impl PlacedLoad {
                 *extra = Some(extra.map_or(own, |known| known.with(&own)));
             }
         }
-        // A patch that hangs over an end would lose mass.
+        // Part of the mass is missing if the patch extends beyond an end of the arch.
         let all_stands = (placed_kg / self.mass_kg - 1.0).abs() < 1e-9;
         let joints = arch.joints();
         let ends_m = [joints[0], joints[joints.len() - 1]].map(|joint| joint.extrados_m.x);
@@ -89,7 +89,7 @@ impl PlacedLoad {
         allow(all_stands, "x_m", self.x_m, allowed).map(|_| ())
     }
 
-    /// The voussoir under its middle, and where it stands there.
+    /// Returns the voussoir under its middle, and the point on its extrados, in metres.
     pub(super) fn place_m(&self, arch: &CutArch) -> Option<(usize, Vector2<f64>)> {
         (0..arch.voussoirs()).find_map(|voussoir| {
             arch.extrados_of(voussoir).into_iter().find_map(|piece| {

@@ -1,4 +1,4 @@
-//! Arches of constant thickness about a smooth middle line: circular, elliptic, and of three centres.
+//! Arches of constant thickness about a smooth middle line: circular, elliptic, and with three centres.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -11,7 +11,7 @@ use crate::argument::{ArgumentError, above, allow};
 use crate::mechanics::arch::Arch;
 use crate::mechanics::geometry::curve::Curve;
 
-/// Cuts what lies within half a thickness of a middle line, from left to right, at the given lengths of that line.
+/// Cuts the area within half a thickness of a middle line, from left to right, at given lengths along this line.
 fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
     let edge = |offset_m: f64| {
         let mut edge = middle.to_vec();
@@ -63,17 +63,16 @@ pub struct CircularArch {
     /// Its ring.
     #[serde(flatten)]
     pub arch: Arch,
-    /// Angles of its joints from the left springing, in degrees, both springings included; `None`: those of equal
-    /// voussoirs.
+    /// Angles of its joints from the left springing, in degrees, both springings included; `None` for equal voussoirs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joints_deg: Option<Vec<f64>>,
 }
 
 impl CircularArch {
-    /// The arch with its voussoirs, or with joints at these angles.
+    /// Returns the arch with its equal voussoirs, or with joints at these angles.
     ///
     /// # Errors
-    /// When it has neither, or both, or the angles do not rise from zero to the embrace angle.
+    /// If it has neither, or both, or if the angles do not increase from zero to the embrace angle.
     pub fn new(arch: Arch, joints_deg: Option<Vec<f64>>) -> Result<Self, ArgumentError> {
         let allowed = "given, or else `joints_deg`, for a row of blocks";
         let is_given_once = joints_deg.is_some() != arch.voussoirs.is_some();
@@ -123,7 +122,7 @@ impl CircularArch {
     }
 }
 
-/// Cuts an arch whose middle line is half an ellipse into voussoirs of equal length along that.
+/// Cuts an arch with half an ellipse as middle line into voussoirs of equal length along this line.
 pub(super) fn cut_elliptic(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
     dimensions.check()?;
     let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
@@ -137,8 +136,8 @@ pub(super) fn cut_elliptic(dimensions: &Dimensions) -> Result<CutArch, ArgumentE
     Ok(cut_equally(&[middle], dimensions))
 }
 
-/// An arch whose middle line consists of three arcs that join smoothly (a basket handle): the outer ones rise
-/// vertically from the springings. Its voussoirs are of equal length along the middle line.
+/// Arch with a middle line of three arcs that join smoothly (basket handle). The outer arcs are vertical at the springings. Its voussoirs have equal
+/// lengths along the middle line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BasketArch {
     /// Its dimensions.
@@ -152,8 +151,8 @@ impl BasketArch {
     /// The crown angle of the classical construction, in degrees.
     pub const CROWN_DEG: f64 = 60.0;
 
-    /// With `a` half the span, `f` the rise and `c` half the angle at the crown, the centre of an outer arc is `e` from
-    /// the middle and that of the crown `e / tan c` below, where `a - f = e (1 - tan(c/2))`.
+    /// Cuts the arch. Let `a` be half the span, `f` the rise and `c` half the angle at the crown. The centre of an outer arc is at distance `e` from
+    /// the middle, and that of the crown `e / tan c` below, with `a - f = e (1 - tan(c/2))`.
     pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
         let dimensions = &self.dimensions;
         dimensions.check()?;

@@ -1,8 +1,7 @@
-//! Arches of shapes other than the circular one of equal voussoirs, on piers, with fill and loads: rows of blocks
-//! given by their dimensions.
+//! Masonry of other shapes than the circular arch of equal voussoirs, on piers, with fill and loads: rows of blocks given by their dimensions.
 //!
-//! Coordinates are in metres, x from the middle of the span to the right. An arch is what lies between two edges at
-//! half a thickness from its middle line, cut by joints normal to that (`cut`).
+//! Coordinates are in metres, x from the middle of the span to the right. An arch is the area within half a thickness of its middle line, cut by
+//! joints normal to this line (`cut`).
 
 mod cut;
 mod fill;
@@ -45,7 +44,7 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// 1 m deep, of 2000 kg/m3.
+    /// Returns the default material: 1 m deep, of 2000 kg/m3.
     fn default() -> Self {
         Self {
             depth_m: DEPTH_M,
@@ -62,7 +61,7 @@ impl Material {
     }
 }
 
-/// Dimensions that arches of different shapes share.
+/// Common dimensions of arches of different shapes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Dimensions {
     /// Distance of the springings, from middle to middle, in metres.
@@ -87,7 +86,7 @@ impl Dimensions {
         counted("voussoirs", self.voussoirs, VOUSSOIRS).map(|_| ())
     }
 
-    /// The intrados must not turn back on itself where the middle line is curved most.
+    /// Checks that the intrados does not turn back on itself where the curvature of the middle line is largest.
     fn check_curvature(&self, least_radius_m: f64) -> Result<(), ArgumentError> {
         let fits = 0.5 * self.thickness_m < least_radius_m;
         let most_m = 2.0 * least_radius_m;
@@ -96,7 +95,7 @@ impl Dimensions {
     }
 }
 
-/// The shape of an arch, or blocks of any shape.
+/// Shape of an arch, or blocks of any shape.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
@@ -109,12 +108,12 @@ pub enum Shape {
     EllipticArch(Dimensions),
     /// Three arcs.
     BasketArch(BasketArch),
-    /// Blocks by their joints.
+    /// Blocks given by their joints.
     Blocks(GivenBlocks),
 }
 
 impl Shape {
-    /// Its name in scenarios and results.
+    /// Returns its name in scenarios and results.
     #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
@@ -126,7 +125,7 @@ impl Shape {
         }
     }
 
-    /// Its material; for blocks with densities of their own, that of the first.
+    /// Returns its material; for blocks with individual densities, that of the first block.
     #[must_use]
     pub fn material(&self) -> Material {
         match self {
@@ -157,8 +156,8 @@ impl Shape {
         })
     }
 
-    /// The length that scales energies and steps: the mean radius of a circle, else half the span; for blocks half
-    /// the diagonal of the rectangle around their joints.
+    /// Returns the length that scales energies and steps: the mean radius of a circle, otherwise half the span; for blocks half the diagonal of the
+    /// rectangle around their joints.
     fn size_m(&self) -> f64 {
         match self {
             Self::Circular(arch) => arch.arch.mean_radius_m,
@@ -170,19 +169,19 @@ impl Shape {
     }
 }
 
-/// An arch of any shape with what it stands on and what it carries.
+/// Arch of any shape, with its piers, fill and loads.
 #[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Masonry {
     /// Its shape.
     #[serde(flatten)]
     pub shape: Shape,
-    /// The piers that its springings stand on.
+    /// Piers under its springings.
     #[serde(skip_serializing_if = "Piers::are_none")]
     pub piers: Piers,
-    /// The fill above it.
+    /// Fill above the arch.
     pub fill: Option<Fill>,
-    /// The masses on its extrados.
+    /// Masses on its extrados.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<PlacedLoad>,
     /// Its blocks and joints.
@@ -193,16 +192,16 @@ pub struct Masonry {
     pub carried: Carried,
 }
 
-/// Fill and loads of an arch in pictures, each with the block that carries it.
+/// Fill and loads of an arch for pictures, each with the block that carries it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Carried {
-    /// Corners of what of the fill is above a block, in metres.
+    /// Corners of the fill above each block, in metres.
     pub fill_m: Vec<FillColumn>,
     /// Block of each load, and the position of its middle, in metres.
     pub loads_m: Vec<(usize, Vector2<f64>)>,
 }
 
-/// Why there is no such masonry.
+/// Reason why masonry is not valid.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum MasonryError {
     /// A number of the shape is out of range.
@@ -220,23 +219,22 @@ pub enum MasonryError {
     /// An outline of a block is not valid.
     #[error(transparent)]
     Outline(#[from] OutlineError),
-    /// The blocks do not make a row.
+    /// The blocks do not form a row.
     #[error(transparent)]
     Row(#[from] RowError),
-    /// Piers and fill go with arches that are given by their dimensions.
+    /// Blocks have piers or fill, which are possible only for arches given by their dimensions.
     #[error("blocks have no piers and no fill: give those as blocks")]
     Blocks,
-    /// More blocks than a row may have.
+    /// The number of blocks exceeds the maximum of a row.
     #[error("{0} blocks with the piers: a row has at most {MAX_BLOCKS}")]
     Count(usize),
 }
 
 impl Masonry {
-    /// The arch on its piers, with what it carries.
+    /// Returns the arch on its piers, with fill and loads. Its stability is not checked: see [`Masonry::stands`].
     ///
     /// # Errors
-    /// When a number is out of range, or the blocks do not make a row. Whether it stands is another question:
-    /// [`Masonry::stands`].
+    /// If a number is out of range, or the blocks do not form a row.
     pub fn new(
         shape: Shape,
         piers: Piers,
@@ -311,22 +309,22 @@ impl Masonry {
         })
     }
 
-    /// The joints at the springings of the arch; `None` of blocks, whose arch may begin anywhere.
+    /// Returns the joints at the springings of the arch; `None` for given blocks, whose springings are unknown.
     #[must_use]
     pub fn springings(&self) -> Option<[Joint; 2]> {
         let joints = self.springing_joints()?;
         Some(joints.map(|joint| self.row.joints[joint]))
     }
 
-    /// Whether it stands under its own weight.
+    /// Returns whether the masonry is stable under its own weight.
     ///
     /// # Errors
-    /// When the velocities under the weight are not found.
+    /// If the velocities under the weight are not found.
     pub fn stands(&self) -> Result<bool, ContactError> {
         Ok(falls(&self.row)?.is_none())
     }
 
-    /// The joints at the springings of the arch, left and right; `None` of blocks, of which nobody says where they spring.
+    /// Returns the indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.
     #[must_use]
     pub fn springing_joints(&self) -> Option<[usize; 2]> {
         if matches!(self.shape, Shape::Blocks(_)) {
@@ -337,10 +335,10 @@ impl Masonry {
         Some([courses[0], self.row.joints.len() - 1 - courses[1]])
     }
 
-    /// This masonry with these ties and no others, under this gravity.
+    /// Returns this masonry with these ties in place of its own, under this gravity.
     ///
     /// # Errors
-    /// When a tie is none: with its index.
+    /// If a tie is not valid, with its index.
     pub fn with_ties(
         mut self,
         ties: Vec<Tie>,

@@ -1,4 +1,4 @@
-//! Piers: the springings of an arch stand on them.
+//! Piers under the springings of an arch.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -9,7 +9,7 @@ use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS, RowError};
 use crate::mechanics::sway::Sway;
 
-/// Piers under the springings; a springing without one stands on rigid ground.
+/// Piers under the springings; a springing without a pier is on rigid ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Piers {
     /// Under the left springing.
@@ -19,32 +19,31 @@ pub struct Piers {
 }
 
 impl Piers {
-    /// Whether there is no pier.
+    /// Returns whether there is no pier.
     #[must_use]
     pub const fn are_none(&self) -> bool {
         self.left.is_none() && self.right.is_none()
     }
 }
 
-/// A pier of equal courses, as deep as the arch. Its inner side is vertical below the intrados; its top rises along
-/// the springing, and is level from there outwards.
+/// Pier of equal courses, as deep as the arch. Its inner side is vertical below the intrados. Its top follows the springing joint, and is level from
+/// there outwards.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pier {
-    /// From the base to the intrados at the springing, in metres.
+    /// Height from the base to the intrados at the springing, in metres.
     pub height_m: f64,
     /// Width in metres.
     pub width_m: f64,
     /// Number of blocks, one on top of the other.
     pub blocks: usize,
-    /// Density in kg/m3; `None`: that of the arch.
+    /// Density in kg/m3; `None` for that of the arch.
     pub density_kg_m3: Option<f64>,
-    /// Whether it stands on a pedestal as wide as its base, off which it falls if it slips too far; else on ground that extends
-    /// beyond the base.
+    /// True if the pier stands on a pedestal as wide as its base, from which it can slide off; false on ground that extends beyond the base.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub pedestal: bool,
 }
 
-/// Blocks with the joints and the outlines that belong to them, in the order of the row.
+/// Blocks with their joints and outlines, in the order of the row.
 pub(super) struct Courses {
     pub blocks: Vec<Block>,
     pub joints: Vec<Joint>,
@@ -52,7 +51,7 @@ pub(super) struct Courses {
 }
 
 impl Courses {
-    /// Puts the courses of a pier under the springing on this side.
+    /// Adds the courses of a pier under the springing on this side.
     pub(crate) fn stand_on(
         &mut self,
         pier: &Pier,
@@ -96,7 +95,7 @@ impl Pier {
         allow(fits, "width_m", self.width_m, allowed).map(|_| ())
     }
 
-    /// Its blocks, with its joints but the springing: upwards at the left, downwards at the right.
+    /// Returns its blocks and all joints except the springing: upwards on the left, downwards on the right.
     fn courses(
         &self,
         springing: &Joint,

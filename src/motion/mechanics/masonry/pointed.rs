@@ -10,11 +10,10 @@ use super::middle_line::part;
 use crate::argument::{ArgumentError, allow};
 use crate::mechanics::geometry::curve::Curve;
 
-/// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths; an even number
-/// of voussoirs has a vertical joint at the crown, an odd one a keystone.
+/// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths. An even number of voussoirs has a vertical joint
+/// at the crown, an odd number has a keystone.
 ///
-/// The radius of the middle line is `r = rise^2 / span + span / 4`; with a rise of half the span it is a
-/// semicircle.
+/// The radius of the middle line is `r = rise^2 / span + span / 4`; with a rise of half the span it is a semicircle.
 pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentError> {
     dimensions.check()?;
     let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
@@ -25,7 +24,7 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
     );
     allow(rise_m >= 0.5 * span_m, "rise_m", rise_m, allowed)?;
     let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
-    // The centre of the left arc lies to the right of the middle.
+    // The centre of the left arc is right of the middle.
     let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
     let inner_m = radius_m - 0.5 * thickness_m;
     let allowed = format_args!("below the span of {span_m:?}");
@@ -33,16 +32,16 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
     let arc = |radius: f64| Curve::Arc {
         centre,
         radius,
-        // To where it reaches the middle.
+        // The arc ends at the middle.
         angles_rad: [PI, (-centre.x / radius).acos()],
     };
     let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
     let outer_m = inner_m + thickness_m;
-    // Fraction of the extrados that lies opposite the intrados; the rest reaches on to the crown.
+    // Fraction of the extrados opposite the intrados; the rest extends to the crown.
     let angle = |radius: f64| PI - (-centre.x / radius).acos();
     let shorter = angle(inner_m) / angle(outer_m);
     let joint = |joint: usize| {
-        // Twice the part of the way, so that the crown is at 1.
+        // Twice the fraction of the path, so that the crown is at 1.
         let way = 2.0 * part(joint, dimensions.voussoirs);
         let (piece, part) = if way <= 1.0 { (0, way) } else { (1, way - 1.0) };
         let outer = match piece {

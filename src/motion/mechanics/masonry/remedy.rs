@@ -1,20 +1,19 @@
-//! Changes that would hold an arch that falls under its own weight.
+//! Changes that make an arch stable that falls under its own weight.
 
 use super::{BasketArch, CircularArch, Masonry, Pier, Piers, Shape};
 use crate::bisection::{Width, try_bisect};
 
-/// A change that holds masonry that falls, with the least factor, rounded up to four decimals; none if a factor of
-/// four is not enough.
+/// Change that makes masonry stable, with the least factor, rounded up to four decimals; `None` if a factor of four is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Remedy {
-    /// The width of its piers: on rigid ground the arch stands.
+    /// Factor on the width of its piers; on rigid ground the arch is stable.
     WiderPiers(Option<f64>),
-    /// The thickness of the arch.
+    /// Factor on the thickness of the arch.
     ThickerArch(Option<f64>),
 }
 
 impl Masonry {
-    /// The change that would hold masonry that falls under its own weight.
+    /// Returns the change that makes masonry stable that falls under its own weight.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
         let arch_stands = || self.stands_as(self.shape.clone(), Piers::default());
@@ -48,7 +47,7 @@ impl Piers {
 }
 
 impl Shape {
-    /// `None` for blocks, whose thickness is given.
+    /// Returns the shape with the thickness of the arch multiplied by a factor; `None` for blocks, whose thickness is given.
     fn thickened(&self, factor: f64) -> Option<Self> {
         let mut thicker = self.clone();
         match &mut thicker {
@@ -65,7 +64,7 @@ impl Shape {
     }
 }
 
-/// The least factor with which the masonry stands, rounded up to four decimals; `None` if that is above four.
+/// Returns the least factor for which the masonry is stable, rounded up to four decimals; `None` if it is above four.
 fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
     let mut factors = [1.25, 1.5, 2.0, 3.0, 4.0].into_iter();
     let high = factors.find(|factor| stands(*factor) == Some(true))?;
