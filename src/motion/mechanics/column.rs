@@ -370,8 +370,8 @@ impl RockingColumn {
 }
 
 /// Returns the rate after an impact for a unit rate before it, from sine and cosine of the slenderness. The closing motion, a rotation about one toe,
-/// is projected in the kinetic-energy metric onto the rotation about the other toe. This conserves angular momentum about the new toe, and gives `1 -
-/// 3/2 sin^2(alpha)`.
+/// is projected in the kinetic-energy metric onto the rotation about the other toe. This conserves angular momentum about the new toe, and gives
+/// `1 - 3/2 sin^2(alpha)`.
 ///
 /// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: the old toe of such a flat column would move into the ground.
 /// The column stops instead.

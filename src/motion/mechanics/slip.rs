@@ -2,9 +2,9 @@
 //!
 //! The faces of a joint have rotated relative to each other by `phi`, and have slid. Let `e` be the unit vector from intrados to extrados in the mean
 //! direction of the faces, and `n = s k x e` the normal towards the right block (`s` is the handedness of the row). Let `d` be the vector from the
-//! intrados corner of the left face to that of the right face. Then the offset is `d . e`, and the gap at position `x` along the joint is `d . n + 2
-//! s tan(phi/2) x`. Offset faces touch at the ends of their overlap. The gaps at these two ends and the offset are the three coordinates of the
-//! joint. Their gradients are exact; a solution for their rates only needs a correction for the curvature of the motion.
+//! intrados corner of the left face to that of the right face. Then the offset is `d . e`, and the gap at position `x` along the joint is
+//! `d . n + 2 s tan(phi/2) x`. Offset faces touch at the ends of their overlap. The gaps at these two ends and the offset are the three coordinates
+//! of the joint. Their gradients are exact; a solution for their rates only needs a correction for the curvature of the motion.
 //!
 //! A support that extends beyond its joint, as the ground does, is a straight line of infinite length. Contact is then at the corners of the block's
 //! face, at any offset. Gaps are measured normal to the line and the offset along it, at the corner nearer to the line.

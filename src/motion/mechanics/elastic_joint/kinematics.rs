@@ -118,9 +118,9 @@ impl Link {
     /// Let `e_a`, `e_b` be the directions of the faces, `e` the mean direction and `n` its normal. `e_b - e_a` is parallel to `n` at any angle. The
     /// gap is therefore linear along the joint, and the slip is constant.
     ///
-    /// The bodies rotate by `m - d` and `m + d`. Their arms `a`, `b` then move the middles of the faces apart by `R(m) (cos d (b - a) + sin d J (a +
-    /// b)) - (b - a)`, where `J` is a quarter turn. The components along `e = R(m) e_0` and `J e` are sums of terms that are small for small
-    /// rotations, without cancellation.
+    /// The bodies rotate by `m - d` and `m + d`. Their arms `a`, `b` then move the middles of the faces apart by
+    /// `R(m) (cos d (b - a) + sin d J (a + b)) - (b - a)`, where `J` is a quarter turn. The components along `e = R(m) e_0` and `J e` are sums of
+    /// terms that are small for small rotations, without cancellation.
     #[inline(always)]
     pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
         let apart = both!(i: second.moved_m[i] - first.moved_m[i]);

@@ -34,9 +34,9 @@ const ROUNDING: f64 = 1e-9;
 impl Demand {
     /// Returns the demand of resultants at their sections; `weight` is that of the whole structure, in the unit of the resultants.
     ///
-    /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For `N < 0.01
-    /// weight` ([`LEAST_LOAD`]) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a continuous
-    /// extension, finite, and increases with the tension. The friction demand is then zero.
+    /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For
+    /// `N < 0.01 weight` ([`LEAST_LOAD`]) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a
+    /// continuous extension, finite, and increases with the tension. The friction demand is then zero.
     #[must_use]
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::default(), |demand, section| {
