@@ -110,7 +110,7 @@ impl PartialEq for Arch {
 }
 
 impl Arch {
-    /// An arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
+    /// Returns an arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
     ///
     /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
     /// that (from 1e-6, below 2) and `embrace_deg` the angle from springing to springing (1 to 180).

@@ -62,13 +62,13 @@ pub trait Mechanism {
 
     /// Mass moments of the bodies, undeformed, from left to right.
     fn moments(&self) -> Vec<MassMoments>;
-    /// Coefficients of the equation of motion at `q`.
+    /// Returns the coefficients of the equation of motion at `q`.
     fn coefficients(&self, q_rad: f64) -> Coefficients;
     /// Mass times displacement of the centre of gravity at `q`.
     fn displacement(&self, q_rad: f64) -> Vector2<f64>;
-    /// Rotations of the bodies at `q`.
+    /// Returns the rotations of the bodies at `q`.
     fn rotations(&self, q_rad: f64) -> Self::Rotations;
-    /// Rotation rates of the bodies at `q` for `q' = 1`.
+    /// Returns the rotation rates of the bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
     /// Writes the poses of the bodies at `q`, from left to right, and the positions of the hinges into two lists, which are emptied first.
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
@@ -155,9 +155,9 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Type of the mechanisms.
     type Mechanism: Mechanism + Send + Sync;
 
-    /// Size of the structure: the unit of length of its mechanisms, in metres.
+    /// Returns the size of the structure: the unit of length of its mechanisms, in metres.
     fn length_m(&self) -> f64;
-    /// Unit of mass of its mechanisms, in kg.
+    /// Returns the unit of mass of its mechanisms, in kg.
     fn mass_unit_kg(&self) -> f64;
     /// Returns the unit of energy of the mechanisms (see [`barrier`](crate::dynamics::hybrid::rocking::Rocking::barrier)) in J.
     fn joules_per_unit(&self) -> f64 {

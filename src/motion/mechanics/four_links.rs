@@ -180,7 +180,7 @@ impl FourLinks {
         self.chains.to(first)
     }
 
-    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    /// Returns the unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
     #[must_use]
     pub const fn impulse_unit_n_s_per_m(&self) -> f64 {
         self.size.impulse_n_s_per_m

@@ -15,7 +15,7 @@ named! {
 }
 
 impl Sway {
-    /// The other direction.
+    /// Returns the other direction.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {

@@ -24,7 +24,7 @@ named! {
 }
 
 impl Soil {
-    /// Coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
+    /// Returns the coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
     #[must_use]
     pub fn amplification(self, x: f64) -> f64 {
         let (most, slope, range) = match self {
@@ -37,7 +37,7 @@ impl Soil {
         (most - slope * x).clamp(range.0, range.1)
     }
 
-    /// Coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
+    /// Returns the coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
     #[must_use]
     pub fn period_coefficient(self, tc_star_s: f64) -> f64 {
         match self {
@@ -49,7 +49,7 @@ impl Soil {
         }
     }
 
-    /// Period `T_E` (Tab. 3.2.VII), in seconds.
+    /// Returns the period `T_E` (Tab. 3.2.VII), in seconds.
     #[must_use]
     pub const fn t_e_s(self) -> f64 {
         match self {
@@ -78,7 +78,7 @@ named! {
 }
 
 impl Topography {
-    /// The largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
+    /// Returns the largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
     #[must_use]
     pub const fn factor(self) -> f64 {
         match self {
@@ -138,7 +138,7 @@ pub struct GroundSpectrum {
 }
 
 impl GroundSpectrum {
-    /// The spectrum of a hazard on a site.
+    /// Returns the spectrum of a hazard on a site.
     ///
     /// # Errors
     /// When a parameter is out of the range of the code: `F_o` below 2.2, or corner periods out of order.
@@ -184,7 +184,7 @@ impl GroundSpectrum {
         })
     }
 
-    /// Spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
+    /// Returns the spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
     #[must_use]
     pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
         let (t, amplified) = (period_s, damping_factor(damping_percent) * self.hazard.f0);
@@ -201,7 +201,7 @@ impl GroundSpectrum {
         self.peak_g * amplified * shape
     }
 
-    /// Spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
+    /// Returns the spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
     #[must_use]
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         if period_s <= self.t_e_s {
@@ -213,14 +213,14 @@ impl GroundSpectrum {
         self.peak_displacement_m(gravity_m_s2) * (amplified + (1.0 - amplified) * part)
     }
 
-    /// Peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
+    /// Returns the peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
     #[must_use]
     pub fn peak_displacement_m(&self, gravity_m_s2: f64) -> f64 {
         0.025 * self.peak_g * gravity_m_s2 * self.t_c_s * self.t_d_s
     }
 
-    /// The largest spectral displacement up to a period: beyond `T_E` it falls, and a structure that softens on its way has
-    /// passed that period.
+    /// Returns the largest spectral displacement up to a period, in metres. The displacement decreases beyond `T_E`, and a structure that softens
+    /// passes this period.
     #[must_use]
     pub fn largest_displacement_m(
         &self,

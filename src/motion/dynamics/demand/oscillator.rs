@@ -50,7 +50,7 @@ struct Advance {
 }
 
 impl Advance {
-    /// With `x'' + 2 z w x' + w^2 x = -(a + b s)`, the particular motion is `-(a + b s) / w^2 + 2 z b / w^3`.
+    /// Computes the coefficients for a step. With `x'' + 2 z w x' + w^2 x = -(a + b s)`, the particular motion is `-(a + b s) / w^2 + 2 z b / w^3`.
     fn new(omega: f64, ratio: f64, step_s: f64) -> Self {
         let damped = omega * (1.0 - ratio * ratio).sqrt();
         let decay = (-ratio * omega * step_s).exp();

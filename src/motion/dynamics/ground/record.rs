@@ -13,8 +13,8 @@ const MIN_STEP_S: f64 = 1e-8;
 const MIN_CORNER_SPACING_S: f64 = 1e-9;
 
 impl GroundMotion {
-    /// Horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on, joined by straight
-    /// lines; zero after the last.
+    /// Returns the motion of horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on; linear between samples, zero after
+    /// the last.
     ///
     /// ```
     ///
@@ -36,8 +36,8 @@ impl GroundMotion {
         Ok(Self::polylines(&samples, &[], 0.0))
     }
 
-    /// Recorded motion: straight lines between samples `(time in s, acceleration in m/s2)`, zero before the
-    /// first and after the last. One of the two components may be empty.
+    /// Returns a recorded motion, linear between samples `(time in s, acceleration in m/s2)`, zero before the first and after the last. One of the
+    /// two components may be empty.
     ///
     /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero.
     /// Times are at most 1e9 in magnitude, accelerations 1e12.

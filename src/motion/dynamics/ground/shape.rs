@@ -37,7 +37,7 @@ impl Sine {
         (self.amplitude * sin, rate)
     }
 
-    /// Integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
+    /// Returns the integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
     fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         let half_angle = 0.5 * self.frequency_rad_s * (to_s - from_s);
         let per_angle = if half_angle == 0.0 {

@@ -44,19 +44,19 @@ pub trait HybridSystem<const N: usize> {
     /// Name of an event.
     type Guard: Copy + 'static;
 
-    /// End of a piece of the forcing, in seconds; infinite for the last.
+    /// Returns the end of a piece of the forcing, in seconds; infinite for the last.
     fn piece_end_s(&self, piece: usize) -> f64;
 
     /// Returns whether no guard of this mode can fire from this piece on.
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool;
 
-    /// Whether the state is constant in this mode.
+    /// Returns whether the state is constant in this mode.
     fn is_still(&self, mode: Self::Mode) -> bool;
 
-    /// Rate of change of the state, per second. Called with times in the piece, its ends included.
+    /// Returns the rate of change of the state, per second. Called with times in the piece, its ends included.
     fn slope(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
-    /// State within a step, at least as exact as the step's ends.
+    /// Returns the state within a step, at least as exact as the step's ends.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.
@@ -65,16 +65,16 @@ pub trait HybridSystem<const N: usize> {
     /// Returns a suitable first step in seconds, and the longest one for which the search for guards is reliable.
     fn step_sizes_s(&self, now: &Moment<Self::Mode, N>, relative_tolerance: f64) -> (f64, f64);
 
-    /// The guards of a mode.
+    /// Returns the guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
-    /// Value of a guard, which fires when it falls below zero, and its rate of change, per second.
+    /// Returns the value of a guard, which fires when it falls below zero, and its rate of change, per second.
     fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (f64, f64);
 
     /// Returns the guard that has already fired at the start of a piece or mode, if any.
     fn fired_at_once(&self, now: &Moment<Self::Mode, N>) -> Option<Self::Guard>;
 
-    /// Mode and state after the event of a guard.
+    /// Returns the mode and state after the event of a guard.
     fn reset(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (Self::Mode, State<N>);
 }
 
@@ -102,7 +102,7 @@ pub trait Observer<S: HybridSystem<N>, const N: usize> {
         ControlFlow::Continue(())
     }
 
-    /// An event.
+    /// Receives an event.
     fn transition(&mut self, _: &Transition<S::Mode, S::Guard, N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
@@ -366,7 +366,7 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
 /// are missed.
 const HALVINGS: u32 = 20;
 
-/// The first instant after `start`, up to `end`, at which a guard falls below zero.
+/// Returns the first instant after `start`, up to `end`, at which a guard falls below zero.
 ///
 /// Between two points the guard is taken for the cubic with their values and rates. It lies within the
 /// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that it does not
@@ -395,8 +395,7 @@ fn first_crossing(
         .or_else(|| first_crossing(middle, end, halvings - 1, at))
 }
 
-/// The zero of a falling guard that is negative at the end and not at the start: Newton's method from
-/// the end, safeguarded by bisection.
+/// Returns the zero of a falling guard that is negative at the end and not at the start: Newton's method from the end, safeguarded by bisection.
 pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;

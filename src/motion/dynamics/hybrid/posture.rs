@@ -11,8 +11,8 @@ pub(super) type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::
 /// A structure on moving ground at an instant.
 pub(super) type Now<'a, C> = Moment<'a, <C as MechanismChain>::Mechanism>;
 
-/// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a
-/// sway to the left is the mirror image, which swaps the bodies and changes the sign of their rotations.
+/// Returns the rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a sway to the left is the mirror
+/// image, which swaps the bodies and changes the sign of their rotations.
 pub(super) fn seen_from_ground<C: MechanismChain>(
     sway: Sway,
     mut rotations: Rotations<C>,
@@ -28,7 +28,7 @@ pub(super) fn seen_from_ground<C: MechanismChain>(
     rotations
 }
 
-/// Rotations of the bodies and their rates, in the frame of the ground.
+/// Returns the rotations of the bodies and their rates, in the frame of the ground.
 pub(super) fn posture<C: MechanismChain>(
     rocking: &Rocking<'_, C>,
     mode: Mode<'_, C::Mechanism>,
@@ -50,7 +50,7 @@ pub(super) fn posture<C: MechanismChain>(
     }
 }
 
-/// The state of motion in a mode.
+/// Returns the state of motion in a mode.
 pub(super) fn state<M>(mode: Mode<'_, M>) -> State {
     match mode {
         Phase::Rest => State::Rest,

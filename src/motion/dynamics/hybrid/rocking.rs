@@ -49,7 +49,7 @@ pub struct SwingOf<L> {
 }
 
 impl<S: Copy> Phase<S> {
-    /// The mechanism that moves or moved; `None` at rest.
+    /// Returns the current or last mechanism; `None` at rest.
     #[must_use]
     pub const fn swing(self) -> Option<S> {
         match self {
@@ -101,8 +101,8 @@ pub struct Rocking<'a, C: MechanismChain> {
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
-    /// The structure on the given ground. It comes to rest when an impact leaves less than
-    /// `rest_energy_ratio` of the energy barrier of its first mechanism.
+    /// Returns the structure on the given ground. The structure comes to rest if an impact leaves less than `rest_energy_ratio` of the energy barrier
+    /// of its first mechanism.
     ///
     /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
     #[must_use]
@@ -132,13 +132,13 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         rocking
     }
 
-    /// Energy that a mechanism has to gain to overturn under gravity alone.
+    /// Returns the energy that a mechanism needs to overturn under gravity alone.
     #[must_use]
     pub fn barrier_of(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
-    /// Kinetic and potential energy of a mechanism.
+    /// Returns the kinetic and potential energy of a mechanism.
     #[must_use]
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
@@ -146,7 +146,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         kinetic + self.gravity_m_s2 / self.chain.length_m() * rise
     }
 
-    /// The mode of a structure released on one side.
+    /// Returns the mode of a structure released on one side.
     #[must_use]
     pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
         let link = self.chain.link_from(sway, 0);
@@ -162,15 +162,14 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         &self.ground.pieces[piece]
     }
 
-    /// Ground acceleration in the frame of a mechanism with this sway.
+    /// Returns the ground acceleration in the frame of a mechanism with this sway.
     fn ground_m_s2(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
         let mut ground_m_s2 = self.piece(now.piece).at(now.time_s).0;
         ground_m_s2.x *= sway.sign();
         ground_m_s2
     }
 
-    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. An upward acceleration of
-    /// the ground adds to gravity.
+    /// Returns `q''` under gravity and a ground acceleration in the mechanism's own frame. An upward acceleration of the ground adds to gravity.
     fn acceleration(
         &self,
         coefficients: &Coefficients,
@@ -184,7 +183,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
     }
 
-    /// Thrust excess and friction demand.
+    /// Returns the thrust excess and friction demand.
     #[must_use]
     pub fn demand(&self, now: &Moment<'a, C::Mechanism>) -> Demand {
         let Some(swing) = now.mode.swing() else {
@@ -195,8 +194,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.chain.demand(&swing.link.mechanism, &motion)
     }
 
-    /// The line of thrust over the sections from left to right: see
-    /// [`MechanismChain::eccentricity_ratios`].
+    /// Returns the thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
     #[must_use]
     pub fn eccentricity_ratios(&self, now: &Moment<'a, C::Mechanism>) -> Vec<Option<f64>> {
         let Some(swing) = now.mode.swing() else {
@@ -211,12 +209,12 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         }
     }
 
-    /// Gravity less the acceleration of the ground in the frame of a mechanism with this sway, in g.
+    /// Returns gravity minus the ground acceleration in the frame of a mechanism with this sway, in multiples of gravity.
     fn body_force_g(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
         -self.ground_m_s2(sway, now) / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
     }
 
-    /// The motion of a mechanism.
+    /// Returns the state of a mechanism.
     fn motion(&self, swing: Swing<'a, C::Mechanism>, now: &Moment<'a, C::Mechanism>) -> Motion {
         let (q_rad, rate) = (now.state[0], now.state[1]);
         let coefficients = swing.link.mechanism.coefficients(q_rad);
@@ -231,18 +229,18 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         }
     }
 
-    /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
+    /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
     fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
         (link.at_zero.inertia * link.critical_rad / self.weight(link)).sqrt()
     }
 
-    /// Slope of the potential energy at `q = 0`.
+    /// Returns the slope of the potential energy at `q = 0`.
     fn weight(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 * link.at_zero.s_y / self.chain.length_m()
     }
 
-    /// Largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the
-    /// inertia of `q = 0` and the parabola of its weight for the potential energy.
+    /// Returns the largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the inertia of `q = 0` and the parabola of
+    /// its weight for the potential energy.
     fn reach(&self, link: &Link<C::Mechanism>, state: &RockingState) -> (f64, f64) {
         let (q, rate) = (state[0], state[1]);
         let weight = self.weight(link);

@@ -113,7 +113,7 @@ pub fn joints_rad(
     }
 }
 
-/// The field nearest to `before` among those that open and never close the given joints.
+/// Returns the field nearest to `before` among those that open and never close the given joints.
 ///
 /// The variables are the motions of the bodies between the joints, in axes in which their kinetic energy is
 /// half a sum of squares: what is sought is the point of a polyhedral cone nearest to a given point. Each joint
@@ -227,8 +227,8 @@ fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twi
     ]
 }
 
-/// Tolerances: the unknown is of unit length, so that they are errors of `r`. With thousands of joints rounding
-/// may leave only the reduced ones.
+/// Returns the tolerances: the unknown is of unit length, so that they are errors of `r`. With thousands of joints rounding may leave only the
+/// reduced ones.
 fn settings() -> DefaultSettings<f64> {
     DefaultSettings {
         tol_gap_abs: 1e-11,

@@ -65,7 +65,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// The chain of a profile and its mirror image under an impact law, from its onset by
+    /// Returns the sequence of mechanisms of a profile and its mirror image under an impact law, from its onset by
     /// [`incipient`](super::limit::incipient_of).
     pub(crate) fn new(
         profiles: [Arc<dyn Profile>; 2],

@@ -124,16 +124,14 @@ pub struct Impact {
     pub impulse_line: Option<ImpulseLine>,
 }
 
-/// The velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism
-/// that follows.
+/// Returns the velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism that follows.
 #[must_use]
 pub fn closing_field(mechanism: &FourLink, profile: &dyn Profile) -> Field {
     mechanism.field().scaled(-1.0).mirrored(profile)
 }
 
-/// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile
-/// is given in the frame of the mechanism that follows: the mirrored one, for a structure that is not its own mirror
-/// image.
+/// Returns the impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile is given in the frame
+/// of the mechanism that follows: the mirrored one, for a structure that is not its own mirror image.
 #[must_use]
 pub fn impact(
     mechanism: &FourLink,
@@ -157,8 +155,7 @@ pub fn impact(
     impact_onto(next, mechanism, profile, model)
 }
 
-/// The impact when `mechanism` closes and `next` is known to follow; `None` when that would have to
-/// move backwards.
+/// Returns the impact of a closing `mechanism` if `next` follows; `None` if `next` would have to move backwards.
 pub(crate) fn impact_onto(
     next: FourLink,
     mechanism: &FourLink,
@@ -182,8 +179,8 @@ pub(crate) fn impact_onto(
     })
 }
 
-/// Rate of `mechanism` after the impact and restitution coefficient, as the orthogonal projection of the
-/// velocity field `before` onto the mechanism in the kinetic-energy metric.
+/// Returns the rate of `mechanism` after the impact and restitution coefficient, as the orthogonal projection of the velocity field `before` onto the
+/// mechanism in the kinetic-energy metric.
 ///
 /// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
 /// The restitution coefficient is then a squared cosine. It solves Eqs. (7)-(10) of the paper.
@@ -195,7 +192,7 @@ pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -
     (shared / own, kept)
 }
 
-/// The admissible mechanism that keeps the most of the kinetic energy of `before`.
+/// Returns the admissible mechanism with the largest retained part of the kinetic energy of `before`.
 fn most_energetic(before: &Field, profile: &dyn Profile, sites: HingeSites) -> Option<FourLink> {
     let lattice = Lattice::new(profile, sites);
     let table = ProductTable::new(&lattice, before, profile);
@@ -211,7 +208,7 @@ struct RetainedEnergy<'a> {
 }
 
 impl RetainedEnergy<'_> {
-    /// The retained energy and the rate of the mechanism.
+    /// Returns the retained energy and the rate of the mechanism.
     fn retained(&self, mechanism: &FourLink) -> (f64, f64) {
         let field = mechanism.field();
         let shared = field.product(self.before, self.profile);
@@ -226,9 +223,9 @@ impl Objective for RetainedEnergy<'_> {
         &self.before.cuts_rad
     }
 
-    /// The retained energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
-    /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the
-    /// impulse line. At a hinge the new field counts with the mean of both sides.
+    /// Returns the retained energy and its derivatives. The energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
+    /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the impulse line. At a hinge the new field counts with
+    /// the mean of both sides.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
         let (value, rate) = self.retained(mechanism);
         let after = mechanism.field().scaled(rate);
@@ -284,7 +281,7 @@ impl ProductTable {
         }
     }
 
-    /// Twice the kinetic energy that the mechanism keeps.
+    /// Returns twice the kinetic energy that the mechanism keeps.
     fn retained(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
         let size = self.with_before.len();
         let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + EDGES[i] as usize);

@@ -25,7 +25,7 @@ pub struct ImpulseLine {
 }
 
 impl ImpulseLine {
-    /// The impulses that turn the velocity field `before` into `after`, a motion of `mechanism`.
+    /// Returns the impulses that turn the velocity field `before` into `after`, a motion of `mechanism`.
     ///
     /// `after` has to be the projection of `before` onto the mechanism ([`super::impact::projection`]); the line
     /// then passes through all four hinges.
@@ -37,8 +37,8 @@ impl ImpulseLine {
         }
     }
 
-    /// Impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the
-    /// left body on the middle one, by the right body on the middle one, by the ground on the right body.
+    /// Returns the impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the left body on the middle
+    /// one, by the right body on the middle one, by the ground on the right body.
     ///
     /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
     #[must_use]
@@ -48,8 +48,7 @@ impl ImpulseLine {
         std::array::from_fn(|i| self.resultants.at(hinges[i]).linear * sides[i])
     }
 
-    /// [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new
-    /// mechanism sways to the given side.
+    /// Returns [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism sways to the given side.
     #[must_use]
     pub fn hinge_impulses_from_left(&self, sway: Sway) -> [Vector2<f64>; 4] {
         let mut impulses = self.hinge_impulses();
@@ -62,8 +61,7 @@ impl ImpulseLine {
         impulses
     }
 
-    /// The resultant at a section, by its angle from the left springing, when the new mechanism sways to the
-    /// given side.
+    /// Returns the resultant at a section, by its angle from the left springing, when the new mechanism sways to the given side.
     #[must_use]
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
         let angle_rad = sway.from_left(&*self.resultants.profile, angle_rad);
@@ -73,8 +71,7 @@ impl ImpulseLine {
         section
     }
 
-    /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the
-    /// given side.
+    /// Returns [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
     #[must_use]
     pub fn extremes_from_left(&self, sites: HingeSites, sway: Sway) -> Extremes {
         let mut extremes = self.resultants.extremes(sites);

@@ -19,7 +19,7 @@ pub struct JointedProfile {
 }
 
 impl JointedProfile {
-    /// The profile of a row; `None` for a stack, which has no right support.
+    /// Returns the profile of a row; `None` for a stack, which has no right support.
     #[must_use]
     pub fn new(row: &Row) -> Option<Self> {
         if row.supports == Supports::Left {
@@ -50,7 +50,7 @@ impl JointedProfile {
         })
     }
 
-    /// The joint at a section.
+    /// Returns the joint at a section.
     fn index(&self, section: f64) -> usize {
         (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }

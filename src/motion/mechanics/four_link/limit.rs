@@ -99,7 +99,7 @@ pub fn least_thickness_ratio(
     Ok(least)
 }
 
-/// Gravity and a push of `acceleration_g` to the right, as load per unit mass.
+/// Returns gravity and a push of `acceleration_g` to the right, as load per unit mass.
 fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
@@ -157,7 +157,7 @@ impl Objective for LeastAcceleration<'_> {
     }
 }
 
-/// A unit push to the right without gravity.
+/// Returns a unit push to the right without gravity.
 fn push_only() -> Field {
     Field::uniform(Twist::translation(Vector2::new(1.0, 0.0)))
 }

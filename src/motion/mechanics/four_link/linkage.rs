@@ -41,7 +41,7 @@ impl Body {
         }
     }
 
-    /// The body with a point mass at the end of the bar.
+    /// Returns the body with a point mass at the end of the bar.
     fn loaded(self, mass: f64) -> Self {
         Self {
             first_per_bar: self.first_per_bar + Vector2::new(mass, 0.0),
@@ -50,7 +50,7 @@ impl Body {
         }
     }
 
-    /// First mass moment when the bar is `bar`.
+    /// Returns the first mass moment when the bar is `bar`.
     fn first(&self, bar: Vector2<f64>) -> Vector2<f64> {
         product(bar, self.first_per_bar)
     }
@@ -82,23 +82,23 @@ struct Bars {
     per_cross: f64,
 }
 
-/// The unit complex number that turns `from` into `to`, vectors of equal length.
+/// Returns the unit complex number that turns `from` into `to`, vectors of equal length.
 fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
 }
 
-/// Undoes the rotation by the angle of the unit complex number `turn`.
+/// Reverses the rotation by the angle of the unit complex number `turn`.
 fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
     product(Vector2::new(turn.x, -turn.y), v)
 }
 
-/// The angle by which `from` is turned to point like `to`.
+/// Returns the angle from the direction of `from` to that of `to`.
 fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
     from.perp(&to).atan2(from.dot(&to))
 }
 
 impl Linkage {
-    /// The linkage of `mechanism`.
+    /// Returns the linkage of `mechanism`.
     #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
         let [a, b, c, d] = mechanism.hinges_rad;
@@ -137,8 +137,8 @@ impl Linkage {
         }
     }
 
-    /// Rotation rates of the middle and the right body per unit `q'` (that of the left is -1): cross
-    /// products close the loop of velocities.
+    /// Returns the rotation rates of the middle and the right body per unit `q'` (that of the left is -1): cross products close the loop of
+    /// velocities.
     fn rates(bars: &Bars) -> (f64, f64) {
         let [middle, right] = [bars.right, bars.middle].map(|bar| bars.left.perp(&bar));
         (middle * bars.per_cross, right * bars.per_cross)
@@ -153,7 +153,7 @@ impl Linkage {
         (middle * bars.per_cross, right * bars.per_cross)
     }
 
-    /// The thrust line in motion: from the dynamic equilibrium of the three bodies.
+    /// Returns the thrust line in motion, from the dynamic equilibrium of the three bodies.
     ///
     /// The moments of the right body about D and of the middle body about B give the force at C, and the
     /// equilibrium of forces the others. `B-C` and `C-D` are never on one line before the limit position.
@@ -211,8 +211,8 @@ impl Linkage {
         ThrustLine::new(&*self.profile, parts)
     }
 
-    /// The limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that
-    /// the right body or the ground bar cannot follow any further.
+    /// Returns the limit position, the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
+    /// cannot follow any further.
     #[must_use]
     pub fn limit_rad(&self) -> f64 {
         let [left, middle, right, base] =
@@ -242,7 +242,7 @@ impl Mechanism for Linkage {
         moments.collect()
     }
 
-    /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
+    /// Returns the coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let bars = self.bars(q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
@@ -278,20 +278,20 @@ impl Mechanism for Linkage {
             + self.right.first(bars.right - self.right.bar)
     }
 
-    /// Rotations of the three bodies at `q`.
+    /// Returns the rotations of the three bodies at `q`.
     fn rotations(&self, q_rad: f64) -> [f64; 3] {
         let bars = self.bars(q_rad);
         let middle = angle_between(self.middle.bar, bars.middle);
         [-q_rad, middle, angle_between(self.right.bar, bars.right)]
     }
 
-    /// Rotation rates of the three bodies at `q` for `q' = 1`.
+    /// Returns the rotation rates of the three bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> [f64; 3] {
         let (middle, right) = Self::rates(&self.bars(q_rad));
         [-1.0, middle, right]
     }
 
-    /// In mean radii from the centre of the ring.
+    /// Writes poses and hinges, in mean radii from the centre of the ring.
     fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
         let bars = self.bars(q_rad);
         let [point_a, point_b, _, point_d] = self.mechanism.points;

@@ -81,7 +81,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Whether the line is compressive and stays inside the ring, to [`EDGE_TOLERANCE`].
+    /// Returns whether the line is compressive and stays inside the ring, to [`EDGE_TOLERANCE`].
     #[must_use]
     pub fn is_admissible(&self) -> bool {
         self.normal.value > 0.0 && self.eccentricity_ratio.value <= 0.5 + EDGE_TOLERANCE
@@ -89,7 +89,7 @@ impl Extremes {
 }
 
 impl ResultantLine {
-    /// The line through three hinges of `mechanism` (A, B and D), under `load`.
+    /// Returns the line through three hinges of `mechanism` (A, B and D), under `load`.
     ///
     /// A mechanism makes the ring statically determinate except for one number: the line passes through C
     /// as well when the load does no work on the mechanism.
@@ -116,7 +116,7 @@ impl ResultantLine {
         }
     }
 
-    /// Force (impulse) at a section, with its moment about the centre of the ring.
+    /// Returns the force (impulse) at a section, with its moment about the centre of the ring.
     #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         self.start + self.load.momentum_to(&*self.profile, angle_rad)
@@ -128,8 +128,8 @@ impl ResultantLine {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
-    /// The extremes over all sections where hinges may form anywhere, or over the joints of voussoirs,
-    /// which are rigid: there the line may leave the ring between joints.
+    /// Returns the extremes over all sections where hinges may form anywhere, or over the joints of voussoirs, which are rigid: there the line may
+    /// leave the ring between joints.
     #[must_use]
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
         let mut normal = self.largest(sites, &|section| -section.normal);
@@ -179,8 +179,8 @@ impl ResultantLine {
         top(refined.chain(samples.iter().copied()))
     }
 
-    /// Derivative with respect to the angle of the moment about the edge point of the section, where
-    /// the load is `local`. Zero where the line touches the edge.
+    /// Returns the derivative with respect to the angle of the moment about the edge point of the section, where the load is `local`. Zero where the
+    /// line touches the edge.
     fn edge_moment_slope(&self, angle_rad: f64, edge: Edge, local: Twist) -> f64 {
         let slice = local.momentum(&self.profile.slice(angle_rad));
         let along_edge = self.profile.edge_slope(angle_rad, edge);
@@ -213,8 +213,7 @@ fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
     largest.expect("a ring has sections")
 }
 
-/// The maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by
-/// golden section.
+/// Returns the maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by golden section.
 pub(super) fn climb(
     mut from: f64,
     mut to: f64,

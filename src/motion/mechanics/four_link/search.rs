@@ -38,7 +38,7 @@ pub(crate) trait Score: Fn(&[f64; 4], &Quadruple) -> f64 {}
 impl<F: Fn(&[f64; 4], &Quadruple) -> f64> Score for F {}
 
 impl Lattice {
-    /// The lattice for the given sites: a fixed number of equal intervals, or the joints.
+    /// Returns the lattice for the given sites: a fixed number of equal intervals, or the joints.
     pub fn new(profile: &dyn Profile, sites: HingeSites) -> Self {
         let (intervals, stride) = match sites {
             HingeSites::Anywhere => (LATTICE_INTERVALS, 1),
@@ -65,7 +65,7 @@ impl Lattice {
         std::array::from_fn(|i| self.points[quadruple[i]][EDGES[i] as usize])
     }
 
-    /// Local maxima of `score`, best first.
+    /// Returns the local maxima of `score`, best first.
     pub(crate) fn maxima(&self, score: &impl Score) -> Vec<Quadruple> {
         let last = self.points.len() - 1;
         let mut coarse: Vec<usize> = (0..last).step_by(self.stride).collect();
@@ -141,7 +141,7 @@ impl Lattice {
 
 /// Function of a mechanism, to be maximised.
 pub(crate) trait Objective {
-    /// Sections where the gradient may jump, in radians.
+    /// Returns the sections where the gradient may jump, in radians.
     fn kinks_rad(&self) -> &[f64] {
         &[]
     }

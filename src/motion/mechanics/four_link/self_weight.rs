@@ -92,7 +92,7 @@ impl SymmetricLines {
         least.expect("a ring has a springing")
     }
 
-    /// The largest `k` of a line of thrust `h` that is nowhere above the extrados.
+    /// Returns the largest `k` of a line of thrust `h` that is nowhere above the extrados.
     ///
     /// From crown to springing [`Self::touching`] first rises, if at all, and then falls (see
     /// [`Self::haunch_rad`]): it is least at one of the two.
@@ -103,8 +103,8 @@ impl SymmetricLines {
         largest.expect("a ring has a springing")
     }
 
-    /// The section of a continuous ring at which a line of thrust `h` that stays above the intrados touches it:
-    /// where [`Self::touching`] is largest.
+    /// Returns the section of a continuous ring at which a line of thrust `h` that stays above the intrados touches it: where [`Self::touching`] is
+    /// largest.
     ///
     /// Its slope vanishes where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side rises from 1 to infinity
     /// between crown and 90 degrees: the slope changes its sign at most once, from positive to negative.

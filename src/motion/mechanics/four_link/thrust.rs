@@ -79,7 +79,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// One force per unit mass everywhere.
+    /// Returns the load of one force per unit mass everywhere.
     #[must_use]
     pub const fn uniform(force: Vector2<f64>) -> Self {
         Self {
@@ -88,8 +88,8 @@ impl Load {
         }
     }
 
-    /// Body force less inertia of a body that turns: `at_pole` is the body force less the acceleration
-    /// of the body's point `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
+    /// Returns the body force minus the inertia force of a rotating body: `at_pole` is the body force minus the acceleration of the body's point
+    /// `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
     #[must_use]
     pub(crate) fn of_body(
         pole: Vector2<f64>,
@@ -125,8 +125,7 @@ pub struct Part {
 }
 
 impl Part {
-    /// The part that ends at `end_rad`, under `load`, with the resultant `known` at the section
-    /// `known_rad`.
+    /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section `known_rad`.
     #[must_use]
     pub fn new(
         profile: &dyn Profile,
@@ -141,7 +140,7 @@ impl Part {
         }
     }
 
-    /// The resultant at a section.
+    /// Returns the resultant at a section.
     #[must_use]
     pub fn at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         self.start + self.load.resultant(&profile.moments_to(angle_rad))
@@ -218,7 +217,7 @@ impl ThrustLine {
         pressed.collect()
     }
 
-    /// The largest demands over the joints, or over all sections of a continuous ring.
+    /// Returns the largest demands over the joints, or over all sections of a continuous ring.
     #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {
         let weight = self.profile.moments_to(self.profile.end()).mass;

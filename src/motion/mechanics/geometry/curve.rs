@@ -60,7 +60,7 @@ impl Curve {
         Self::Line { from, to }
     }
 
-    /// The point at a part of the way, and its derivative with respect to the part.
+    /// Returns the point at a parameter from 0 to 1, and its derivative by the parameter.
     #[must_use]
     pub fn at(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
@@ -94,13 +94,13 @@ impl Curve {
         }
     }
 
-    /// The point at a part of the way.
+    /// Returns the point at a parameter from 0 to 1.
     #[must_use]
     pub fn point(&self, part: f64) -> Vector2<f64> {
         self.at(part).0
     }
 
-    /// The piece between two parts of the way; backwards if the first is the larger.
+    /// Returns the piece between two parameters; reversed if the first one is larger.
     #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let mut piece = *self;
@@ -114,13 +114,13 @@ impl Curve {
         piece
     }
 
-    /// This curve run through the other way.
+    /// Returns the curve with reversed direction.
     #[must_use]
     pub fn reversed(&self) -> Self {
         self.between(1.0, 0.0)
     }
 
-    /// The mirror image about the y axis, run through the other way, so that a curve from left to right stays one.
+    /// Returns the mirror image about the y axis with reversed direction, so that a curve from left to right stays one.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let mut image = self.reversed();
@@ -136,7 +136,7 @@ impl Curve {
         image
     }
 
-    /// Integral over the curve of a function of the point and the derivative.
+    /// Returns the integral over the curve of a function of the point and the derivative.
     pub(crate) fn integral<T>(&self, of: impl Fn(Vector2<f64>, Vector2<f64>) -> T) -> T
     where
         T: std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -157,7 +157,7 @@ impl Curve {
         (1..PANELS).fold(panel(0), |sum, next| sum + panel(next))
     }
 
-    /// Its length.
+    /// Returns its length.
     #[must_use]
     pub fn length(&self) -> f64 {
         match self {
@@ -171,7 +171,7 @@ impl Curve {
         }
     }
 
-    /// The part of the way at which the curve has reached a length.
+    /// Returns the parameter at which the curve has reached a length.
     #[must_use]
     pub fn part_at(&self, length: f64) -> f64 {
         match self {
@@ -180,14 +180,14 @@ impl Curve {
         }
     }
 
-    /// The part of the way from which on a condition holds.
+    /// Returns the parameter from which on a condition holds.
     pub(crate) fn first(&self, holds: impl Fn(f64) -> bool) -> f64 {
         let (low, high) = bisect(0.0, 1.0, Width::Absolute(1e-16), holds);
         middle(low, high)
     }
 
-    /// Moments, about the pole, of the area that the line from there to the running point sweeps, positive if it
-    /// turns anticlockwise.
+    /// Returns the moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
+    /// anticlockwise.
     #[must_use]
     pub fn swept(&self, pole: Vector2<f64>) -> MassMoments {
         if let Self::Line { from, to } = self {
@@ -212,18 +212,18 @@ impl Curve {
     }
 }
 
-/// Straight lines from corner to corner and back to the first.
+/// Returns straight lines from corner to corner and back to the first.
 pub fn polygon(corners: &[Vector2<f64>]) -> impl Iterator<Item = Curve> {
     sides(corners).map(|[from, to]| Curve::Line { from, to })
 }
 
-/// The sides of a polygon, the last one back to the first corner.
+/// Returns the sides of a polygon, the last one back to the first corner.
 pub(crate) fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = [Vector2<f64>; 2]> {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(from, to)| [*from, *to])
 }
 
-/// Distance of a point from a side.
+/// Returns the distance of a point from a side.
 pub(crate) fn distance([from, to]: [Vector2<f64>; 2], point: Vector2<f64>) -> f64 {
     let (along, arm) = (to - from, point - from);
     let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);

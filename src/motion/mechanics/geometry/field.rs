@@ -30,7 +30,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// One motion everywhere.
+    /// Returns a field with the same motion everywhere.
     #[must_use]
     pub fn uniform(twist: Twist) -> Self {
         Self {
@@ -39,8 +39,7 @@ impl Field {
         }
     }
 
-    /// Field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before
-    /// the first of them.
+    /// Returns a field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before the first of them.
     #[must_use]
     pub fn from_jumps(jumps: &[(f64, Twist)]) -> Self {
         let mut twist = Twist::ZERO;
@@ -55,7 +54,7 @@ impl Field {
         }
     }
 
-    /// The motion at a section.
+    /// Returns the motion at a section.
     #[must_use]
     pub fn at(&self, angle_rad: f64, side: Side) -> Twist {
         let index = self.cuts_rad.partition_point(|cut| match side {
@@ -65,7 +64,7 @@ impl Field {
         self.twists[index]
     }
 
-    /// This field times `factor`.
+    /// Returns this field times `factor`.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -74,7 +73,7 @@ impl Field {
         }
     }
 
-    /// The mirror image about the vertical axis of the profile.
+    /// Returns the mirror image about the vertical axis of the profile.
     #[must_use]
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
         let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
@@ -84,7 +83,7 @@ impl Field {
         }
     }
 
-    /// This field minus another: rigid on the sectors between the cuts of both.
+    /// Returns this field minus another: rigid on the sectors between the cuts of both.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         let mut cuts_rad = [self.cuts_rad.as_slice(), other.cuts_rad.as_slice()].concat();
@@ -96,7 +95,7 @@ impl Field {
         Self { cuts_rad, twists }
     }
 
-    /// The rigid sectors: bounds and motion of each.
+    /// Returns the rigid sectors: bounds and motion of each.
     fn sectors(&self, end: f64) -> impl Iterator<Item = (f64, f64, Twist)> {
         let starts = std::iter::once(0.0).chain(self.cuts_rad.iter().copied());
         let ends = self.cuts_rad.iter().copied().chain(std::iter::once(end));
@@ -104,7 +103,7 @@ impl Field {
         sectors.map(|((start, end), twist)| (start, end, *twist))
     }
 
-    /// Momentum of the part of the profile from the left springing to `angle_rad`.
+    /// Returns the momentum of the part of the profile from the left springing to `angle_rad`.
     #[must_use]
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         let sectors = self.sectors(profile.end());
@@ -114,8 +113,8 @@ impl Field {
         momenta.fold(Momentum::ZERO, Add::add)
     }
 
-    /// The scalar product with another field: the integral of `rho v . w` over the ring, cut at the
-    /// sections of both (the seven bodies of Eq. (3) of the paper, up to nine in general).
+    /// Returns the scalar product with another field: the integral of `rho v . w` over the ring, cut at the sections of both (the seven bodies of Eq.
+    /// (3) of the paper, up to nine in general).
     #[must_use]
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let mut sum = 0.0;

@@ -43,25 +43,25 @@ impl Pose {
         }
     }
 
-    /// Rotation in radians, positive anticlockwise.
+    /// Returns the rotation in radians, positive anticlockwise.
     #[must_use]
     pub const fn rotation_rad(&self) -> f64 {
         self.rotation_rad
     }
 
-    /// Present position of a point of the undeformed body.
+    /// Returns the present position of a point of the undeformed body.
     #[must_use]
     pub fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.turned(point) + self.translation
     }
 
-    /// Present direction of a vector of the undeformed body.
+    /// Returns the present direction of a vector of the undeformed body.
     #[must_use]
     pub fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(self.turn, vector)
     }
 
-    /// This pose with lengths in a unit `per_unit` times smaller.
+    /// Returns this pose with lengths in a unit `per_unit` times smaller.
     #[must_use]
     pub fn scaled(&self, per_unit: f64) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl Pose {
         }
     }
 
-    /// The mirror image about the vertical through the origin.
+    /// Returns the mirror image about the vertical through the origin.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         // Adding zero makes a negative zero positive.

@@ -15,26 +15,26 @@ use super::ring::{Edge, Ring};
 ///
 /// Lengths are in the size of the structure, masses in a unit of its own.
 pub trait Profile: Debug + Send + Sync {
-    /// The last section; the first one is zero.
+    /// Returns the last section; the first one is zero.
     fn end(&self) -> f64;
 
-    /// Point of a section on an edge.
+    /// Returns the point of a section on an edge.
     fn point(&self, section: f64, edge: Edge) -> Vector2<f64>;
 
-    /// The middle of a section.
+    /// Returns the middle of a section.
     fn middle(&self, section: f64) -> Vector2<f64> {
         (self.point(section, Edge::Intrados) + self.point(section, Edge::Extrados)) * 0.5
     }
 
-    /// Unit vector from the intrados to the extrados.
+    /// Returns the unit vector from the intrados to the extrados.
     fn outward(&self, section: f64) -> Vector2<f64>;
 
-    /// Unit normal of a section towards the right support.
+    /// Returns the unit normal of a section towards the right support.
     fn onward(&self, section: f64) -> Vector2<f64> {
         -turned(self.outward(section))
     }
 
-    /// Distance of the edges at a section.
+    /// Returns the distance of the edges at a section.
     fn thickness(&self, section: f64) -> f64;
 
     /// Returns the mass moments of the part before a section.

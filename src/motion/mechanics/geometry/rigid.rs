@@ -29,12 +29,12 @@ macro_rules! linear {
 }
 pub(crate) use linear;
 
-/// `k x v`: `v` turned by a right angle anticlockwise.
+/// Returns `k x v`: `v` turned by a right angle anticlockwise.
 pub fn turned(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-/// The mirror image of `v` about the y axis.
+/// Returns the mirror image of `v` about the y axis.
 pub(crate) fn mirrored(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.x, v.y)
 }
@@ -56,7 +56,7 @@ impl Twist {
         rate: 0.0,
     };
 
-    /// Rotation at `rate` about `pole`.
+    /// Returns a rotation at `rate` about `pole`.
     #[must_use]
     pub fn rotation(pole: Vector2<f64>, rate: f64) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl Twist {
         }
     }
 
-    /// Translation: the same velocity everywhere.
+    /// Returns a translation, with the same velocity everywhere.
     #[must_use]
     pub const fn translation(velocity: Vector2<f64>) -> Self {
         Self {
@@ -74,13 +74,13 @@ impl Twist {
         }
     }
 
-    /// Velocity at `point`.
+    /// Returns the velocity at `point`.
     #[must_use]
     pub fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.at_center + turned(point) * self.rate
     }
 
-    /// Momentum of a body of the given moments that moves with this twist.
+    /// Returns the momentum of a body of the given moments that moves with this twist.
     #[must_use]
     pub fn momentum(&self, body: &MassMoments) -> Momentum {
         Momentum {
@@ -89,13 +89,13 @@ impl Twist {
         }
     }
 
-    /// Power of `momentum` (or of a wrench) on this motion.
+    /// Returns the power of `momentum` (or of a wrench) on this motion.
     #[must_use]
     pub fn power(&self, momentum: &Momentum) -> f64 {
         self.at_center.dot(&momentum.linear) + self.rate * momentum.angular
     }
 
-    /// The mirror image about the y axis.
+    /// Returns the mirror image about the y axis.
     pub(super) fn mirrored(&self) -> Self {
         Self {
             at_center: mirrored(self.at_center),
@@ -123,7 +123,7 @@ impl Momentum {
         angular: 0.0,
     };
 
-    /// The force `linear` applied at `point`.
+    /// Returns the force `linear` applied at `point`.
     #[must_use]
     pub fn applied_at(point: Vector2<f64>, linear: Vector2<f64>) -> Self {
         Self {
@@ -132,7 +132,7 @@ impl Momentum {
         }
     }
 
-    /// Angular momentum (moment) about `pole`.
+    /// Returns the angular momentum (moment) about `pole`.
     #[must_use]
     pub fn about(&self, pole: Vector2<f64>) -> f64 {
         self.angular - pole.perp(&self.linear)
@@ -153,13 +153,13 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
-    /// Centre of gravity.
+    /// Returns the centre of gravity.
     #[must_use]
     pub fn centroid(&self) -> Vector2<f64> {
         self.first / self.mass
     }
 
-    /// Polar moment of inertia about the centre of gravity (Steiner).
+    /// Returns the polar moment of inertia about the centre of gravity (Steiner).
     #[must_use]
     pub fn central_polar(&self) -> f64 {
         self.polar - self.first.norm_squared() / self.mass

@@ -23,7 +23,7 @@ named! {
 }
 
 impl Edge {
-    /// The edge across the thickness.
+    /// Returns the opposite edge.
     #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
@@ -60,7 +60,7 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Ring of thickness `thickness_ratio` (in mean radii) and embrace angle `embrace_rad`.
+    /// Returns the ring of thickness `thickness_ratio` (in mean radii) and embrace angle `embrace_rad`.
     ///
     /// # Errors
     /// When the thickness is not in `(0, 2)`, so that it leaves a hole, or the angle not in `(0, pi]`.
@@ -82,27 +82,26 @@ impl Ring {
         }
     }
 
-    /// Unit vector from the centre through the section at `angle_rad`.
+    /// Returns the unit vector from the centre through the section at `angle_rad`.
     #[must_use]
     pub fn radial(&self, angle_rad: f64) -> Vector2<f64> {
         let (sin, cos) = (angle_rad - 0.5 * self.embrace_rad).sin_cos();
         Vector2::new(sin, cos)
     }
 
-    /// Unit vector along the axis at `angle_rad`, towards the right springing.
+    /// Returns the unit vector along the axis at `angle_rad`, towards the right springing.
     #[must_use]
     pub fn tangent(&self, angle_rad: f64) -> Vector2<f64> {
         -turned(self.radial(angle_rad))
     }
 
-    /// Point of the section at `angle_rad` on `edge`.
+    /// Returns the point of the section at `angle_rad` on `edge`.
     #[must_use]
     pub fn point(&self, angle_rad: f64, edge: Edge) -> Vector2<f64> {
         self.radial(angle_rad) * self.radius(edge)
     }
 
-    /// Corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3
-    /// degrees at most.
+    /// Returns the corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3 degrees at most.
     #[must_use]
     pub fn sector_outline(&self, start_rad: f64, end_rad: f64) -> Vec<Vector2<f64>> {
         let lines = ((end_rad - start_rad) / OUTLINE_STEP_RAD).ceil().max(1.0);
@@ -116,7 +115,7 @@ impl Ring {
         out.chain(back).collect()
     }
 
-    /// The sections that cut the ring into `parts` equal parts, springings included, in radians.
+    /// Returns the sections that cut the ring into `parts` equal parts, springings included, in radians.
     #[must_use]
     pub fn sections(&self, parts: usize) -> Vec<f64> {
         let part = |i: usize| i as f64 / parts as f64;
