@@ -9,9 +9,9 @@ fuzz_target!(|text: &str| {
         // A valid scenario reads back the same.
         Ok(scenario) => assert_eq!(Scenario::parse(&scenario.to_toml(), "s.toml"), Ok(scenario)),
         Err(errors) => {
-            assert!(!errors.as_slice().is_empty());
+            assert!(!errors.0.is_empty());
             let lines = text.split('\n').count();
-            for error in errors.as_slice() {
+            for error in &errors.0 {
                 let place = error.place.expect("an error in a text has a place");
                 assert!((1..=lines).contains(&place.line) && place.column >= 1);
                 assert_eq!(

@@ -29,7 +29,7 @@ pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
         _ if placed => error.to_string(),
         _ => error.message.clone(),
     };
-    let messages = errors.as_slice().iter().map(words);
+    let messages = errors.0.iter().map(words);
     messages.collect::<Vec<_>>().join("\n")
 }
 

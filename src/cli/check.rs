@@ -107,7 +107,7 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let model = scenario
         .model()
         .map_err(|error| Failure::Work(error.to_string()))?;
-    let request = scenario.request_from_rest();
+    let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let at_once = Request {
         end_s: request.output_step_s,
         ..request

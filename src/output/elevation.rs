@@ -198,7 +198,9 @@ impl<'a> View<'a> {
             let foot = self.px(&mark);
             let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
             let tail = Vector2::new(foot.x, tail);
-            draw_arrow(drawing, tail, foot);
+            drawing.curve("load", [tail, foot], LOAD);
+            let barb = |side: f64| foot + Vector2::new(4.0 * side, -7.0);
+            drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
                     let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
@@ -264,12 +266,6 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scen
         };
         drawing.label(at, anchor, turn_deg, &dimension.text);
     }
-}
-
-fn draw_arrow(drawing: &mut Drawing, tail: Vector2<f64>, foot: Vector2<f64>) {
-    drawing.curve("load", [tail, foot], LOAD);
-    let barb = |side: f64| foot + Vector2::new(4.0 * side, -7.0);
-    drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
 }
 
 /// Hatched ground under the supports of the structure.

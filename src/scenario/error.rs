@@ -40,15 +40,9 @@ fn before(place: Option<&Place>) -> String {
 /// Displayed with one error per line.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}", lines(.0))]
-pub struct ScenarioErrors(Vec<ScenarioError>);
+pub struct ScenarioErrors(pub Vec<ScenarioError>);
 
 impl ScenarioErrors {
-    /// The errors, in the order of the file.
-    #[must_use]
-    pub fn as_slice(&self) -> &[ScenarioError] {
-        &self.0
-    }
-
     /// The one error of a file that could not be read.
     pub(super) fn unreadable(file: &str, message: impl Into<String>) -> Self {
         Self(vec![ScenarioError {

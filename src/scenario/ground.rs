@@ -99,7 +99,7 @@ impl Serialize for Ground {
 pub struct PulseGround {
     /// Shape of the pulse.
     #[serde(skip)]
-    pub(crate) kind: Pulse,
+    pub kind: Pulse,
     /// Peak acceleration, positive to the right, in -1000 to 1000.
     pub(crate) amplitude_g: f64,
     /// Peak of the vertical acceleration, positive upwards, with the same shape and timing, in -1000 to 1000; the
@@ -118,12 +118,6 @@ pub struct PulseGround {
 }
 
 impl PulseGround {
-    /// Shape of the pulse.
-    #[must_use]
-    pub const fn kind(&self) -> Pulse {
-        self.kind
-    }
-
     /// The pulse without its amplitudes.
     #[must_use]
     pub fn shape(&self) -> PulseShape {

@@ -193,10 +193,7 @@ impl Additions {
             loads: table.tables("load", read_load),
             ties: TieTable::read_all(table),
         };
-        if table.faults() > before {
-            return Err(Reported);
-        }
-        Ok(read)
+        ensure(table.faults() == before, || Reported).map(|()| read)
     }
 
     pub fn is_nothing(&self) -> bool {

@@ -503,7 +503,7 @@ impl Scenario {
 
     /// The request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
     #[must_use]
-    pub(crate) fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
+    pub fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
         Request {
             gravity_m_s2: self.simulation.gravity_m_s2,
             end_s: self.simulation.end_s(ground.end_s(), structure.size_m()),
@@ -512,12 +512,6 @@ impl Scenario {
             relative_tolerance: self.simulation.relative_tolerance,
             rest_energy_ratio: self.simulation.rest_energy_ratio,
         }
-    }
-
-    /// The request for the histories of studies, from rest; `[initial]` is ignored.
-    #[must_use]
-    pub fn request_from_rest(&self) -> Request {
-        self.request_on(&self.ground_motion, &self.structure)
     }
 
     /// The scenario as TOML text, with every default written out, except for a `duration_s` that follows the ground motion.

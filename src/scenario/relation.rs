@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::error::ensure;
 use super::table::{Reading, Reported, Table};
 
 /// A relation between keys that a table gives.
@@ -102,10 +103,7 @@ impl Table<'_> {
             self.describe("allOf", || relation.schema());
             relation.check(self);
         }
-        if self.faults() > before {
-            return Err(Reported);
-        }
-        Ok(())
+        ensure(self.faults() == before, || Reported)
     }
 
     /// Reports all relations that the table breaks, and succeeds if also all of its values are sound.

@@ -161,9 +161,8 @@ pub(super) fn switch() -> Custom<'static, bool> {
 
 /// Any string.
 pub(super) fn text() -> Custom<'static, String> {
-    any("a string", "string", |value| {
-        value.as_str().map(str::to_owned)
-    })
+    let read = |value: &Value| value.as_str().map(str::to_owned);
+    any("a string", "string", read)
 }
 
 /// Any value of a kind of JSON.

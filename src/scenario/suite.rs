@@ -144,6 +144,11 @@ impl Suite {
         })
     }
 
+    /// Number of signs with which each record acts.
+    pub(crate) const fn signs(&self) -> usize {
+        1 + self.both_signs as usize
+    }
+
     /// A record scaled to a level, perhaps mirrored.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
         let signed = if mirrored { -level } else { level };

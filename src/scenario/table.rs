@@ -138,10 +138,8 @@ impl<'a> Table<'a> {
 
     /// Succeeds if all values that have been read are those of the file.
     pub(super) fn sound(&self) -> Reading<()> {
-        if self.faults.is_empty() && !self.is_partial && self.description.is_none() {
-            return Ok(());
-        }
-        Err(Reported)
+        let is_sound = self.faults.is_empty() && !self.is_partial;
+        ensure(is_sound && self.description.is_none(), || Reported)
     }
 
     /// The value of a key that must be given.

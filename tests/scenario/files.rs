@@ -20,8 +20,8 @@ fn parse(text: &str) -> Result<Scenario, ScenarioErrors> {
 #[track_caller]
 fn assert_errors(text: &str, expected: &[(usize, usize, &[&str])]) {
     let errors = parse(text).expect_err("the text is faulty");
-    assert_eq!(errors.as_slice().len(), expected.len(), "{errors}");
-    for (error, &(line, column, words)) in errors.as_slice().iter().zip(expected) {
+    assert_eq!(errors.0.len(), expected.len(), "{errors}");
+    for (error, &(line, column, words)) in errors.0.iter().zip(expected) {
         assert_eq!(error.place, Some(Place { line, column }), "{error}");
         for word in words {
             assert!(error.message.contains(word), "{word:?} is not in: {error}");
@@ -540,7 +540,7 @@ fn grounds() {
         let Ground::Pulse(ground) = ground else {
             panic!("{name} is a pulse")
         };
-        assert_eq!(ground.kind(), *kind);
+        assert_eq!(ground.kind, *kind);
     }
     assert_error_after_arch(
         "[ground]",
@@ -634,7 +634,7 @@ fn hostile_nesting_does_not_overflow_the_stack() {
         inline,
     ] {
         let errors = parse(&text).expect_err("hostile");
-        assert!(errors.as_slice().len() <= 40);
+        assert!(errors.0.len() <= 40);
     }
 }
 
@@ -643,7 +643,7 @@ fn many_errors_take_linear_time() {
     // Quadratic work would take 1e11 steps here.
     let keys: Vec<_> = (0..50_000).map(|i| format!("k{i}=1")).collect();
     let errors = parse(&format!("arch = {{ {} }}", keys.join(", "))).expect_err("unknown keys");
-    assert!(errors.as_slice().len() > 50_000);
+    assert!(errors.0.len() > 50_000);
 }
 
 #[test]
@@ -656,7 +656,7 @@ fn files() {
     };
     let message = |result: Result<Scenario, ScenarioErrors>| {
         let errors = result.expect_err("unreadable");
-        assert_eq!(errors.as_slice().len(), 1, "{errors}");
+        assert_eq!(errors.0.len(), 1, "{errors}");
         errors.to_string()
     };
 
@@ -849,7 +849,7 @@ proptest! {
 
     #[test]
     fn noise_is_read_or_said_to_be_wrong(text in any::<String>()) {
-        prop_assert!(parse(&text).map_or_else(|errors| !errors.as_slice().is_empty(), |_| true));
+        prop_assert!(parse(&text).map_or_else(|errors| !errors.0.is_empty(), |_| true));
     }
 
     /// Damage to a valid text gets further into the reader than noise would.
@@ -865,7 +865,7 @@ proptest! {
                 text.insert_str(at, piece);
             }
         }
-        prop_assert!(parse(&text).map_or_else(|errors| !errors.as_slice().is_empty(), |_| true));
+        prop_assert!(parse(&text).map_or_else(|errors| !errors.0.is_empty(), |_| true));
     }
 }
 
@@ -950,7 +950,7 @@ fn control_characters_of_keys_are_escaped_in_messages() {
     ] {
         for text in [text.to_owned(), format!("{ARCH}{text}")] {
             let errors = parse(&text).expect_err("the text is faulty");
-            for error in errors.as_slice() {
+            for error in &errors.0 {
                 let control = error.message.chars().any(char::is_control);
                 assert!(!control, "{text:?}: {:?}", error.message);
             }

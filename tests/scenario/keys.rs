@@ -468,5 +468,5 @@ fn every_relation_between_keys_is_checked() {
     // All broken relations are reported together.
     let tie = "from_block = 1\nto_block = 2\nmodulus_gpa = 200\nyield_stress_mpa = 200\nyield_force_n = 1\n";
     let errors = Scenario::parse(&format!("{arch}[[tie]]\n{tie}"), "s.toml").unwrap_err();
-    assert_eq!(errors.as_slice().len(), 7, "{errors}");
+    assert_eq!(errors.0.len(), 7, "{errors}");
 }

@@ -47,7 +47,10 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
         .lasting_s(duration_s)
         .horizontal_m_s2(amplitude_g * 9.81)
         .unwrap();
-    let case = [(ground, map.scenario.request_from_rest())];
+    let request = map
+        .scenario
+        .request_on(map.scenario.ground_motion(), &map.scenario.structure);
+    let case = [(ground, request)];
     let mut endings = Ending::until_safe(&row.clone().for_many_cases(), &case);
     endings.remove(0).unwrap()
 }
@@ -145,7 +148,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     };
     let scenario = parsed(&text("repeat = true"));
     let map = OverturningMap::of(&scenario).unwrap();
-    let request = scenario.request_from_rest();
+    let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let row = scenario
         .motion
         .model_for_many_cases(&scenario.structure)

@@ -861,8 +861,8 @@ fn assert_faults(folder: &Path, suite: &str, expected: &[(usize, usize, &[&str])
     write(folder, "s.toml", &format!("{COLUMN}[suite]\n{suite}\n"));
     let before = COLUMN.lines().count() + 1;
     let errors = Scenario::read(&folder.join("s.toml")).unwrap_err();
-    assert_eq!(errors.as_slice().len(), expected.len(), "{errors}");
-    for (error, (line, column, words)) in errors.as_slice().iter().zip(expected) {
+    assert_eq!(errors.0.len(), expected.len(), "{errors}");
+    for (error, (line, column, words)) in errors.0.iter().zip(expected) {
         let place = error.place.unwrap();
         assert_eq!(
             (place.line - before, place.column),

@@ -173,8 +173,6 @@ mod tests {
     use crate::scenario::record::tests::{assert_fault, parse};
     use crate::scenario::record::{Format, Layout, Recorded, Unit};
 
-    const AT2: Layout = Layout::new(Format::At2);
-
     #[test]
     fn headers_of_all_wordings_are_read() {
         for header in [
@@ -197,7 +195,8 @@ mod tests {
                     "\u{feff}PEER STRONG MOTION DATABASE RECORD\nSYNTHETIC 1, 0\n\
                      ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz\n{header}\n 0.1 -.2E-01\n 3.D-1\n"
                 );
-                let samples = parse(&text.replace('\n', end), &AT2).expect(header);
+                let samples =
+                    parse(&text.replace('\n', end), &Layout::new(Format::At2)).expect(header);
                 assert_eq!(
                     samples,
                     [(0.0, 0.1), (0.005, -0.02), (0.01, 0.3)],
@@ -212,7 +211,8 @@ mod tests {
         let values = |line: &str| {
             let count = 4;
             let text = format!("NPTS= {count}, DT= .01\n{line}\n");
-            parse(&text, &AT2).map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
+            parse(&text, &Layout::new(Format::At2))
+                .map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
         };
         assert_eq!(
             values("-.1234E-03-.5678E-03+.1E+01-0.2").unwrap(),
@@ -235,7 +235,8 @@ mod tests {
 
     #[test]
     fn faults_of_at2_files_have_lines() {
-        let fault = |text: &str, line, words| assert_fault(text, &AT2, line, words);
+        let fault =
+            |text: &str, line, words| assert_fault(text, &Layout::new(Format::At2), line, words);
         let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
         fault(
             &format!("{head}1 2\n3 4\n"),

@@ -9,6 +9,7 @@ use crate::scenario::prelude::*;
 
 named! {
     /// Format of a record's file.
+    #[derive(Default)]
     pub enum Format {
         /// PEER strong motion database.
         At2 = "at2",
@@ -17,6 +18,7 @@ named! {
         /// K-NET and KiK-net.
         Knet = "knet",
         /// A table with a column of samples and one of times, or with samples at even steps.
+        #[default]
         Csv = "csv",
     }
 }
@@ -55,7 +57,7 @@ pub enum Times {
 }
 
 /// Layout of a file. Semicolons, tabs, commas or blanks separate the columns of tables.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Layout {
     /// The format of the file.
     pub format: Format,
@@ -92,17 +94,10 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 impl Layout {
     /// Accelerations as a file of this format holds them; tables need their times and unit.
     #[must_use]
-    pub const fn new(format: Format) -> Self {
+    pub fn new(format: Format) -> Self {
         Self {
             format,
-            times: None,
-            acceleration_column: None,
-            wrapped: false,
-            unit: None,
-            skip_rows: 0,
-            decimal: Decimal::Point,
-            quantity: Recorded::Acceleration,
-            remove_mean: false,
+            ..Self::default()
         }
     }
 
@@ -189,7 +184,7 @@ impl Layout {
             unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, Recorded::Acceleration),
             remove_mean: table.or("remove_mean", &switch(), false),
-            ..Self::new(format.unwrap_or(Format::Csv))
+            ..Self::new(format.unwrap_or_default())
         };
         let (Some(format), quantity) = (format, layout.quantity) else {
             return layout;

@@ -6,7 +6,7 @@ mod report;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use self::report::{CapacitySide, FILES, Oscillator, SecantPeriods, Summary, report};
+pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};

@@ -11,6 +11,7 @@ use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
+use crate::output::summary::Named;
 use crate::output::table::{column, csv, fields};
 use crate::output::template::{filters, render};
 use crate::output::{Figure, OutputError};
@@ -49,7 +50,7 @@ pub struct CapacitySide {
 }
 
 /// The equivalent oscillator of a capacity curve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Oscillator {
     /// Participating mass `M*`, in kg.
     pub participating_mass_kg: f64,
@@ -59,31 +60,15 @@ pub struct Oscillator {
     pub acceleration_g: f64,
     /// Ultimate displacement, `d0*`, in metres.
     pub ultimate_displacement_m: f64,
-    /// Secant periods at fractions of `d0*`, in seconds.
-    pub secant_period_s_at_part_of_ultimate: SecantPeriods,
-}
-
-/// Secant periods at fractions of the ultimate displacement, in seconds; null if no resistance is left.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct SecantPeriods {
-    /// At a fifth of the ultimate displacement.
-    #[serde(rename = "0.2")]
-    pub at_20: Option<f64>,
-    /// At two fifths of the ultimate displacement.
-    #[serde(rename = "0.4")]
-    pub at_40: Option<f64>,
-    /// At three fifths of the ultimate displacement.
-    #[serde(rename = "0.6")]
-    pub at_60: Option<f64>,
-    /// At four fifths of the ultimate displacement.
-    #[serde(rename = "0.8")]
-    pub at_80: Option<f64>,
+    /// Secant periods at fractions of `d0*` (0.2, 0.4, 0.6 and 0.8), in seconds; null if no resistance is left.
+    pub secant_period_s_at_part_of_ultimate: Named<Option<f64>>,
 }
 
 impl CapacitySide {
     fn of(side: &Capacity, gravity_m_s2: f64) -> Self {
         let (start, end) = (side.start(), side.end());
         let period_s = |part| side.secant_period_s(part, gravity_m_s2);
+        let periods_s = [0.2, 0.4, 0.6, 0.8].map(|part| (part.to_string(), period_s(part)));
         Self {
             control_point_m: side.control.at_m,
             acceleration_g: start.acceleration_g,
@@ -93,12 +78,7 @@ impl CapacitySide {
                 mass_fraction: side.mass_fraction,
                 acceleration_g: start.oscillator_acceleration_g,
                 ultimate_displacement_m: end.oscillator_displacement_m,
-                secant_period_s_at_part_of_ultimate: SecantPeriods {
-                    at_20: period_s(0.2),
-                    at_40: period_s(0.4),
-                    at_60: period_s(0.6),
-                    at_80: period_s(0.8),
-                },
+                secant_period_s_at_part_of_ultimate: Named(periods_s.into()),
             },
             ties: side.ties.clone(),
         }

@@ -47,13 +47,9 @@ impl Capacities {
         })
     }
 
-    const fn signs(&self) -> usize {
-        if self.suite.both_signs { 2 } else { 1 }
-    }
-
     /// Returns the file and the sign of each record, in the order of the answers.
     fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
-        let signs = &["1", "-1"][..self.signs()];
+        let signs = &["1", "-1"][..self.suite.signs()];
         let records = self.suite.records.iter();
         records.flat_map(move |series| signs.iter().map(|sign| (series.file.as_str(), *sign)))
     }
@@ -122,8 +118,8 @@ impl Question for Capacities {
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
-        let edges = (0..self.suite.records.len() * self.signs()).map(|shake| {
-            let (record, mirrored) = (shake / self.signs(), shake % self.signs() == 1);
+        let edges = (0..self.suite.records.len() * self.suite.signs()).map(|shake| {
+            let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
             let verdict = |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
                 let ending = Ending::of(&*model, &ground, &request);
@@ -219,12 +215,16 @@ impl<'a> Counted<'a> {
         let own = samples.own.as_ref().ok();
         let mut all = own.into_iter().chain(samples.answers());
         let is_symmetric = all.all(|edges| {
-            let mut records = edges.chunks(question.signs());
+            let mut records = edges.chunks(question.suite.signs());
             records.all(|signs| signs.iter().all(|edge| *edge == signs[0]))
         });
-        let signs = if is_symmetric { 1 } else { question.signs() };
+        let signs = if is_symmetric {
+            1
+        } else {
+            question.suite.signs()
+        };
         let counted = |edges: &'a Edges| -> Vec<&'a [FirstEdge]> {
-            let records = edges.chunks(question.signs());
+            let records = edges.chunks(question.suite.signs());
             records.map(|edges| &edges[..signs]).collect()
         };
         Self {

@@ -10,15 +10,12 @@ use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
 };
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
-use crate::mechanics::four_link::impact::{
-    Impact, ImpactModel, closing_field, impact as impact_by,
-};
+use crate::mechanics::four_link::impact::{ImpactModel, closing_field, impact as impact_by};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::FourLink;
 use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::scenario::Scenario;
 
 /// The impact that leads to a link of the chain of four links, after a first sway to a given side.
@@ -78,24 +75,15 @@ impl<'a> LinkImpact<'a> {
         self.chain().profile(self.index)
     }
 
-    /// Returns the impulse line as a table; `None` if there is no impulse line.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    pub fn line_table(&self) -> Option<Result<Vec<u8>, OutputError>> {
-        let line = self.line()?;
-        Some(report::line_table(self, &self.after()?.mechanism, line))
-    }
-
     /// Computes this impact by the models that obey the momentum theorems, and by the model of the scenario.
-    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<(ImpactModel, Option<Impact>)> {
+    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ByModel> {
         use ImpactModel::{MaxRestitution, Mirrored, SameSections};
         let known = [MaxRestitution, SameSections, Mirrored];
         let own = Some(own).filter(|own| !known.contains(own));
         let (profile, sites) = (self.profile(), self.chain().sites);
         let models = known.into_iter().chain(own);
         models
-            .map(|model| (model, impact_by(before, profile, sites, model)))
+            .map(|model| ByModel::of(self, model, impact_by(before, profile, sites, model)))
             .collect()
     }
 
@@ -161,9 +149,7 @@ pub fn four_links_answer(
     summary.chosen = format!("impact {}{}", impact.index, impact.after_first());
     if let Some(before) = impact.before().map(|link| &link.mechanism) {
         if question.models {
-            let models = impact.by_models(before, summary.model).into_iter();
-            let models = models.map(|(model, found)| ByModel::of(impact, model, found.as_ref()));
-            summary.models = Some(models.collect());
+            summary.models = Some(impact.by_models(before, summary.model));
         }
         if question.certificate {
             let projection = impact.certified(before, question.joints);

@@ -13,7 +13,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
-use crate::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
@@ -326,7 +326,7 @@ impl LineExtremes {
 }
 
 impl ByModel {
-    pub(super) fn of(impact: &LinkImpact<'_>, model: ImpactModel, found: Option<&Impact>) -> Self {
+    pub(super) fn of(impact: &LinkImpact<'_>, model: ImpactModel, found: Option<Impact>) -> Self {
         let (sway, profile) = (impact.sway(), impact.profile());
         let found = found.map(|found| {
             let hinges = found.mechanism.named_hinges_from_left(profile, sway).into();
@@ -469,37 +469,38 @@ impl Summary {
 /// Smallest number of parts of a ring in the table of an impulse line.
 const LINE_PARTS: usize = 720;
 
-/// Makes the table of the impulse line of an impact, from the left springing. A ring has rows at the sections of a fine division, at joints of
-/// voussoirs and at hinges; a row of blocks has a row at each joint. The eccentricity is empty if no impulse crosses the section.
-pub(super) fn line_table(
-    impact: &LinkImpact<'_>,
-    mechanism: &FourLink,
-    line: &ImpulseLine,
-) -> Result<Vec<u8>, OutputError> {
-    let unit = impact.model.impulse_unit_n_s_per_m();
-    let (profile, sway) = (impact.profile(), impact.sway());
-    let mut sections = profile.sections(match impact.chain().sites {
-        HingeSites::Anywhere => LINE_PARTS,
-        HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
-    });
-    let hinges = mechanism.hinges_from_left(profile, sway);
-    sections.extend(hinges.map(|(section, _)| section));
-    sections.sort_by(f64::total_cmp);
-    sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
-    let at = |section: &f64| line.section_from_left(*section, sway);
-    let columns = [
-        column(
-            profile.joint(0.0).map_or("angle_deg", |_| "joint"),
-            |section: &f64| {
+impl LinkImpact<'_> {
+    /// Makes the table of the impulse line, from the left springing; `None` if there is no impulse line. A ring has rows at the sections of
+    /// a fine division, at joints of voussoirs and at hinges; a row of blocks has a row at each joint. The eccentricity is empty if no impulse
+    /// crosses the section.
+    ///
+    /// # Errors
+    /// When a value is not finite.
+    pub fn line_table(&self) -> Option<Result<Vec<u8>, OutputError>> {
+        let line = self.line()?;
+        let unit = self.model.impulse_unit_n_s_per_m();
+        let (profile, sway) = (self.profile(), self.sway());
+        let mut sections = profile.sections(match self.chain().sites {
+            HingeSites::Anywhere => LINE_PARTS,
+            HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
+        });
+        let hinges = self.after()?.mechanism.hinges_from_left(profile, sway);
+        sections.extend(hinges.map(|(section, _)| section));
+        sections.sort_by(f64::total_cmp);
+        sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);
+        let at = |section: &f64| line.section_from_left(*section, sway);
+        let name = profile.joint(0.0).map_or("angle_deg", |_| "joint");
+        let columns = [
+            column(name, |section: &f64| {
                 let Place { joint, angle_deg } = Place::of(profile, *section);
                 joint.map_or_else(|| Cell::from(angle_deg), Cell::from)
-            },
-        ),
-        column("eccentricity_ratio", |place| {
-            Some(at(place).eccentricity_ratio).filter(|ratio| ratio.is_finite())
-        }),
-        column("normal_n_s_per_m", |place| at(place).normal * unit),
-        column("tangential_n_s_per_m", |place| at(place).tangential * unit),
-    ];
-    csv(columns, &sections)
+            }),
+            column("eccentricity_ratio", |place| {
+                Some(at(place).eccentricity_ratio).filter(|ratio| ratio.is_finite())
+            }),
+            column("normal_n_s_per_m", |place| at(place).normal * unit),
+            column("tangential_n_s_per_m", |place| at(place).tangential * unit),
+        ];
+        Some(csv(columns, &sections))
+    }
 }

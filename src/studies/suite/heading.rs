@@ -81,10 +81,7 @@ impl Heading {
 
     /// Returns the level of a case in words.
     pub(super) fn level(&self, case: &CaseRow) -> String {
-        format!(
-            "{} {}",
-            self.measure.column(),
-            plain(case.level(self.measure))
-        )
+        let level = plain(case.level(self.measure));
+        format!("{} {level}", self.measure.column())
     }
 }

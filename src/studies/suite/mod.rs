@@ -103,12 +103,6 @@ impl CaseRow {
         let rocking = |ending: &Ending| ending.outcome == Outcome::StillRocking;
         self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
     }
-
-    /// Returns true if the result is exactly the mirror image of the result of another case.
-    fn is_mirror_image_of(&self, other: &Self) -> bool {
-        let ended = self.result.as_ref().map(Ending::mirrored);
-        ended.ok() == other.result.as_ref().ok().cloned()
-    }
 }
 
 /// The cases of a suite. Their order: the levels of a record, the levels of the mirrored record, then the next record.
@@ -145,10 +139,6 @@ impl<'a> RecordSuite<'a> {
             strengths: strengths.collect(),
         })
     }
-
-    const fn signs(&self) -> usize {
-        if self.suite.both_signs { 2 } else { 1 }
-    }
 }
 
 impl Study for RecordSuite<'_> {
@@ -165,7 +155,7 @@ impl Study for RecordSuite<'_> {
     }
 
     fn count(&self) -> usize {
-        self.suite.records.len() * self.signs() * self.levels.len()
+        self.suite.records.len() * self.suite.signs() * self.levels.len()
     }
 
     /// Returns the index of the record, with its sign: a level needs the result of the level below to know whether it has an edge.
@@ -252,7 +242,11 @@ impl RecordSuite<'_> {
     fn place(&self, index: usize) -> (f64, usize, bool) {
         let level = self.levels[index % self.levels.len()];
         let shake = index / self.levels.len();
-        (level, shake / self.signs(), shake % self.signs() == 1)
+        (
+            level,
+            shake / self.suite.signs(),
+            shake % self.suite.signs() == 1,
+        )
     }
 
     /// Finds the lowest overturning level between the level of a case that overturns and the level with index `below`; `None` if that level
@@ -487,8 +481,8 @@ fn mirrored_are_images(cases: &[CaseRow]) -> bool {
     let own: BTreeMap<_, &CaseRow> = own.map(|case| (key(case), case)).collect();
     let mut mirrored = cases.iter().filter(|case| case.mirrored);
     mirrored.all(|case| {
-        let own = own.get(&key(case));
-        own.is_some_and(|own| case.is_mirror_image_of(own))
+        let (own, image) = (own.get(&key(case)), case.result.as_ref().ok());
+        own.is_some_and(|own| image.map(Ending::mirrored).as_ref() == own.result.as_ref().ok())
     })
 }
 

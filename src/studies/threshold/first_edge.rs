@@ -30,7 +30,7 @@ impl FirstEdge {
     /// The reason why there is no answer.
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
-        let request = scenario.request_from_rest();
+        let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
         let verdict = |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(|error| error.to_string())?;
@@ -47,22 +47,20 @@ impl FirstEdge {
         width: f64,
         verdict: impl Fn(f64) -> Result<Verdict, String>,
     ) -> Result<Self, NoAnswer> {
+        let known = |strength| match verdict(strength) {
+            Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
+            found => found.map_err(NoAnswer::Failed),
+        };
+        let overturns = |strength| Ok(known(strength)? == Verdict::Overturns);
         let mut edge = Self::default();
         for strength in strengths.iter().copied() {
-            let found = match verdict(strength) {
-                Ok(Verdict::Incomplete) => return Err(NoAnswer::Incomplete),
-                Ok(found) => found,
+            let found = match known(strength) {
                 // The model may not allow a stronger motion: the ground may fall freely.
-                Err(_) if edge.tried_to > 0.0 => break,
-                Err(reason) => return Err(NoAnswer::Failed(reason)),
+                Err(NoAnswer::Failed(_)) if edge.tried_to > 0.0 => break,
+                found => found?,
             };
             if found == Verdict::Overturns {
                 edge.factor = Some(if edge.tried_to > 0.0 {
-                    let overturns = |at| match verdict(at) {
-                        Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
-                        Ok(found) => Ok(found == Verdict::Overturns),
-                        Err(reason) => Err(NoAnswer::Failed(reason)),
-                    };
                     try_bisect(edge.tried_to, strength, Width::Relative(width), overturns)?.1
                 } else {
                     edge.at_most = true;

@@ -590,22 +590,17 @@ impl Basis<'_> {
         rule: &StateRule,
     ) -> Result<(f64, f64, f64, f64), Beyond> {
         let displacement_m = rule.part_of_d0 * curve.end().oscillator_displacement_m;
-        let acceleration_g = self.held_g(curve, displacement_m, rule.divide_acceleration);
+        let part = displacement_m / curve.end().oscillator_displacement_m;
+        let rigid_g = curve.oscillator_acceleration_g(part) / rule.divide_acceleration;
+        // The curve of a structure that is free to vibrate starts with the elastic branch [C8.7.1.6].
+        let elastic_g = self.elastic_g(displacement_m).unwrap_or(f64::INFINITY);
+        let acceleration_g = elastic_g.min(rigid_g);
         let ratio_s2 = displacement_m / (acceleration_g * self.gravity_m_s2);
         let period_s = rule.period_factor * PI * ratio_s2.sqrt();
         let (t0_s, percent, gravity_m_s2) = (self.t0_s, rule.damping_percent, self.gravity_m_s2);
         let demand_m = spectrum.displacement_m(period_s, t0_s, percent, gravity_m_s2)?;
         let capacity_m = displacement_m / rule.divide_displacement;
         Ok((capacity_m, acceleration_g, period_s, demand_m))
-    }
-
-    /// Returns the divided acceleration of the oscillator at a displacement, in g. The curve of a structure that is free to vibrate starts with
-    /// the elastic branch [C8.7.1.6].
-    fn held_g(&self, curve: &Capacity, displacement_m: f64, divide_acceleration: f64) -> f64 {
-        let part = displacement_m / curve.end().oscillator_displacement_m;
-        let rigid_g = curve.oscillator_acceleration_g(part) / divide_acceleration;
-        self.elastic_g(displacement_m)
-            .map_or(rigid_g, |elastic_g| elastic_g.min(rigid_g))
     }
 
     /// Returns the acceleration of the elastic branch, in g; `None` if walls hold the structure.

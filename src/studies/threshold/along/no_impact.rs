@@ -25,7 +25,7 @@ pub(super) fn least_without_impact(
     factors: &Factors,
 ) -> Result<Option<f64>, String> {
     let model = scenario.mechanisms().map_err(|error| error.to_string())?;
-    let request = scenario.request_from_rest();
+    let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let overturns = |factor: f64| {
         let ground = scenario.ground_motion().scaled(factor);
         let ground = ground.map_err(|error| error.to_string())?;
