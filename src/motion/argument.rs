@@ -1,24 +1,24 @@
-//! The error of an argument out of range.
+//! Error for an argument out of range.
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
 use thiserror::Error;
 
-/// An argument of a constructor that is not allowed.
+/// Argument of a constructor that is out of range.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("`{argument} = {value:?}` is not allowed: it must be {allowed}")]
 pub struct ArgumentError {
     /// Name of the argument, with its unit.
     pub argument: &'static str,
-    /// Its value.
+    /// Value of the argument.
     pub value: f64,
-    /// The allowed range.
+    /// Allowed range, in words.
     pub allowed: String,
 }
 
 impl ArgumentError {
-    /// The error of this value.
+    /// Returns the error for a value.
     pub fn new(argument: &'static str, value: f64, allowed: impl Into<String>) -> Self {
         Self {
             argument,
@@ -28,7 +28,10 @@ impl ArgumentError {
     }
 }
 
-/// Returns the value if the condition holds, else an error that names the allowed values.
+/// Returns the value if the condition holds.
+///
+/// # Errors
+/// If the condition does not hold. The error names the allowed values.
 pub fn allow(
     holds: bool,
     argument: &'static str,
@@ -41,7 +44,7 @@ pub fn allow(
     Err(ArgumentError::new(argument, value, allowed.to_string()))
 }
 
-/// The value, if it is in the range; NaN never is.
+/// Returns the value if it is in the range; NaN never is.
 pub fn within(
     argument: &'static str,
     value: f64,
@@ -55,7 +58,7 @@ pub fn within(
     Err(ArgumentError::new(argument, value, allowed))
 }
 
-/// The count, if it is in the range.
+/// Returns the count if it is in the range.
 pub fn counted(
     argument: &'static str,
     count: usize,
@@ -66,7 +69,7 @@ pub fn counted(
     Ok(count)
 }
 
-/// The value, if it is above the first bound and at most the second; NaN never is.
+/// Returns the value if it is above the first bound and at most the second one; NaN never is.
 pub fn above(
     argument: &'static str,
     value: f64,
@@ -77,13 +80,13 @@ pub fn above(
     allow(value > low && value <= high, argument, value, allowed)
 }
 
-/// A number as people write it, with at most six digits: 0.12, not 0.12000000000000002.
+/// Returns a number in decimal notation with at most six digits: 0.12, not 0.12000000000000002.
 pub fn plain(x: f64) -> String {
     // Six digits, in the notation that gives the fewest digits without trailing zeros.
     short(format!("{x:.5e}").parse().unwrap_or(x))
 }
 
-/// A number with this many decimals; zero has no sign.
+/// Returns a number with `decimals` decimals; zero has no sign.
 pub fn fixed(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$}");
     match text.strip_prefix('-') {
@@ -92,24 +95,24 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     }
 }
 
-/// Rounded up to four significant digits, so that a bound in a message is itself allowed.
+/// Rounds up to four significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_up(x: f64) -> f64 {
     let unit = whole(x, 4.0);
     (x * unit).ceil() / unit
 }
 
-/// Rounded down to six significant digits, for the same reason.
+/// Rounds down to six significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_down(x: f64) -> f64 {
     let unit = whole(x, 6.0);
     (x * unit).floor() / unit
 }
 
-/// The factor that turns a positive number into one with this many digits before the decimal point.
+/// Returns the factor that gives a positive number `digits` digits before the decimal point.
 fn whole(x: f64, digits: f64) -> f64 {
     10.0_f64.powf(digits - 1.0 - x.log10().floor())
 }
 
-/// A bound as people write it: 1e6, not 1000000.0.
+/// Returns a bound in the shortest notation: 1e6, not 1000000.0.
 pub fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
         format!("{x:e}")

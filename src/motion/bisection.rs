@@ -2,14 +2,14 @@
 
 use std::convert::Infallible;
 
-/// The width at which bisection stops.
+/// Width of an interval at which bisection stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Width {
-    /// Until no number lies between its ends.
+    /// Stops if there is no number between the ends.
     Rounding,
-    /// Until it is at most this wide, or no number lies between its ends.
+    /// Stops at this width, or if there is no number between the ends.
     Absolute(f64),
-    /// Until it is at most this wide relative to its upper end, or no number lies between its ends.
+    /// Stops at this width relative to the upper end, or if there is no number between the ends.
     Relative(f64),
 }
 
@@ -26,12 +26,12 @@ impl Width {
     }
 }
 
-/// The middle of an interval; of two neighbouring numbers, the even one.
+/// Returns the middle of an interval; of two neighbouring numbers, the even one.
 pub fn middle(low: f64, high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The numbers about which [`bisect`] may ask in its next steps, for this many steps.
+/// Returns all numbers at which [`bisect`] may evaluate the property in its next `steps` steps.
 pub fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
     if steps == 0 || width.is_reached(low, high) {
         return Vec::new();
@@ -42,14 +42,13 @@ pub fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64>
     [vec![middle], below, above].concat()
 }
 
-/// Halves the interval from `low`, where a property does not hold yet, to `high`, where it holds, until it is
-/// narrow enough. Returns its ends.
+/// Halves the interval from `low`, where a property does not hold, to `high`, where it holds, until it is narrow enough. Returns its ends.
 pub fn bisect(low: f64, high: f64, width: Width, mut holds: impl FnMut(f64) -> bool) -> (f64, f64) {
     let Ok(ends) = try_bisect(low, high, width, |at| Ok::<_, Infallible>(holds(at)));
     ends
 }
 
-/// Bisects like [`bisect`], for a property whose evaluation may fail.
+/// Bisects as [`bisect`], for a property whose evaluation may fail.
 ///
 /// # Errors
 /// Those of the property.
@@ -70,11 +69,14 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
-/// Two numbers between which a function falls below zero, of an interval at whose upper end alone its value, which is given, is negative, or no number: neighbours, or
-/// two between which it falls by no more than this rounding, or, where it ends, that are no farther apart than this.
+/// Returns the ends of a small interval in which a function falls below zero. `high` is the upper end of the initial interval with its value. At the
+/// lower end the value is not negative; at the upper end it is negative or NaN.
 ///
-/// It goes to the zero of an inverse quadratic wherever that is safe, and halves the interval elsewhere: Chandrupatla, "A new hybrid
-/// quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Adv. Eng. Softw. 28 (1997).
+/// The search ends at neighbouring numbers, or if the function falls by at most `rounding` between the ends. If the upper value is NaN, the search
+/// ends at an interval no wider than `rounding`.
+///
+/// The next point is the zero of an inverse quadratic interpolation if this is safe, and the middle of the interval otherwise: Chandrupatla, "A new
+/// hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Adv. Eng. Softw. 28 (1997).
 pub fn falls_below_zero(
     low: f64,
     high: (f64, f64),
@@ -98,7 +100,7 @@ pub fn falls_below_zero(
         if falls <= rounding || Width::Rounding.is_reached(low.0, high.0) {
             return (low.0, high.0);
         }
-        // A little beyond zero, so that both ends come near it.
+        // Step slightly beyond zero, so that both ends approach it.
         let ulp = f64::EPSILON * low.0.abs().max(high.0.abs());
         let beyond = (0.4 * rounding / falls).max(ulp / width).min(0.5);
         let at = newest.0 + part.clamp(beyond, 1.0 - beyond) * (opposite.0 - newest.0);
@@ -118,8 +120,8 @@ pub fn falls_below_zero(
     }
 }
 
-/// Part of the way from the newest of three points of a function to the opposite one at which their inverse quadratic is zero; `None` where
-/// it is not monotonic between them.
+/// Returns the zero of the inverse quadratic interpolation of three points, as a fraction of the way from the newest point to the opposite one;
+/// `None` if the interpolation is not monotonic.
 fn inverse_quadratic(newest: (f64, f64), opposite: (f64, f64), former: (f64, f64)) -> Option<f64> {
     let ((a, at_a), (b, at_b), (c, at_c)) = (newest, opposite, former);
     let place = (a - b) / (c - b);

@@ -15,7 +15,7 @@ use crate::dynamics::history::Cost;
 pub struct Moment<M, const N: usize> {
     /// Time, in seconds.
     pub time_s: f64,
-    /// Piece of the forcing.
+    /// Index of the piece of the forcing.
     pub piece: usize,
     /// Discrete state.
     pub mode: M,
@@ -53,10 +53,10 @@ pub trait HybridSystem<const N: usize> {
     /// Returns whether the state is constant in this mode.
     fn is_still(&self, mode: Self::Mode) -> bool;
 
-    /// Returns the rate of change of the state, per second. Called with times in the piece, its ends included.
+    /// Returns the rate of change of the state, per second. Times are in the piece, its ends included.
     fn slope(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
-    /// Returns the state within a step, at least as exact as the step's ends.
+    /// Returns the state within a step, at least as accurate as at the step's ends.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.
@@ -78,24 +78,24 @@ pub trait HybridSystem<const N: usize> {
     fn reset(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (Self::Mode, State<N>);
 }
 
-/// An event: a guard that fired and what it did.
+/// Event of a guard, with the modes and states before and after.
 #[derive(Clone, Copy, Debug)]
 pub struct Transition<M, G, const N: usize> {
-    /// Instant, in seconds.
+    /// Time of the event, in seconds.
     pub time_s: f64,
-    /// The guard.
+    /// Guard that fired.
     pub guard: G,
-    /// Mode before.
+    /// Mode before the event.
     pub from: M,
-    /// Mode after.
+    /// Mode after the event.
     pub to: M,
-    /// State before.
+    /// State before the event.
     pub before: State<N>,
-    /// State after.
+    /// State after the event.
     pub after: State<N>,
 }
 
-/// Listener to a simulation. Steps and transitions come in the order of time; breaking ends the simulation.
+/// Observer of a simulation. Steps and transitions arrive in order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// Receives a part of the motion without an event, in the mode and on the piece of its start.
     fn step(&mut self, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
@@ -113,16 +113,16 @@ pub trait Observer<S: HybridSystem<N>, const N: usize> {
 pub struct Settings {
     /// End of the simulation, in seconds.
     pub end_s: f64,
-    /// Error allowed in a step, relative to the state's components or to their scales.
+    /// Error tolerance of a step, relative to the state's components or to their scales.
     pub relative_tolerance: f64,
-    /// Largest number of transitions; more are an error.
+    /// Maximum number of transitions; more are an error.
     pub max_transitions: usize,
 }
 
-/// The end of a simulation, and its cost.
+/// End of a simulation, and its computational effort.
 #[derive(Clone, Copy, Debug)]
 pub struct Finish<M, const N: usize> {
-    /// The last transition, the end of the simulation, or where an observer broke.
+    /// State at the last transition, at the end of the simulation, or where an observer stopped it.
     pub now: Moment<M, N>,
     /// True if an observer stopped the simulation.
     pub stopped: bool,
@@ -136,7 +136,7 @@ pub enum EngineError {
     /// The integration failed.
     #[error(transparent)]
     Integrator(#[from] IntegratorError),
-    /// More events than allowed, by this time in seconds: with the largest number allowed.
+    /// More events than allowed: time in seconds, and maximum number.
     #[error(
         "more than {1} transitions by {0:?} s: the motion chatters; raise rest_energy_ratio to bring \
          it to rest earlier, or shorten duration_s"
@@ -299,7 +299,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
     };
     let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
     let near_end = step.end_s - time_s < INTERPOLATED * span_s;
-    // The solver needs a step that changes the time in its last digits.
+    // The solver needs a step that changes the floating-point time.
     if near_end || span_s <= 4.0 * f64::EPSILON * time_s {
         landed.end_slope = slope(time_s, &landed.end);
         cost.evaluations += 1;
@@ -335,7 +335,7 @@ const INTERPOLATED: f64 = 2e-4;
 /// Largest fraction of a step that may be closed along the tangent on landing.
 const CLOSED_BY_TANGENT: f64 = 1e-4;
 
-/// A time, with the value of a guard then and its rate of change.
+/// Time, with the value of a guard and its rate of change.
 type Point = (f64, (f64, f64));
 
 /// Returns the first guard to fire within a step, and its time.
@@ -366,12 +366,11 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
 /// are missed.
 const HALVINGS: u32 = 20;
 
-/// Returns the first instant after `start`, up to `end`, at which a guard falls below zero.
+/// Returns the first time after `start`, up to `end`, at which a guard falls below zero.
 ///
-/// Between two points the guard is taken for the cubic with their values and rates. It lies within the
-/// range of its Bernstein coefficients, and is monotone if they are; so they mostly show that it does not
-/// fire, or that it only falls. Otherwise the interval is halved. A guard that is negative at the start
-/// must rise above zero before it can fire.
+/// Between two points the guard is approximated by the cubic polynomial with their values and rates. The polynomial lies within the range of its
+/// Bernstein coefficients, and is monotone if they are. In most cases they show that the guard does not fire, or only falls. Otherwise the interval
+/// is halved. A guard that is negative at the start must rise above zero before it can fire.
 fn first_crossing(
     start: Point,
     end: Point,

@@ -20,31 +20,31 @@ use crate::mechanics::sway::Sway;
 /// Discrete state of a rocking structure.
 pub type Mode<'a, M> = Phase<Swing<'a, M>>;
 
-/// A rocking structure at an instant.
+/// Rocking structure at one time.
 pub type Moment<'a, M> = engine::Moment<Mode<'a, M>, 3>;
 
-/// A phase of the motion.
+/// Phase of the motion.
 #[derive(Clone, Copy, Debug)]
 pub enum Phase<S> {
-    /// Undeformed, carried by the ground.
+    /// At rest, undeformed, moving with the ground.
     Rest,
-    /// One mechanism moves.
+    /// Rocking with one mechanism.
     Rocking(S),
     /// Overturned.
     Overturned(S),
 }
 
-/// A mechanism that moves.
+/// Moving mechanism of a chain.
 pub type Swing<'a, M> = SwingOf<&'a Link<M>>;
 
-/// A mechanism that moves, with its link.
+/// Moving mechanism, with its link.
 #[derive(Clone, Copy, Debug)]
 pub struct SwingOf<L> {
-    /// To which side.
+    /// Side of the sway.
     pub sway: Sway,
-    /// Impacts since it last left rest: the index of the link.
+    /// Number of impacts since the last rest, the index of the link.
     pub impacts: usize,
-    /// The mechanism.
+    /// Link of the mechanism.
     pub link: L,
 }
 
@@ -59,16 +59,16 @@ impl<S: Copy> Phase<S> {
     }
 }
 
-/// Events of a rocking structure.
+/// Guards of a rocking structure: each fires when its value falls below zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// Uplift: `A_L (g + a_v) - push`, where the ground pushes the structure to this side.
+    /// Uplift at rest, with the value `A_L (g + a_v) - push`; the ground pushes the structure to this side.
     Uplift(Sway),
-    /// Rocking: `q`, all hinges close.
+    /// Closing of all hinges in rocking, with the value `q`.
     Closing,
-    /// Rocking on ground that is quiet for good: `q_c - q`, from here on gravity pulls it over.
+    /// Overturning in rocking on quiet ground, with the value `q_c - q`: beyond `q_c`, gravity overturns the structure.
     Critical,
-    /// Rocking: `q_limit - q`, the linkage cannot go any further.
+    /// Limit position in rocking, with the value `q_limit - q`: the linkage cannot move further.
     Limit,
 }
 
@@ -84,19 +84,19 @@ const UPLIFT_FACTOR: f64 = 1.0 + 1e-12;
 /// hardly stable.
 const OPENING_FACTOR: f64 = 1.0 + 1e-13;
 
-/// A structure on moving ground.
+/// Structure on moving ground.
 #[derive(Debug)]
 pub struct Rocking<'a, C: MechanismChain> {
-    /// The mechanisms of the structure.
+    /// Mechanisms of the structure.
     pub chain: &'a C,
-    /// The ground motion.
+    /// Ground motion.
     pub ground: &'a GroundMotion,
     gravity_m_s2: f64,
     rest_energy_ratio: f64,
-    /// Energy that the first mechanism has to gain to overturn under gravity alone, on the weaker side. Energies are in the
-    /// structure's unit of mass times the square of its unit of length, per s2.
+    /// Energy that the first mechanism needs to overturn under gravity alone, on the weaker side. Energies are in the structure's unit of mass times
+    /// the square of its unit of length, per s2.
     pub barrier: f64,
-    /// Horizontal acceleration that lifts the structure off to the right and to the left, in units of gravity.
+    /// Horizontal acceleration at uplift to the right and to the left, in multiples of gravity.
     uplift_g: Sides<f64>,
 }
 
@@ -293,8 +293,8 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
             return step.start;
         }
         let x = (time_s - step.start_s) / span;
-        // q by the polynomial of degree five with the coordinates, rates and accelerations of both
-        // ends, in the time over the span; its error is span^6/46080 times the sixth derivative.
+        // Fifth-degree polynomial of q with the coordinates, rates and accelerations of both ends, in the time over the span; its error is
+        // span^6/46080 times the sixth derivative.
         let (q, rate) = (step.start[0], step.start[1] * span);
         let bend = step.start_slope[1] * span * span;
         let miss = step.end[0] - (q + rate + 0.5 * bend);
@@ -306,7 +306,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let coordinate =
             q + x * (rate + x * (0.5 * bend + x * (cubic + x * (quartic + x * quintic))));
         let slope = rate + x * (bend + x * (3.0 * cubic + x * (4.0 * quartic + x * 5.0 * quintic)));
-        // Work by the cubic with values and rates of both ends.
+        // Cubic polynomial of the work with values and rates of both ends.
         let (work, power) = (step.start[2], step.start_slope[2] * span);
         let miss = step.end[2] - (work + power);
         let miss_power = step.end_slope[2] * span - power;
@@ -400,7 +400,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                 (Phase::Overturned(swing), now.state)
             }
             (Guard::Closing, Phase::Rocking(Swing { sway, impacts, .. })) => {
-                // The closing rate is negative, except for rounding at the end of a vanishing hop.
+                // The closing rate is negative, except for rounding errors at the end of a very short hop.
                 let closing_rate = (-now.state[1]).max(0.0);
                 let Some(link) = self.chain.link_from(sway.before(impacts), impacts + 1) else {
                     return (Phase::Rest, still);

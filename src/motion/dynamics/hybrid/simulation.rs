@@ -338,13 +338,13 @@ impl<C: MechanismChain> Tally<'_, '_, C> {
         }
     }
 
-    /// Notes turning points and passages of the unstable equilibrium in a step.
+    /// Records turning points and passages of the unstable equilibrium in a step.
     fn note_step(&mut self, mode: Mode<'_, C::Mechanism>, step: &Step<3>) {
         let Phase::Rocking(Swing { link, .. }) = mode else {
             return;
         };
         let rocking = self.rocking;
-        // It may turn back in the very step of uplift, in which it starts at zero rate.
+        // The first step after uplift starts at zero rate, and may contain a turning point.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
             let turn_s = falling_root(step.start_s, step.end_s, |time_s| {
@@ -382,7 +382,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<'_, 'a, C> {
         }
         if rests {
             self.last_rest_s = Some(transition.time_s);
-            // At rest the energy is zero: the remaining balance is the defect so far, carried on.
+            // At rest the energy is zero, so the remaining balance is the accumulated error.
         }
         let Some(sampler) = &mut self.sampler else {
             return ControlFlow::Continue(());
