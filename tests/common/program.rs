@@ -132,6 +132,21 @@ pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     commands
 }
 
+/// The cells of the row of a table of docs/validation.md whose label begins so, with the numbers in each.
+#[track_caller]
+pub fn validated(label: &str) -> Vec<Vec<f64>> {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");
+    let page = fs::read_to_string(page).unwrap();
+    let start = format!("| {label}");
+    let row = page.lines().find(|line| line.starts_with(&start)).unwrap();
+    let cells = row.trim_matches('|').split('|').skip(1);
+    let numbers = |cell: &str| {
+        let words = cell.split([' ', ',']);
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    cells.map(numbers).collect()
+}
+
 /// Runs the commands of a page, as printed there, in a folder; each must print the lines shown, in their order. Returns
 /// the number of commands.
 #[track_caller]

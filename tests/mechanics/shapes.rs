@@ -14,6 +14,8 @@ use archrock::scenario::{Scenario, Structure};
 use archrock::{Arch, Outcome, Request, Sway};
 use nalgebra::Vector2;
 
+use crate::common::program::validated;
+
 fn dimensions(rise_m: f64, voussoirs: usize) -> Dimensions {
     Dimensions {
         span_m: 10.0,
@@ -202,7 +204,12 @@ fn row(scenario: &Scenario) -> Row {
 #[test]
 fn an_arch_on_buttresses_given_as_blocks() {
     let folder = tempfile::tempdir().unwrap();
-    for (sides, expected) in [(1, 0.113071), (64, 0.113086)] {
+    for (sides, expected, label) in [
+        (1, 0.113071, "onset, straight-sided voussoirs"),
+        (64, 0.113086, "onset, sector voussoirs"),
+    ] {
+        let [elsewhere, here] = [0, 1].map(|cell| validated(label)[cell][0]);
+        assert_eq!(elsewhere, expected);
         buttresses(folder.path(), sides);
         let scenario = parse(
             folder.path(),
@@ -213,6 +220,7 @@ fn an_arch_on_buttresses_given_as_blocks() {
         for sway in [Sway::Right, Sway::Left] {
             let onset = onset(&row, sway).unwrap().unwrap();
             assert!((onset.acceleration_g - expected).abs() < 1e-6, "{onset:?}");
+            assert!((onset.acceleration_g - here).abs() < 5e-7, "{onset:?}");
             let joints: Vec<usize> = onset.openings.iter().map(|o| o.joint).collect();
             let expected = match sway {
                 Sway::Right => [1, 6, 12, 14],
