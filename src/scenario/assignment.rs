@@ -6,23 +6,23 @@ use toml::de::{DeTable, DeValue};
 
 use super::toml_text::quoted;
 
-/// A value that replaces the one in a scenario's text, or is added to it.
+/// A value that replaces a value in the text of a scenario, or is added to the text.
 ///
-/// The names of the tables are parts of the key, as in TOML: `arch.thickness_ratio=0.12`. A value that is not valid TOML
-/// is taken as a string, so that `impact.model=mirrored` needs no quotation marks. A table in braces replaces the whole
-/// table of that name. Entries of lists are counted from 1: `load.2.mass_kg=800`.
+/// The names of the tables are parts of the key, as in TOML: `arch.thickness_ratio=0.12`. A value that is not valid TOML is read as a string, so
+/// `impact.model=mirrored` needs no quotation marks. A table in braces replaces the whole table of that name. Entries of lists are counted from
+/// 1: `load.2.mass_kg=800`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Assignment {
-    /// The text of the user.
+    /// The text as the user gives it.
     pub(super) given: String,
     /// The assignment in TOML.
     pub(super) text: String,
-    /// Number of parts of its key.
+    /// Number of parts of the key.
     pub(super) depth: usize,
 }
 
 impl Assignment {
-    /// The key in the text of the user.
+    /// Returns the key in the text of the user.
     #[must_use]
     pub fn key(&self) -> &str {
         self.given.split('=').next().unwrap_or_default().trim()
@@ -56,7 +56,7 @@ impl FromStr for Assignment {
     }
 }
 
-/// Number of parts of a key; `None` if the text is not a key.
+/// Returns the number of parts of a key; `None` if the text is not a key.
 fn depth(key: &str) -> Option<usize> {
     let text = format!("{key} = 0");
     let table = DeTable::parse(&text).ok()?;
@@ -68,7 +68,7 @@ fn depth(key: &str) -> Option<usize> {
     Some(parts)
 }
 
-/// The only value of a table.
+/// Returns the only value of a table; `None` if the table has none or several.
 fn only<'a, 'i>(table: &'a DeTable<'i>) -> Option<&'a DeValue<'i>> {
     let mut values = table.values();
     let value = values.next()?;

@@ -14,5 +14,5 @@ pub(super) const THICKNESS_RATIO: Number = between(
 pub(super) const EMBRACE_DEG: Number = within(&arch::EMBRACE_DEG);
 pub(super) const JOINT_DEG: Number = within(&(0.0..=*arch::EMBRACE_DEG.end()));
 pub(super) const VOUSSOIRS: Count = Count(arch::VOUSSOIRS, "four hinges need four joints");
-/// Smaller embrace angles are probably in radians: a full circle in radians is less than this.
+/// Embrace angles below this, in degrees, are probably in radians: a full circle has 6.28.
 pub(super) const LIKELY_EMBRACE_DEG: f64 = 10.0;

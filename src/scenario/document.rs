@@ -1,4 +1,4 @@
-//! A parsed TOML text: its values, and their places, whether they come from the text, an assignment or a program.
+//! A parsed TOML text: its values, and the positions of values in the text or in an assignment.
 
 use std::collections::HashMap;
 use std::mem;
@@ -13,26 +13,25 @@ use super::assignment::Assignment;
 use super::error::{Fault, excerpt};
 use super::toml_text::inline;
 
-/// The place of a value: bytes of the text with this number. Text 0 is the scenario's; the others are those of the assignments, in
-/// their order.
+/// Position of a value: a range of bytes in the text with this number. Text 0 is the scenario; the others are the assignments, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Span {
     pub(super) text: usize,
     pub(super) range: Range<usize>,
-    /// The offset of its key.
+    /// Offset of the key.
     pub(super) key: usize,
 }
 
-/// The places of values by their paths, such as `/load/0/mass_kg`. A value that a program gives has none.
+/// Positions of values by path, such as `/load/0/mass_kg`. A value from a program has no position.
 type Spans = HashMap<String, Span>;
 
-/// The entries of a table in the order of the file. A number that is not finite is kept as its text, and a date, which no key takes, as null.
+/// The entries of a table in the order of the file. A number that is not finite is kept as text, and a date, which no key allows, as null.
 pub(super) type Entries = Map<String, Value>;
 
-/// Values that lie deeper than this are dropped: no key is so deep.
+/// Largest depth of nested values. Deeper values are ignored, because no key has this depth.
 const DEEPEST: usize = 16;
 
-/// The kind of a value in messages.
+/// Returns the kind of a value for messages.
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "a date or time",
@@ -45,7 +44,7 @@ pub(super) fn kind(value: &Value) -> &'static str {
     }
 }
 
-/// Parses the values of a text, and notes their places.
+/// Parses the values of a text and records their positions.
 #[derive(Default)]
 struct Parser {
     text: usize,
@@ -59,7 +58,7 @@ impl Parser {
         let parsed = match value.into_inner() {
             DeValue::Array(_) | DeValue::Table(_) if is_deep => Value::Array(Vec::new()),
             DeValue::String(string) => Value::from(string),
-            // A number beyond this type is beyond the bounds of all counts.
+            // An integer outside this type is outside the bounds of all counts.
             DeValue::Integer(whole) => i64::from_str_radix(whole.as_str(), whole.radix())
                 .map_or_else(
                     |_| whole.as_str().parse().unwrap_or(f64::MAX).into(),
@@ -93,14 +92,14 @@ impl Parser {
     }
 }
 
-/// A TOML text with assignments into it.
+/// A TOML text with its assignments.
 #[derive(Debug, Default)]
 pub(super) struct Document<'a> {
     pub(super) root: Entries,
     pub(super) spans: Spans,
-    /// The text, and then that of each assignment.
+    /// The text, followed by the text of each assignment.
     texts: Vec<&'a str>,
-    /// The parts of the text that are not TOML. A key that occurs there may have been given, so it is not reported as missing.
+    /// The lines of the text that are not TOML. A key in these lines may have been given, so it is not reported as missing.
     pub(super) unread: String,
     pub(super) faults: Vec<Fault>,
     /// The folder to which the names of files are relative.
@@ -110,19 +109,19 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses a text.
     ///
-    /// A syntax error hides later ones and causes others. So the first error is recorded, its line is blanked out, and the rest
-    /// is parsed again.
+    /// A syntax error hides later errors and causes others. So the first error is recorded, its line is replaced by blanks, and the text is
+    /// parsed again.
     ///
     /// # Errors
-    /// If no part of the text is TOML: an error spans several lines, such as an unclosed bracket, or there are too many.
+    /// When no part of the text is TOML: an error covers several lines, such as an unclosed bracket, or there are too many errors.
     pub(super) fn parse(text: &'a str, folder: &Path) -> Result<Self, Vec<Fault>> {
-        // Each fault costs one pass over the text.
+        // Each fault needs another pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = text.to_owned();
         let (mut unread, mut faults) = (String::new(), Vec::new());
         while faults.len() < MAX_SYNTAX_FAULTS {
             let (root, errors) = DeTable::parse_recoverable(&legible);
-            // Only the error about keys that are nested too deeply has no place.
+            // Only the error about too deep nesting has no position.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
                 if let Some(fault) = not_a_scenario(&legible, &faults) {
@@ -158,7 +157,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// A document that a program gives.
+    /// Makes a document of JSON values from a program.
     pub(super) fn of_json(root: Value, folder: &Path) -> Self {
         let Value::Object(root) = root else {
             return Self::default();
@@ -170,7 +169,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Puts the values of all assignments into the document; a name that is no entry of a list is a fault.
+    /// Applies all assignments. A fault is recorded if a name is not an entry of a list.
     pub(super) fn assign(&mut self, assignments: &'a [Assignment]) {
         for assignment in assignments {
             self.texts.push(&assignment.text);
@@ -195,7 +194,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The text of a value, as a message quotes it.
+    /// Returns the text of a value for messages.
     pub(super) fn quote(&self, path: &str, value: &Value) -> String {
         match self.spans.get(path) {
             Some(span) => excerpt(&self.texts[span.text][span.range.clone()]),
@@ -203,14 +202,15 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Whether a value is an array of tables `[[key]]`. Its span is the first of their headers.
+    /// Returns true if a value is an array of tables `[[key]]`. The span of such a value is the first header.
     pub(super) fn is_array_of_tables(&self, path: &str, key: &str) -> bool {
         let span = self.spans.get(path);
         span.is_some_and(|span| self.texts[span.text][span.range.clone()] == format!("[[{key}]]"))
     }
 }
 
-/// The single fault of a text that is not a scenario at all, such as a record: several lines are not valid, and no line begins a table.
+/// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, and no line begins a table. `None`
+/// for other texts.
 fn not_a_scenario(legible: &str, faults: &[Fault]) -> Option<Fault> {
     const FEW: usize = 2;
     let first = faults.first().filter(|_| faults.len() > FEW)?;
@@ -225,8 +225,7 @@ fn not_a_scenario(legible: &str, faults: &[Fault]) -> Option<Fault> {
     Some(Fault::new(0, first.offset, message))
 }
 
-/// The line around `offset`. If it is the header of a table, the whole table: otherwise its keys
-/// would be taken for keys of the table before.
+/// Returns the line at `offset`. If it is the header of a table, returns the whole table: its keys would otherwise belong to the previous table.
 fn faulty_part(text: &str, offset: usize) -> Range<usize> {
     let bytes = text.as_bytes();
     let start = bytes[..offset.min(bytes.len())]
@@ -248,8 +247,8 @@ fn faulty_part(text: &str, offset: usize) -> Range<usize> {
     start..end
 }
 
-/// Replaces a known value by the only value of `new` that lies `depth` tables deep. Entries of lists are counted from 1. Returns the paths of
-/// both.
+/// Replaces a value by the only value of `new` at the depth of `depth` tables. Entries of lists are counted from 1. Returns the paths of the
+/// value and of `new`.
 fn replace(mut known: &mut Value, mut new: Value, depth: usize) -> Result<[String; 2], String> {
     let [mut path, mut new_path] = [String::new(), String::new()];
     for _ in 0..depth {

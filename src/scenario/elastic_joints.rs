@@ -17,45 +17,45 @@ const GPA: f64 = 1e9;
 /// Converts a strength in MPa to Pa.
 const MPA: f64 = 1e6;
 
-/// Default ratio of the stiffness against slip to that against penetration: the shear modulus over Young's.
+/// Default ratio of shear to normal stiffness: the ratio of the shear modulus to Young's modulus.
 const SHEAR_RATIO: f64 = 0.4;
 /// Default damping time, in seconds.
 const DAMPING_TIME_S: f64 = 1e-4;
 const TABLE: &[&str] = &["elastic_joints"];
-/// Joints stiffer than this are as good as rigid.
+/// Largest normal stiffness: stiffer joints are practically rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
 const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
 const ONE_POINT: &str = "one does not hold a block";
 const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
 
-/// A range in another unit.
+/// Returns a range in another unit.
 const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
     within(&(*range.start() / unit..=*range.end() / unit))
 }
 
-/// The contents of `[elastic_joints]`, in the units of its keys.
+/// The contents of `[elastic_joints]`, in the units of the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ElasticTable {
-    /// Stiffness of a joint per area, against penetration.
+    /// Normal stiffness of a joint per area, in GPa/m; `None` if it follows from moduli.
     pub normal_stiffness_gpa_m: Option<f64>,
-    /// Stiffness against slip, in GPa/m.
+    /// Shear stiffness of a joint per area, in GPa/m; `None` for the default ratio to the normal stiffness.
     pub shear_stiffness_gpa_m: Option<f64>,
-    /// Young's modulus of the blocks, from which the stiffness can be derived instead.
+    /// Young's modulus of the blocks, in GPa, from which the stiffness follows; `None` if the stiffness is given.
     pub stone_modulus_gpa: Option<f64>,
-    /// Young's modulus of the mortar.
+    /// Young's modulus of the mortar, in GPa; `None` without mortar.
     pub mortar_modulus_gpa: Option<f64>,
-    /// Thickness of the mortar.
+    /// Thickness of the mortar, in m; `None` without mortar.
     pub mortar_thickness_m: Option<f64>,
-    /// Coulomb's coefficient; without it joints never slip permanently.
+    /// Coulomb's coefficient of friction; `None` if joints never slip.
     pub friction_coefficient: Option<f64>,
-    /// Damping forces are this time multiplied by the rates of the elastic forces.
+    /// Damping time, in s: damping forces are this time multiplied by the rates of the elastic forces.
     pub damping_time_s: f64,
-    /// Stress at which joints crush.
+    /// Compressive strength of joints, in MPa; `None` if joints do not crush.
     pub compressive_strength_mpa: Option<f64>,
-    /// Number of points that carry the stress; without it the whole joint does.
+    /// Number of contact points that carry the stress; `None` for continuous contact.
     pub contact_points: Option<usize>,
-    /// The longest time step.
+    /// The longest time step, in s; `None` for the default.
     pub longest_step_s: Option<f64>,
     /// Movements of the supports before time 0, from `[supports]`.
     #[serde(skip)]
@@ -88,7 +88,7 @@ impl ElasticTable {
         Ok(read)
     }
 
-    /// The joints of a structure of this depth.
+    /// Returns the properties of the joints of a structure with this depth.
     fn properties(&self, depth_m: f64) -> ElasticProperties {
         let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
             (None, Some(stone_gpa)) => {
@@ -120,7 +120,7 @@ impl ElasticTable {
         }
     }
 
-    /// Refuses joints on which the structure does not stand, and steps that are too long or too many.
+    /// Rejects joints on which the structure cannot stand, and time steps that are too long or too many.
     pub(super) fn check(
         &self,
         table: &mut Table<'_>,
@@ -130,7 +130,7 @@ impl ElasticTable {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
         let row = structure.row().ok();
-        // Other faults of the row are reported by its users.
+        // Other users of the row report its faults.
         let Some(joints) = row.and_then(|row| ElasticStructure::of_row(&row, &properties).ok())
         else {
             return Ok(());
@@ -170,7 +170,7 @@ impl ElasticTable {
         Err(table.wrong_in(TABLE, key, wrong))
     }
 
-    /// Refuses steps that are too long, or too many until the end.
+    /// Rejects time steps that are too long, or too many until the end.
     fn check_step(
         &self,
         table: &mut Table<'_>,
@@ -200,10 +200,10 @@ impl ElasticTable {
         }
     }
 
-    /// The model of the motion of a structure.
+    /// Makes the model of the motion of a structure.
     ///
     /// # Errors
-    /// When the structure has no joints, or does not stand on joints like these.
+    /// When the structure has no joints, or cannot stand on these joints.
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
@@ -238,7 +238,7 @@ const RELATIONS: &[Relation<'_>] = &[
     AtMostOne(&["contact", "contact_points"], GIVE_ONE),
 ];
 
-/// Reads the damping time, or finds it from a fraction of critical damping at a frequency.
+/// Reads the damping time, or computes it from a fraction of critical damping at a frequency.
 fn read_damping(table: &mut Table<'_>) -> f64 {
     let range_s = within(&ElasticProperties::DAMPING_TIME_S);
     let default_s = table.or("damping_time_s", &range_s, DAMPING_TIME_S);

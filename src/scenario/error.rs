@@ -1,4 +1,4 @@
-//! Errors of scenarios, with their places.
+//! Errors of scenarios, with their positions in the file.
 
 use thiserror::Error;
 
@@ -7,19 +7,19 @@ use super::shown;
 
 /// An error of a scenario.
 ///
-/// Displayed as `file:line:column: message`, the form that editors follow.
+/// Displayed as `file:line:column: message`, a format that editors recognize.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{}:{} {message}", shown(file), before(place.as_ref()))]
 pub struct ScenarioError {
-    /// Name of the file, as the caller gave it, or the assignment after `--set`.
+    /// Name of the file as the caller gave it, or the assignment after `--set`.
     pub file: String,
-    /// Place in the file; `None` for an assignment, and if the file could not be read.
+    /// Position in the file; `None` for an assignment, or if the file cannot be read.
     pub place: Option<Place>,
     /// The wrong key and value, and the allowed values.
     pub message: String,
 }
 
-/// A place in a text, as editors count.
+/// A position in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Place {
     /// Line, from 1.
@@ -28,7 +28,7 @@ pub struct Place {
     pub column: usize,
 }
 
-/// The place before a message.
+/// Returns the position before a message.
 fn before(place: Option<&Place>) -> String {
     place.map_or_else(String::new, |place| {
         format!("{}:{}:", place.line, place.column)
@@ -43,7 +43,7 @@ fn before(place: Option<&Place>) -> String {
 pub struct ScenarioErrors(pub Vec<ScenarioError>);
 
 impl ScenarioErrors {
-    /// The one error of a file that could not be read.
+    /// Returns the single error of a file that cannot be read.
     pub(super) fn unreadable(file: &str, message: impl Into<String>) -> Self {
         Self(vec![ScenarioError {
             file: file.to_owned(),
@@ -52,7 +52,7 @@ impl ScenarioErrors {
         }])
     }
 
-    /// These errors without their places, for a text that no user wrote.
+    /// Removes the positions, for a text that the program wrote itself.
     pub(super) fn without_places(mut self) -> Self {
         for error in &mut self.0 {
             error.place = None;
@@ -60,17 +60,17 @@ impl ScenarioErrors {
         self
     }
 
-    /// Gives each fault found in the text its line and column.
+    /// Converts the offset of each fault in the text to a line and a column.
     ///
-    /// For a fault in an assignment, the assignment stands in place of the file, and there is no place.
+    /// An error in an assignment has the assignment instead of the file, and no position.
     pub(super) fn placed(source: (&str, &str), set: &[Assignment], mut faults: Vec<Fault>) -> Self {
         let (text, name) = source;
         faults.sort_by_key(|fault| (fault.text, fault.offset));
-        // One pass over the text serves all faults: a hostile file can have very many.
+        // A single pass over the text for all faults: a malicious file can have very many.
         let mut chars = text.char_indices().peekable();
         let mut place = Place { line: 1, column: 1 };
         let errors = faults.into_iter().map(|fault| {
-            // Keys may hold control characters.
+            // Keys may contain control characters.
             let message = shown(&fault.message);
             if let Some(assignment) = fault.text.checked_sub(1).and_then(|index| set.get(index)) {
                 return ScenarioError {
@@ -96,7 +96,7 @@ impl ScenarioErrors {
     }
 }
 
-/// The errors, one per line.
+/// Returns the errors, one per line.
 fn lines(errors: &[ScenarioError]) -> String {
     let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
     lines.join("\n")
@@ -105,11 +105,11 @@ fn lines(errors: &[ScenarioError]) -> String {
 /// An error with its byte offset in a text of the document.
 #[derive(Debug)]
 pub(super) struct Fault {
-    /// The text, as in [`Span`](super::document::Span).
+    /// Number of the text, as in [`Span`](super::document::Span).
     pub(super) text: usize,
     pub(super) offset: usize,
     pub(super) message: String,
-    /// True if a file that the text names is missing or faulty.
+    /// True if the error is a missing or faulty file that the text names.
     pub(super) of_file: bool,
 }
 
@@ -124,12 +124,12 @@ impl Fault {
     }
 }
 
-/// Succeeds if a condition holds, else returns the message.
+/// Returns the message as error unless a condition holds.
 pub(super) fn ensure<E>(holds: bool, wrong: impl FnOnce() -> E) -> Result<(), E> {
     holds.then_some(()).ok_or_else(wrong)
 }
 
-/// An excerpt of the file for a message: its first line, shortened if it is long.
+/// Returns an excerpt of the file for a message: the first line, shortened if it is long.
 pub(super) fn excerpt(text: &str) -> String {
     const MAX_CHARS: usize = 50;
     let line = text.trim().lines().next().unwrap_or_default();

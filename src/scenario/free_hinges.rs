@@ -1,4 +1,4 @@
-//! Free hinges, joints that may open, close and slip anywhere: `[free_hinges]`.
+//! Free hinges: joints that may open, close and slip anywhere, `[free_hinges]`.
 
 use super::prelude::*;
 use super::structure::Structure;
@@ -11,17 +11,17 @@ use crate::mechanics::settling::Movements;
 /// Free hinges on supports that may have moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FreeTable {
-    /// `[free_hinges]`.
+    /// Options in `[free_hinges]`.
     pub options: RowOptions,
     /// Movements of the supports before time 0, from `[supports]`.
     pub supports: Movements,
 }
 
 impl FreeTable {
-    /// The model of a structure.
+    /// Makes the model of a structure.
     ///
     /// # Errors
-    /// When it is an arch without voussoirs, cannot stand, or falls or slides as its supports move.
+    /// When the structure is an arch without voussoirs, cannot stand, or collapses or slides on its moved supports.
     pub fn model(&self, structure: &Structure) -> Result<FreeHinges, RowModelError> {
         let mut options = self.options;
         options.friction_coefficient = None;
@@ -32,7 +32,7 @@ impl FreeTable {
     }
 }
 
-/// Reads `[free_hinges]`, which may be empty.
+/// Reads `[free_hinges]`; the table may be empty.
 pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
     let step_s = within(&RowOptions::STEP_S);
     let coefficient = within(&RowOptions::FRICTION_COEFFICIENT);
@@ -47,21 +47,21 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
-/// Refuses friction that does not hold the structure on its moved springings; [`carries`] checks the undeformed structure.
+/// Rejects a coefficient of friction with which the structure slides on its moved springings. [`carries`] checks the undeformed structure.
 pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTable) -> Reading<()> {
     match free.model(structure) {
         Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
             let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
             Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
         }
-        // Other faults of the row are reported by its users.
+        // Other users of the row report its faults.
         _ => Ok(()),
     }
 }
 
-/// Refuses friction that cannot carry the weight of a structure.
+/// Rejects a coefficient of friction with which the structure slides under its weight.
 pub(super) fn carries(structure: &Structure, coefficient: f64) -> Result<(), String> {
-    // Other faults of the row are reported by its users.
+    // Other users of the row report its faults.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());
     };

@@ -13,14 +13,14 @@ use crate::dynamics::model::Request;
 
 pub(super) const AMPLITUDE_G: Number = within(&(-MAX_ACCELERATION_G..=MAX_ACCELERATION_G));
 pub(super) const DURATION_S: Number = within(&(1e-6..=1e6));
-/// The range of frequencies: inverses of durations.
+/// Range of frequencies: the reciprocals of the range of durations.
 pub(super) const FREQUENCY_HZ: Number = within(&(1e-6..=1e6));
-/// At 1 the envelope of the velocity pulse is one period long; at 100 it is no longer a pulse.
+/// Range of `gamma`: at 1 the envelope of the velocity pulse is one period long; above 100 the motion is not a pulse.
 const GAMMA: Number = above(1.0, 100.0);
 const CYCLES: Number = within(&(1.0..=100.0));
-/// Reason why a checked pulse is always valid.
+/// Reason why the motion of a checked pulse is always valid.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
-/// The kind of ground motion that is read from files.
+/// Kind of ground motion that is read from files.
 const RECORD: &str = "record";
 
 /// Ground motion of a scenario.
@@ -33,8 +33,8 @@ pub enum Ground {
 }
 
 impl Ground {
-    /// Reads a ground motion on its own: a text that holds the table `[ground.<kind>]` of a scenario, and nothing else.
-    /// This gravity decides whether the motion is too strong.
+    /// Reads a ground motion from a text that contains only the table `[ground.<kind>]` of a scenario. `gravity_m_s2` is needed to check that
+    /// the motion is not too strong.
     ///
     /// # Errors
     /// All faults of the text and of its records.
@@ -50,16 +50,16 @@ impl Ground {
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
 
-    /// The motion under the given gravity, in 0.001 to 1000.
+    /// Returns the motion under a gravity from 0.001 to 1000 m/s2.
     ///
     /// # Errors
-    /// When gravity is out of that range.
+    /// When gravity is outside that range.
     pub fn motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
         argument::within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
         Ok(self.motion_under(gravity_m_s2))
     }
 
-    /// The ground motion under the gravity of a scenario, which is known to be in range.
+    /// Returns the motion under the gravity of a scenario, whose range was checked.
     pub(super) fn motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
             Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
@@ -67,8 +67,7 @@ impl Ground {
         }
     }
 
-    /// Reads `[ground]` and builds the motion. `[ground]` holds one table, named after its kind, so that different kinds may have different
-    /// keys.
+    /// Reads `[ground]` and makes the motion. `[ground]` contains one table named after its kind, so that kinds may have different keys.
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let mut found = None;
         for &kind in Pulse::ALL {
@@ -94,31 +93,31 @@ impl Serialize for Ground {
     }
 }
 
-/// A pulse of ground acceleration as read; before and after it the ground velocity is constant.
+/// A pulse of ground acceleration. Before and after the pulse the ground velocity is constant.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PulseGround {
     /// Shape of the pulse.
     #[serde(skip)]
     pub kind: Pulse,
-    /// Peak acceleration, positive to the right, in -1000 to 1000.
+    /// Peak acceleration in g, positive to the right, from -1000 to 1000.
     pub(crate) amplitude_g: f64,
-    /// Peak of the vertical acceleration, positive upwards, with the same shape and timing, in -1000 to 1000; the
-    /// ground must not accelerate downwards as fast as a free fall.
+    /// Peak of the vertical acceleration in g, positive upwards, from -1000 to 1000, with the same shape and timing. The ground must not
+    /// accelerate downwards by 1 g or more.
     pub(crate) vertical_amplitude_g: f64,
-    /// Length of the part of the pulse to which its kind refers, in 1e-6 to 1e6.
+    /// Duration in s of the part of the pulse to which its kind refers, from 1e-6 to 1e6.
     pub(crate) duration_s: f64,
-    /// When the pulse starts, in 0 to 1e6.
+    /// Start of the pulse in s, from 0 to 1e6.
     pub(crate) start_s: f64,
-    /// Length of a wave train in periods, as most of their sources call it: above 1 and at most 100.
+    /// Length of a wave train in periods, named gamma in most papers, above 1 and at most 100; `None` for other kinds.
     pub(crate) gamma: Option<f64>,
-    /// Length of a windowed sine in periods, in 1 to 100.
+    /// Length of a windowed sine in periods, from 1 to 100; `None` for other kinds.
     pub(crate) cycles: Option<f64>,
-    /// Phase of a wave train, in -360 to 360.
+    /// Phase of a wave train in degrees, from -360 to 360; `None` for other kinds.
     pub(crate) phase_deg: Option<f64>,
 }
 
 impl PulseGround {
-    /// The pulse without its amplitudes.
+    /// Returns the pulse without its amplitudes.
     #[must_use]
     pub fn shape(&self) -> PulseShape {
         let default = WaveTrain::default();
@@ -132,7 +131,7 @@ impl PulseGround {
             .with_train(train)
     }
 
-    /// The ground motion under the given gravity.
+    /// Returns the ground motion under a gravity in m/s2.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
         self.shape()
@@ -154,7 +153,7 @@ impl PulseGround {
             phase_deg: is_train.then(|| table.or("phase_deg", &within(&(-360.0..=360.0)), 0.0)),
         };
         table.sound()?;
-        // Whether the ground falls freely does not depend on gravity, whose value may itself be faulty.
+        // Free fall of the ground does not depend on gravity, whose value may be faulty.
         let gravity_m_s2 = known.1.unwrap_or(1.0);
         let motion = pulse.motion(gravity_m_s2);
         match motion.free_fall_s(gravity_m_s2) {

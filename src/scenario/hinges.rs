@@ -15,23 +15,23 @@ named! {
 /// Names and properties of a model of motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelEntry {
-    /// Name in results; for a column, four links are named `column`.
+    /// Name of the model in results; four links of a column are named `column`.
     pub name: &'static str,
     /// Scenario table with the options of the model.
     pub table: &'static str,
-    /// Name in sentences.
+    /// Name of the model in sentences.
     pub words: &'static str,
     /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
     pub has_joints: bool,
     /// True: blocks and joints are rigid. False: joints have a stiffness.
     pub is_rigid: bool,
-    /// Message about a table that the model ignores; `None`: it ignores none.
+    /// Message about a table that the model ignores; `None` if it ignores no table.
     pub ignored: Option<&'static str>,
-    /// Reason to trust its outcome; printed if all other models of the run are less trustworthy.
+    /// Reason to trust the outcome; printed if all other models of the run are less trustworthy.
     pub trusted_because: &'static str,
 }
 
-/// All models of motion in the order of [`Hinges`]; each is more trustworthy than those before it.
+/// All models of motion in the order of [`Hinges`], the least trustworthy first.
 pub const MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "four_links",
@@ -63,13 +63,13 @@ pub const MODELS: [ModelEntry; 3] = [
 ];
 
 impl Hinges {
-    /// Entry of the model in [`MODELS`].
+    /// Returns the entry of the model in [`MODELS`].
     #[must_use]
     pub const fn model(self) -> &'static ModelEntry {
         &MODELS[self as usize]
     }
 
-    /// True for free hinges and elastic joints: see [`ModelEntry::has_joints`].
+    /// Returns true for free hinges and elastic joints: see [`ModelEntry::has_joints`].
     #[must_use]
     pub const fn has_joints(self) -> bool {
         self.model().has_joints

@@ -15,7 +15,7 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactLaw> {
     let names = MODELS.map(|model| model.name());
     let name = table.or("model", &one_of(&names, |name| name), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
-    // From no rebound to far above the measured 0.67 to 0.97 times the theory.
+    // Upper bound far above measured values, which are 0.67 to 0.97 times the theory.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
     let index = names.iter().position(|one| *one == name);
     let mut model = MODELS[index.unwrap_or(0)];

@@ -11,7 +11,7 @@ use crate::mechanics::sway::Sway;
 
 const ROTATION_RAD: Number = between(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 
-/// Reads `[initial]` for a structure that is moved by a model with such hinges.
+/// Reads `[initial]` for a structure with this model of motion.
 pub(super) fn read(
     table: &mut Table<'_>,
     structure: Option<&Structure>,

@@ -1,16 +1,16 @@
-//! The files from which a scenario was read.
+//! The input files of a scenario.
 
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
 
-/// A file from which a scenario was read, with its hash.
+/// An input file of a scenario, with its hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct InputFile {
-    /// Its name: as the scenario names it, or the last part of the path of the scenario itself.
+    /// Name of the file as in the scenario; for the scenario itself, the last part of its path.
     pub file: String,
-    /// SHA-256 of its bytes in hexadecimal digits, as `sha256sum` prints it.
+    /// SHA-256 of the bytes in hexadecimal digits, as `sha256sum` prints it.
     pub sha256: String,
 }
 
@@ -22,7 +22,7 @@ impl InputFile {
         }
     }
 
-    /// The text of a scenario with its name in messages.
+    /// Makes the entry of a scenario, from its name in messages and its text.
     pub(super) fn of_scenario(name: &str, text: &str) -> Self {
         let file = Path::new(name).file_name();
         let file = file.map_or(name.into(), |file| file.to_string_lossy());
@@ -30,16 +30,16 @@ impl InputFile {
     }
 }
 
-/// SHA-256 in hexadecimal digits.
+/// Returns SHA-256 in hexadecimal digits.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// All files from which a scenario was read. Scenarios may be equal whatever their files, so these compare as equal.
+/// All input files of a scenario. Any two values compare as equal, because scenarios are equal regardless of their files.
 #[derive(Clone, Debug, Default)]
 pub(super) struct InputFiles {
-    /// The scenario itself first.
+    /// The files; the scenario itself is the first.
     pub(super) files: Vec<InputFile>,
     /// The folder to which the names of files are relative.
     pub(super) folder: PathBuf,

@@ -1,4 +1,4 @@
-//! Records that a table names by files or by patterns of file names, with the keys that describe them.
+//! Records that a table names by files or patterns of file names, with the keys that describe the files.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component as PathPart, Path, PathBuf};
@@ -8,25 +8,25 @@ use glob::MatchOptions;
 use super::prelude::*;
 use super::record::{Format, Layout, Series};
 
-/// The files named by the keys of a table, and how to read them.
+/// The files that keys of a table name, and their format.
 pub(super) struct Listing {
     files: Vec<Listed>,
     layout: Layout,
 }
 
-/// A file.
+/// A record file.
 struct Listed {
-    /// The key that names it.
+    /// The key that names the file.
     key: &'static str,
     file: String,
-    /// Index of the list element that names it first.
+    /// Index of the first list element that names the file.
     element: usize,
     format: Format,
 }
 
 impl Listing {
-    /// Finds the files that the keys name by their patterns, and reads the keys that describe tables. The files have this format, or else
-    /// the one that their extensions indicate.
+    /// Finds the files that match the patterns of the keys, and reads the keys that describe tables. `format` applies to all files; without it
+    /// the file extensions determine the formats.
     pub(super) fn read(
         table: &mut Table<'_>,
         keys: &[(&'static str, Vec<String>)],
@@ -44,12 +44,13 @@ impl Listing {
         Self { files, layout }
     }
 
-    /// Number of files.
+    /// Returns the number of files.
     pub(super) const fn len(&self) -> usize {
         self.files.len()
     }
 
-    /// The records, each with the key that names it, sorted by file name within each key. A record that is not accepted is an error.
+    /// Reads the records. Returns each with the key that names it, sorted by file name within each key. `accept` returns the error of a record
+    /// that cannot be used.
     pub(super) fn series(
         self,
         table: &mut Table<'_>,
@@ -76,7 +77,7 @@ impl Listing {
     }
 }
 
-/// Records by the keys that name them, as a table has them: the files of each key, and the keys of their layout.
+/// Returns records as entries of a table: the files of each key, and the keys of their layout.
 pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let keys = keys.iter().filter(|(_, records)| !records.is_empty());
     let files = keys.clone().map(|(key, records)| {
@@ -84,11 +85,11 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
         ((*key).to_owned(), files.collect())
     });
     let mut layouts = keys.flat_map(|(_, records)| records.iter().map(|series| &series.layout));
-    // All tables share the same keys; without a table, AT2 files may share a unit.
+    // All CSV tables share the same keys; without CSV tables, AT2 files may share a unit.
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
     let telling = tables.or_else(|| layouts.clone().next());
     let mut layout = json!(telling);
-    // Formats that differ come from the file extensions.
+    // If formats differ, the file extensions determine them.
     if let Some(layout) = layout.as_object_mut()
         && layouts.any(|layout| Some(layout.format) != telling.map(|layout| layout.format))
     {
@@ -98,14 +99,14 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     files.chain(layout).collect()
 }
 
-/// All files that match the patterns, sorted by name, each once.
+/// Returns all files that match the patterns, sorted by name, without duplicates.
 fn list(
     table: &mut Table<'_>,
     (key, patterns): (&'static str, &[String]),
     format: Option<Format>,
 ) -> Vec<Listed> {
     let mut found = BTreeMap::new();
-    // A file found under several names counts once.
+    // A file with several names counts once.
     let mut seen = BTreeSet::new();
     for (element, pattern) in patterns.iter().enumerate() {
         let files = find(table.folder(), pattern).map_err(|wrong| {
@@ -134,10 +135,9 @@ fn list(
     listed.collect()
 }
 
-/// The files that match a pattern, relative to the folder. The error continues the pattern.
+/// Returns the files that match a pattern, relative to the folder. The error is a phrase that follows the pattern.
 fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
-    // If a file has a name that looks like a pattern, that file is meant; so a resolved scenario reads back the
-    // same.
+    // A name that looks like a pattern is a file if such a file exists: so a resolved scenario reads back the same.
     let path = folder.join(pattern);
     let no_file = |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
     ensure(!path.is_dir(), || no_file("is a folder"))?;
@@ -148,7 +148,7 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     ensure(is_pattern, || no_file("does not exist"))?;
     let here = folder.as_os_str().is_empty();
     let folder = if here { Path::new(".") } else { folder };
-    // `glob` cannot start from a folder, so its patterns are made absolute.
+    // `glob` has no base folder, so patterns are made absolute.
     let folder =
         std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
     let escaped = folder
@@ -175,10 +175,10 @@ fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
     Ok(files)
 }
 
-/// Spreadsheets take a cell that begins with one of these for a formula; also with a tab, which is a control character.
+/// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.
 const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 
-/// The name of a file as scenarios and results hold it; it must fit on one line and in one cell.
+/// Returns the name of a file for scenarios and results. The name must fit on one line and in one cell.
 fn file_name(path: &Path) -> Result<String, String> {
     let parts = path.components();
     let plain: PathBuf = parts.filter(|part| *part != PathPart::CurDir).collect();

@@ -6,9 +6,9 @@
 //! amplitude_g = { from = 0.15, to = 1.5, count = 80, spacing = "logarithmic" }
 //! ```
 //!
-//! Two quantities of the scenario vary; everything else stays the same. With a record, its strength varies as `scale` or
-//! `peak_g`. A number of any other table is named by table and key: `"column.width_m" = [0.6, 0.8]`. With free hinges,
-//! `repeat = true` repeats every cell with half and with double steps, to see whether its outcome depends on them.
+//! Two quantities of the scenario vary. The strength of a record varies as `scale` or `peak_g`. A number of another table is named by table and
+//! key: `"column.width_m" = [0.6, 0.8]`. With free hinges, `repeat = true` repeats every cell with half and with double steps, to check whether
+//! its outcome depends on the steps.
 
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
 use super::hinges::Hinges;
@@ -22,15 +22,15 @@ use super::structure::Structure;
 use crate::mechanics::four_link::impact::ImpactModel;
 
 named! {
-    /// A quantity that varies over a map, by its key in `[map]`. Of the two quantities, the first in this order goes along x.
+    /// A quantity that varies over a map, named by its key in `[map]`. The quantity that comes first in this list is on the x axis.
     pub enum Quantity {
-        /// A number of another table of the scenario, by its table and key.
+        /// A number of another table of the scenario, named by its table and key.
         Other = "table.key",
         /// Duration of the pulse.
         Duration = "duration_s",
-        /// Frequency of the pulse, the inverse of its duration.
+        /// Frequency of the pulse, the reciprocal of its duration.
         Frequency = "frequency_hz",
-        /// Mean radius of the arch; the thickness ratio stays the same.
+        /// Mean radius of the arch; the thickness ratio is constant.
         MeanRadius = "mean_radius_m",
         /// Thickness over mean radius.
         ThicknessRatio = "thickness_ratio",
@@ -48,7 +48,7 @@ named! {
 }
 
 impl Quantity {
-    /// The range of the same key in its own table.
+    /// Returns the range of the same key in its own table.
     const fn range(self) -> &'static Number {
         match self {
             Self::Duration => &DURATION_S,
@@ -60,40 +60,40 @@ impl Quantity {
             Self::Amplitude => &AMPLITUDE_G,
             Self::Scale => &SCALE,
             Self::PeakG => &PEAK_G,
-            // Its own table checks a key of another table.
+            // The other table checks its own key.
             Self::Other => &ANY_NUMBER,
         }
     }
 }
 
-/// One direction of a map.
+/// An axis of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// The quantity that varies.
     pub quantity: Quantity,
-    /// Its key in `[map]`; for a number of another table, `table.key`.
+    /// Key in `[map]`; `table.key` for a number of another table.
     pub key: String,
-    /// Its values.
+    /// Values of the quantity.
     pub sequence: Sequence,
 }
 
 /// The cells of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
-    /// To the right.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Upwards; this is the amplitude if that is one of the two.
+    /// Vertical axis; it is the amplitude if the amplitude varies.
     pub y: Axis,
-    /// Whether every cell is repeated with half and with double steps; with free hinges only.
+    /// True to repeat every cell with half and with double steps; with free hinges only.
     pub repeat: bool,
 }
 
-/// Largest number of cells: more would fit neither into a picture nor, as rows, into memory.
+/// Largest number of cells: limited by pictures and by memory.
 const MAX_CELLS: usize = 1_000_000;
 
 impl Map {
-    /// Reads `[map]`, and checks it against those other tables that are valid. Whether its axes suit the ground is for [`Map::check`]: a map
-    /// of pulses may stand beside a record that other commands use.
+    /// Reads `[map]`, and checks it against the valid tables of the scenario. [`Map::check`] checks the axes against the ground: a map of pulses
+    /// may be in a scenario whose record other commands use.
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
@@ -107,7 +107,7 @@ impl Map {
             let model = motion.impact().model;
             !matches!(model, ImpactModel::Prescribed { .. })
         });
-        // Quantities that the scenario does not have.
+        // Message about a quantity that the scenario does not have.
         let unsuited = |quantity| match quantity {
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace if is_no_ring => {
                 Some("applies to a circular [arch] without piers and loads")
@@ -136,7 +136,7 @@ impl Map {
             }
         }
         table.sound()?;
-        // Numbers of other tables go before those that a map names itself.
+        // Numbers of other tables are on the x axis.
         axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
         let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
@@ -156,10 +156,10 @@ impl Map {
         Ok(Self { x, y, repeat })
     }
 
-    /// Checks that its axes suit the ground, and that every ground motion ends within the simulation.
+    /// Checks that the axes fit the ground, and that every ground motion ends within the simulation.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// The change that the scenario needs.
     pub(crate) fn check(
         &self,
         ground: Option<&Ground>,
@@ -204,7 +204,7 @@ impl Map {
     }
 }
 
-/// Refuses ground motion that lasts longer than the simulation.
+/// Rejects ground motion that lasts longer than the simulation.
 fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), String> {
     let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
     ensure(end_s <= duration_s, || {
@@ -216,7 +216,7 @@ fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), St
 }
 
 impl Serialize for Map {
-    /// Writes the two sequences, named by what varies, and `repeat` if it is set.
+    /// Writes the two sequences, named by their quantities, and `repeat` if it is true.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let axes = [&self.x, &self.y].map(|axis| (&*axis.key, json!(axis.sequence)));
         let repeat = self.repeat.then(|| (REPEAT, json!(true)));

@@ -31,7 +31,7 @@ const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 /// The shapes that have tables of their own.
 pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_arch", "blocks"];
 
-/// Reads the shapes that have tables of their own, and returns the first that is given.
+/// Reads the shapes that have separate tables, and returns the first given one.
 pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
     let pointed = table.table("pointed_arch", read_dimensions);
     let elliptic = table.table("elliptic_arch", read_dimensions);
@@ -116,7 +116,7 @@ fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
     Err(table.wrong("joints", wrong))
 }
 
-/// Explains why blocks form no row, with blocks and joints counted as in the files.
+/// Returns the reason why blocks do not form a row, with blocks and joints counted as in the files.
 fn why_no_row(error: &RowError) -> String {
     match error {
         RowError::Crossing(first) => format!(
@@ -204,7 +204,7 @@ impl Additions {
         self.piers.are_none() && self.fill.is_none() && self.loads.is_empty()
     }
 
-    /// Reports that the additions do not go with a structure of this kind.
+    /// Records that the additions do not fit a structure of this kind.
     pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> Reported {
         let key = match self {
             _ if !self.piers.are_none() => "piers",
@@ -214,7 +214,7 @@ impl Additions {
         table.wrong(key, wrong)
     }
 
-    /// The arch with its additions and ties, if it can stand.
+    /// Makes the arch with its additions and ties. A fault is recorded if it cannot stand.
     pub fn complete(
         self,
         table: &mut Table<'_>,
@@ -274,11 +274,11 @@ fn stands_without_ties(masonry: &Masonry) -> bool {
     !row.ties.is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
 }
 
-/// Reads `[piers]`: its keys hold for both piers, and `[piers.left]` and `[piers.right]` may override them.
+/// Reads `[piers]`. Its keys hold for both piers; `[piers.left]` and `[piers.right]` may override them.
 fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
     let both = ["height_m", "width_m", "density_kg_m3"].map(|key| {
         let value = table.optional(key, &MAGNITUDE);
-        // A wrong value is not missing.
+        // A wrong value must not be reported as missing.
         value.or(table.gives(key).then_some(1.0))
     });
     let blocks = table.optional("blocks", &PIER_BLOCKS);
@@ -348,7 +348,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
     })
 }
 
-/// Reports that the masonry falls under its own weight, and suggests remedies.
+/// Records that the masonry collapses under its own weight, with remedies.
 fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
     let shape = masonry.shape.name();
     let falls = format!(

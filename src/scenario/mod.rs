@@ -106,26 +106,25 @@ pub use verify::{
 
 /// Changes that are made to a scenario while it is read.
 ///
-/// A model that is set here reads its own table only: free hinges ignore `[impact]`, and four links `[free_hinges]`.
+/// If `hinges` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Changes<'a> {
-    /// The model of motion; `None`: the tables of the scenario choose it.
+    /// The model of motion; `None` if the tables of the scenario choose it.
     pub hinges: Option<Hinges>,
-    /// Values that replace those in the text. If one key is set twice, the later value counts.
+    /// Values that replace those in the text. If a key is set twice, the later value counts.
     pub set: &'a [Assignment],
-    /// True for static analysis. If files of `[ground]` are missing or faulty, the ground stays still; drums and moved springings need no
+    /// True for static analysis. If files of `[ground]` are missing or faulty, the ground does not move; drums and moved springings need no
     /// table of a model.
     pub statics: bool,
 }
 
 /// A structure, its ground motion and the studies of it, with every default filled in.
 ///
-/// A scenario is read from a text, which is checked. It can be written again: to TOML by
-/// [`Scenario::to_toml`] and to JSON by [`Scenario::to_json`].
+/// A scenario is read from a text and checked. [`Scenario::to_toml`] and [`Scenario::to_json`] write it again.
 #[readonly::make]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// Free text for the results, as [`shown`](fn@shown) shows it.
+    /// Title for the results, escaped by [`shown`](fn@shown).
     pub title: Option<String>,
     /// The structure that stands on the ground.
     pub structure: Structure,
@@ -133,40 +132,40 @@ pub struct Scenario {
     pub ties: Vec<TieTable>,
     /// The model of motion.
     pub motion: Motion,
-    /// True if the model of motion ignores an `[impact]` of the text.
+    /// True if the text has an `[impact]` that the model of motion ignores.
     ignores_impact: bool,
-    /// The ground motion; `None`: the ground stays still.
+    /// The ground motion; `None` if the ground does not move.
     pub ground: Option<Ground>,
-    /// `[ground]` with the keys of the text, if its files are missing or faulty in static analysis.
+    /// `[ground]` with the keys of the text; `None` unless its files are missing or faulty in static analysis.
     unread_ground: Option<Value>,
-    /// Motion of the right foot; `None`: that of the left foot.
+    /// Motion of the right foot; `None` if both feet move together.
     pub right_foot: Option<RightFoot>,
-    /// The initial state of the motion; `None`: rest.
+    /// Initial state of the motion; `None` at rest.
     pub initial: Option<Initial>,
     /// Settings of the computation.
     pub simulation: Simulation,
-    /// The quantities that vary over an overturning map.
+    /// The quantities that vary over an overturning map; `None` without `[map]`.
     pub map: Option<Map>,
-    /// The records that shake the structure for its fragility.
+    /// The records of a suite; `None` without `[suite]`.
     pub suite: Option<Suite>,
-    /// The demand of a check.
+    /// The demand of a check; `None` without `[demand]`.
     pub demand: Option<Demand>,
-    /// The options of a check; `None`: the defaults.
+    /// The options of a check; `None` for the defaults.
     pub verify: Option<Verify>,
-    /// The uncertain numbers of the scenario; `None`: none.
+    /// The uncertain numbers of the scenario; `None` without `[uncertain]`.
     pub uncertain: Option<Uncertain>,
-    /// Tables that keep the keys of the text, because resolving them would replace an uncertain number.
+    /// Tables that keep the keys of the text, because resolved keys would replace an uncertain number.
     as_given: Entries,
     files: InputFiles,
-    /// Shape of a circular arch by the keys of the text, if the text gives its span.
+    /// Keys of the text that give the shape of a circular arch; empty unless the text gives the span.
     given_shape: Entries,
-    /// The motion of `ground`, and of the right foot, built when they were read.
+    /// Motion of both feet.
     ground_motion: Arc<GroundMotion>,
 }
 
 /// The contents of the scenario.
 impl Scenario {
-    /// The records of its ground, under both feet.
+    /// Returns the records of the ground motion, of both feet.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         let record = match &self.ground {
             Some(Ground::Record(record)) => Some(&**record),
@@ -176,7 +175,7 @@ impl Scenario {
         record.into_iter().chain(right).flat_map(Record::series)
     }
 
-    /// Name and checksum of each record file, of the ground and of the suite, separated by a space.
+    /// Returns name and checksum of each record file of the ground and of the suite, separated by a space.
     #[must_use]
     pub fn record_checksums(&self) -> Vec<String> {
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
@@ -185,7 +184,7 @@ impl Scenario {
         named.collect()
     }
 
-    /// This scenario without uncertain numbers.
+    /// Returns this scenario without uncertain numbers.
     #[must_use]
     pub fn without_uncertain(self) -> Self {
         Self {
@@ -195,19 +194,19 @@ impl Scenario {
         }
     }
 
-    /// The scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
+    /// Returns the scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
     #[must_use]
     pub fn files(&self) -> &[InputFile] {
         &self.files.files
     }
 
-    /// Acceleration of gravity, in m/s2.
+    /// Returns the acceleration of gravity, in m/s2.
     #[must_use]
     pub const fn gravity_m_s2(&self) -> f64 {
         self.simulation.gravity_m_s2
     }
 
-    /// Message about a table of the file that the model of motion ignores; `None`: it uses all tables.
+    /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     #[must_use]
     pub fn ignored(&self) -> Option<&'static str> {
         let message = self.motion.hinges().model().ignored;
@@ -216,12 +215,12 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// Reads a scenario from TOML text; `name` stands for the file in the errors. Records of ground motion
-    /// are read from files relative to the folder of `name`.
+    /// Reads a scenario from TOML text. `name` is the file name in errors. Records of ground motion are read from files relative to the folder
+    /// of `name`.
     ///
     /// # Errors
     ///
-    /// All faults of the text and of its records. After twenty lines that are not TOML, the search stops.
+    /// All faults of the text and of its records. Parsing stops after twenty lines that are not TOML.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
         Self::of(&Source::of_text(text, name), &Changes::default())
     }
@@ -235,10 +234,10 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &Changes::default())
     }
 
-    /// The JSON schema of scenarios, for editors: all tables and keys of the reader with their rules and defaults.
+    /// Returns the JSON schema of scenarios for editors: all tables and keys with their rules and defaults.
     #[must_use]
     pub fn schema() -> Value {
-        // Tables of several models are allowed together if a model is set.
+        // With a set model, tables of several models are allowed together.
         let changes = Changes {
             hinges: Some(Hinges::Four),
             ..Changes::default()
@@ -253,8 +252,8 @@ impl Scenario {
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and when a change does not fit the rest. An error in an assignment has no line; the
-    /// assignment stands in place of the file.
+    /// As [`Scenario::parse`], and when a change does not fit the scenario. An error in an assignment has the assignment instead of the file,
+    /// and no line.
     pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
         table::read_text((text, folder), changes.set, |table| {
@@ -268,7 +267,7 @@ impl Scenario {
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), changes.set, faults))
     }
 
-    /// Reads a scenario; records that are known are not read from their files again.
+    /// Reads a scenario. `known` are records that need not be read from their files again.
     fn read_table(table: &mut Table<'_>, known: &[Series], changes: &Changes<'_>) -> Reading<Self> {
         let title = table.optional("title", &text());
         let motion = motion::Tables::read(table, changes.hinges, changes.statics);
@@ -344,14 +343,13 @@ impl Scenario {
         })
     }
 
-    /// The scenario with another ground motion. The tables of studies are left out, because they were
-    /// checked against the original ground.
+    /// Returns the scenario with another ground motion, without tables of studies, because they were checked against the original ground.
     #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
             ground.motion_under(self.simulation.gravity_m_s2)
         });
-        // A record of the right foot goes with the ground that was given beside it.
+        // A record of the right foot belongs to the original ground.
         let follows = |right: &RightFoot| ground.is_some() && right.record().is_none();
         let mut shaken = Self {
             right_foot: self.right_foot.clone().filter(follows),
@@ -365,7 +363,7 @@ impl Scenario {
         shaken
     }
 
-    /// The motion of both feet for a motion of the left one.
+    /// Returns the motion of both feet for a motion of the left one.
     pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
         let Some(right) = &self.right_foot else {
             return left;
@@ -378,8 +376,8 @@ impl Scenario {
         right.beside(left, apart_m, self.simulation.gravity_m_s2)
     }
 
-    /// The scenario once for each record of its suite, with that record unscaled as its ground motion; empty without a suite.
-    /// Other studies are left out.
+    /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
+    /// suite.
     #[must_use]
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
@@ -392,13 +390,13 @@ impl Scenario {
             .collect()
     }
 
-    /// The ground motion of a record multiplied by a factor, both feet moving alike, for this scenario's gravity.
+    /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
     #[must_use]
     pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
         suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
 
-    /// The structure with its model of motion.
+    /// Makes the model of motion of the structure.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -406,7 +404,7 @@ impl Scenario {
         self.motion.model(&self.structure)
     }
 
-    /// Models of this structure with other properties that are as likely as its own.
+    /// Makes models of this structure with other stiffness and contact, and with rigid joints; empty unless joints are elastic.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -414,13 +412,13 @@ impl Scenario {
         self.motion.variations(&self.structure)
     }
 
-    /// The name of the model of motion in results.
+    /// Returns the name of the model of motion in results.
     #[must_use]
     pub const fn model_name(&self) -> &'static str {
         self.motion.name(&self.structure)
     }
 
-    /// The structure as mechanisms of one degree of freedom, even if the scenario uses another model.
+    /// Makes the model of mechanisms of one degree of freedom, even if the scenario uses another model.
     ///
     /// # Errors
     /// As [`Structure::model`].
@@ -428,18 +426,18 @@ impl Scenario {
         self.structure.model(self.motion.impact())
     }
 
-    /// Refuses `[initial]` for a study named `what`, whose histories start from rest.
+    /// Rejects `[initial]` for a study named `what`, whose histories start from rest.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// The change that the scenario needs.
     pub(crate) fn check_from_rest(&self, what: &str) -> Result<(), String> {
         ensure(self.initial.is_none(), || {
             format!("the histories of a {what} start from rest: leave [initial] out")
         })
     }
 
-    /// The row of blocks, if limit analysis has to find what starts them: for masonry, and for a column that is not
-    /// Housner's single block. `None` for a structure that starts as one mechanism.
+    /// Returns the row of blocks of masonry, and of a column that is not Housner's single block: limit analysis of the row finds their first
+    /// mechanism. `None` for a structure that starts as one mechanism.
     ///
     /// # Errors
     /// As [`Structure::free_hinges`].
@@ -453,17 +451,16 @@ impl Scenario {
         })
     }
 
-    /// The ground motion; still ground if the scenario has no `[ground]`.
+    /// Returns the ground motion; it is zero if the scenario has no `[ground]`.
     #[must_use]
     pub fn ground_motion(&self) -> &GroundMotion {
         &self.ground_motion
     }
 
-    /// Checks that there is a history to simulate: the ground moves, or the structure is released from a rotated
-    /// position.
+    /// Checks that there is a history to simulate: the ground moves, or the structure is released from a rotated position.
     ///
     /// # Errors
-    /// Explains what to add or which command is meant.
+    /// The table to add, or the command to use.
     pub fn check_for_run(&self) -> Result<(), String> {
         if self.ground.is_some() || self.initial.is_some() {
             return Ok(());
@@ -476,23 +473,23 @@ impl Scenario {
         })
     }
 
-    /// Refuses a scenario whose springings have moved, for computations on the structure as it was built.
+    /// Rejects moved springings, for computations on the undeformed structure.
     ///
     /// # Errors
-    /// Explains what to leave out.
+    /// The table to remove.
     pub fn check_as_built(&self) -> Result<(), String> {
         let wrong = "this is computed for the structure on the springings that were built: leave [supports] out; the studies `limit` and \
                      `spread` compute the push it bears where they have moved";
         ensure(self.motion.supports().is_none(), || wrong.to_owned())
     }
 
-    /// The request for the simulation, with samples at every output step.
+    /// Returns the request for the simulation, with samples at every output step.
     #[must_use]
     pub fn request(&self) -> Request {
         self.request_under(&self.ground_motion)
     }
 
-    /// The request for the simulation on another ground motion than its own.
+    /// Returns the request for a simulation with another ground motion.
     #[must_use]
     pub fn request_under(&self, ground: &GroundMotion) -> Request {
         Request {
@@ -501,7 +498,7 @@ impl Scenario {
         }
     }
 
-    /// The request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
+    /// Returns the request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
     #[must_use]
     pub fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
         Request {
@@ -514,7 +511,7 @@ impl Scenario {
         }
     }
 
-    /// The scenario as TOML text, with every default written out, except for a `duration_s` that follows the ground motion.
+    /// Returns the scenario as TOML text with all defaults. A default `duration_s` is omitted, because it depends on the ground motion.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
     #[must_use]
@@ -522,13 +519,13 @@ impl Scenario {
         toml_text(&self.to_json())
     }
 
-    /// The scenario as TOML text, as [`Scenario::to_toml`] gives it, and when the simulation ends by default.
+    /// Returns the scenario as TOML text as [`Scenario::to_toml`] does, with `duration_s` always written.
     #[must_use]
     pub fn to_resolved_toml(&self) -> String {
         toml_text(&self.to_resolved_json())
     }
 
-    /// The scenario as JSON, as [`Scenario::to_json`] gives it, and when the simulation ends by default.
+    /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written.
     #[must_use]
     pub fn to_resolved_json(&self) -> Value {
         let mut json = self.to_json();
@@ -538,8 +535,8 @@ impl Scenario {
         json
     }
 
-    /// The scenario as JSON, with every default written out and the keys of the file, except for a `duration_s` that follows the ground
-    /// motion: it would not follow another one.
+    /// Returns the scenario as JSON with the keys of the file and all defaults. A default `duration_s` is omitted, because it depends on the
+    /// ground motion.
     #[must_use]
     pub fn to_json(&self) -> Value {
         let mut table = self.resolved();
@@ -550,8 +547,7 @@ impl Scenario {
         table
     }
 
-    /// The scenario as JSON in which a circular arch has its mean radius, the ratio of its thickness and its embrace angle, whatever keys
-    /// the file gives.
+    /// Returns the scenario as JSON. A circular arch has mean radius, thickness ratio and embrace angle, regardless of the keys in the file.
     pub(crate) fn resolved(&self) -> Value {
         let mut ground = self.unread_ground.clone();
         let ground = ground.get_or_insert_with(|| json!(self.ground));
@@ -571,7 +567,7 @@ impl Scenario {
             ("verify", json!(self.verify)),
             ("uncertain", json!(self.uncertain)),
         ];
-        // The options of rows of blocks follow the structure; those of mechanisms follow the ground.
+        // The options of rows of blocks come after the structure, those of mechanisms after the ground.
         let has_joints = self.motion.hinges().has_joints();
         let place = if has_joints { 1 } else { 3 };
         tables.insert(place, (self.motion.table_name(), self.motion.table()));
@@ -589,13 +585,13 @@ impl Scenario {
     }
 }
 
-/// The part of a scenario that is read from `[ground]`.
+/// The ground motion of a scenario, read from `[ground]`.
 struct Shaking {
     ground: Option<Ground>,
     right_foot: Option<RightFoot>,
-    /// The motion under the left foot.
+    /// Motion of the left foot.
     motion: GroundMotion,
-    /// `[ground]` with the keys of the text, if its files are missing or faulty in static analysis.
+    /// `[ground]` with the keys of the text; `None` unless its files are missing or faulty in static analysis.
     unread: Option<Value>,
 }
 
@@ -623,7 +619,7 @@ impl Shaking {
     }
 }
 
-/// A value without the keys that have no value.
+/// Removes keys without a value from a table and from all tables in it.
 fn given(value: Value) -> Value {
     match value {
         Value::Object(table) => {

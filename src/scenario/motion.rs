@@ -1,4 +1,4 @@
-//! The model of motion: its tables, and the models that it builds from a structure.
+//! Models of motion: their tables, and their models of a structure.
 
 use super::elastic_joints::ElasticTable;
 use super::free_hinges::FreeTable;
@@ -17,16 +17,16 @@ use crate::mechanics::settling::Movements;
 pub enum Motion {
     /// [`Hinges::Four`], with the impact law of `[impact]`.
     FourLinks(ImpactLaw),
-    /// [`Hinges::Free`]: `[free_hinges]`.
+    /// [`Hinges::Free`], with `[free_hinges]`.
     FreeHinges(FreeTable),
-    /// [`Hinges::Elastic`]: `[elastic_joints]`.
+    /// [`Hinges::Elastic`], with `[elastic_joints]`.
     ElasticJoints(ElasticTable),
 }
 
 type AnyModel = Result<Box<dyn Model>, ModelError>;
 
 impl Motion {
-    /// Name of the model.
+    /// Returns the name of the model.
     #[must_use]
     pub const fn hinges(&self) -> Hinges {
         match self {
@@ -36,19 +36,19 @@ impl Motion {
         }
     }
 
-    /// True if the model computes several motions faster together: see [`Model::is_elastic`].
+    /// Returns true if the model computes several motions faster together: see [`Model::is_elastic`].
     #[must_use]
     pub const fn is_faster_together(&self) -> bool {
         matches!(self, Self::ElasticJoints(_))
     }
 
-    /// Name of the model in sentences.
+    /// Returns the name of the model in sentences.
     #[must_use]
     pub const fn words(&self) -> &'static str {
         self.hinges().model().words
     }
 
-    /// The name in results of the model built from a structure.
+    /// Returns the name of the model of a structure in results.
     pub(super) const fn name(&self, structure: &Structure) -> &'static str {
         match self {
             Self::FourLinks(_) if !structure.thrusts() => "column",
@@ -56,7 +56,7 @@ impl Motion {
         }
     }
 
-    /// The model of a structure.
+    /// Makes the model of a structure.
     ///
     /// # Errors
     /// As [`Structure::model`] or [`Structure::free_hinges`].
@@ -68,7 +68,7 @@ impl Motion {
         })
     }
 
-    /// Models of a structure with other properties that are equally likely; for elastic joints, also one with rigid joints.
+    /// Makes models of a structure with other stiffness and contact, and one with rigid joints; empty unless joints are elastic.
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -94,8 +94,8 @@ impl Motion {
         Ok(variations)
     }
 
-    /// The model of motion for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases)
-    /// and [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
+    /// Makes the model of a structure for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases) and
+    /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
     ///
     /// # Errors
     /// As [`Motion::model`].
@@ -107,7 +107,7 @@ impl Motion {
         }
     }
 
-    /// The impact law when hinges of four links close. Models without four links have the theoretical one.
+    /// Returns the impact law of four links; the theoretical law for models without four links.
     #[must_use]
     pub fn impact(&self) -> ImpactLaw {
         match self {
@@ -116,7 +116,7 @@ impl Motion {
         }
     }
 
-    /// Coulomb's coefficient of friction if joints may slip; otherwise `None`.
+    /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
     #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         match self {
@@ -126,7 +126,8 @@ impl Motion {
         }
     }
 
-    /// The longest step of the motion of a structure, in seconds; `None` if a tolerance sets the steps, or if the structure does not stand.
+    /// Returns the longest step of the motion of a structure, in seconds; `None` if a tolerance determines the steps, or if the structure cannot
+    /// stand.
     pub(super) fn longest_step_s(&self, structure: &Structure, request: &Request) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
@@ -135,7 +136,7 @@ impl Motion {
         }
     }
 
-    /// Refuses options that do not fit a structure under this gravity in m/s2, or a history that ends then.
+    /// Rejects options that do not fit a structure. `until` is gravity in m/s2 and the end of the history in s, if they are known.
     pub(super) fn check(
         &self,
         table: &mut Table<'_>,
@@ -162,7 +163,7 @@ impl Motion {
         }
     }
 
-    /// Movements of the supports before time 0; `None` if they have not moved.
+    /// Returns the movements of the supports before time 0; `None` without movements.
     #[must_use]
     pub fn supports(&self) -> Option<Movements> {
         let supports = match self {
@@ -173,7 +174,7 @@ impl Motion {
         (!supports.is_none()).then_some(supports)
     }
 
-    /// The compressive strength of joints that may crush, in MPa; otherwise `None`.
+    /// Returns the compressive strength of joints that may crush, in MPa; otherwise `None`.
     #[must_use]
     pub const fn compressive_strength_mpa(&self) -> Option<f64> {
         match self {
@@ -182,13 +183,13 @@ impl Motion {
         }
     }
 
-    /// Name of the scenario table of the model.
+    /// Returns the name of the scenario table of the model.
     #[must_use]
     pub const fn table_name(&self) -> &'static str {
         self.hinges().model().table
     }
 
-    /// Contents of the scenario table of the model.
+    /// Returns the contents of the scenario table of the model.
     pub(super) fn table(&self) -> Value {
         match self {
             Self::FourLinks(law) => impact::to_json(law),
@@ -211,7 +212,7 @@ const ELASTIC_IMPACT: &str =
 const FREE_IMPACT: &str =
     "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
 
-/// True if only models with joints can move the structure: it has drums, or its springings have moved.
+/// Returns true if the structure needs a model with joints: it has drums, or moved springings.
 fn needs_joints(table: &Table<'_>) -> bool {
     table.gives("supports") || DRUM_KEYS.iter().any(|key| table.gives_in("column", key))
 }
@@ -219,7 +220,7 @@ fn needs_joints(table: &Table<'_>) -> bool {
 /// The tables of a scenario that concern its model of motion.
 pub(super) struct Tables {
     pub(super) hinges: Hinges,
-    /// True: the user chose the model, so tables of other models are ignored.
+    /// True if the user chose the model, so that tables of other models are ignored.
     is_set: bool,
     free_hinges: Reading<Option<RowOptions>>,
     elastic_joints: Reading<Option<ElasticTable>>,
@@ -227,8 +228,8 @@ pub(super) struct Tables {
 }
 
 impl Tables {
-    /// Reads the tables of rows of blocks, which choose the model unless it is `set`. For statics, drums and moved springings need no such
-    /// table: their model is free hinges.
+    /// Reads the tables of rows of blocks. They choose the model unless it is `set`. In static analysis drums and moved springings need no
+    /// table; their model is free hinges.
     pub(super) fn read(table: &mut Table<'_>, set: Option<Hinges>, statics: bool) -> Self {
         let free_hinges = table.given_table("free_hinges", free_hinges::read);
         let elastic_joints = table.given_table("elastic_joints", ElasticTable::read);
@@ -249,7 +250,7 @@ impl Tables {
         }
     }
 
-    /// Reads the impact law. Returns the model, and true if the model ignores an `[impact]`.
+    /// Reads the impact law. Returns the model, and true if the model ignores an `[impact]` of the text.
     pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
         if !self.is_set {

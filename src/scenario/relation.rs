@@ -1,28 +1,28 @@
-//! Relations between the keys of a table, as data.
+//! Relations between the keys of a table.
 
 use serde_json::{Value, json};
 
 use super::error::ensure;
 use super::table::{Reading, Reported, Table};
 
-/// A relation between keys that a table gives.
+/// A relation between the given keys of a table.
 pub(super) enum Relation<'a> {
-    /// Exactly one of these keys. The text replaces the message if there is none.
+    /// Exactly one of these keys. The text replaces the message for a missing key.
     OneOf(&'a [&'a str], Option<&'a str>),
-    /// At most one of these keys. The text is the remedy for two.
+    /// At most one of these keys. The text is the remedy if two are given.
     AtMostOne(&'a [&'a str], &'a str),
     /// All of these keys or none.
     Together(&'a [&'a str]),
-    /// The first key needs the second. The text gives the reason or another remedy; it follows the second.
+    /// The first key requires the second. The text follows the second key in the message; it is the reason or another remedy.
     Requires(&'a str, &'a str, &'a str),
-    /// The first key excludes the second. The text gives the reason and the remedy; it follows the second.
+    /// The first key excludes the second. The text follows the second key in the message; it is the reason and the remedy.
     Excludes(&'a str, &'a str, &'a str),
 }
 
 use Relation::{AtMostOne, Excludes, OneOf, Requires, Together};
 
 impl Relation<'_> {
-    /// The relation as a JSON schema.
+    /// Returns the relation as a JSON schema.
     pub(super) fn schema(&self) -> Value {
         let given = |key: &&str| json!({ "required": [key] });
         match self {
@@ -43,7 +43,7 @@ impl Relation<'_> {
         }
     }
 
-    /// Reports the keys of a table that break the relation.
+    /// Records faults of keys that violate the relation.
     fn check(&self, table: &mut Table<'_>) {
         match self {
             OneOf(keys, message) => {
@@ -79,10 +79,10 @@ impl Relation<'_> {
     }
 }
 
-/// The remedy for two keys of which one is enough.
+/// Remedy for two keys of which one is enough.
 pub(super) const GIVE_ONE: &str = "give one of them";
 
-/// Reports all given keys but the first in the file. Returns true if any is given.
+/// Records faults of all given keys but the first in the file. Returns true if a key is given.
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
     let given = keys.iter().copied().filter(|key| table.gives(key));
     let mut given: Vec<_> = given.collect();
@@ -96,7 +96,7 @@ fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
 }
 
 impl Table<'_> {
-    /// Reports all relations that the table breaks.
+    /// Records faults of all relations that the table violates.
     pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
         let before = self.faults();
         for relation in relations {
@@ -106,7 +106,7 @@ impl Table<'_> {
         ensure(self.faults() == before, || Reported)
     }
 
-    /// Reports all relations that the table breaks, and succeeds if also all of its values are sound.
+    /// Records faults of all relations that the table violates. Succeeds if there are none and all values of the table are valid.
     pub(super) fn agrees(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
         self.relate(relations).and(self.sound())
     }

@@ -1,4 +1,4 @@
-//! Another motion of the right foot: `[ground.right]`.
+//! Separate motion of the right foot: `[ground.right]`.
 //!
 //! ```toml
 //! [ground.right]
@@ -16,7 +16,7 @@ use super::structure::Structure;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
 
-/// Slower waves than this, in m/s, are a mistake of units.
+/// Smallest velocity of a wave, in m/s; smaller values are probably in another unit.
 const SLOWEST_M_S: f64 = 1.0;
 const RECORD: &str = "record";
 const WAVE: &str = "apparent_velocity_m_s";
@@ -24,14 +24,14 @@ const WAVE: &str = "apparent_velocity_m_s";
 /// Motion of the ground under the right foot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum RightFoot {
-    /// Motion of the left foot, delayed by this time in s. Negative: the right foot starts earlier.
+    /// Motion of the left foot with this delay, in s. Negative: the right foot starts earlier.
     #[serde(rename = "delay_s")]
     Late(f64),
-    /// Motion of the left foot, delayed by the distance between the feet over this velocity in m/s. Negative: the wave travels to the left,
-    /// and the right foot starts earlier.
+    /// Motion of the left foot with a delay equal to the distance between the feet over this velocity, in m/s. Negative: the wave travels to the
+    /// left, and the right foot starts earlier.
     #[serde(rename = "apparent_velocity_m_s")]
     Wave(f64),
-    /// A record of its own.
+    /// A separate record.
     #[serde(rename = "record")]
     Record(Box<Record>),
 }
@@ -51,7 +51,8 @@ impl RightFoot {
         right.ok_or(Reported)
     }
 
-    /// Refuses feet that the structure, the model or a study cannot move differently; `outer` is the whole scenario.
+    /// Rejects different motions of the feet if the structure, the model or a study does not support them. `outer` is the table of the whole
+    /// scenario.
     pub(super) fn suits(
         &self,
         outer: &mut Table<'_>,
@@ -78,7 +79,7 @@ impl RightFoot {
         Ok(())
     }
 
-    /// Record of the right foot; `None`: the motion of the left foot, delayed.
+    /// Returns the record of the right foot; `None` if it has the delayed motion of the left foot.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match self {
@@ -87,7 +88,7 @@ impl RightFoot {
         }
     }
 
-    /// Delay in s for feet that are `apart_m` apart; `None` if the right foot has its own record.
+    /// Returns the delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
     #[must_use]
     pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
         match self {
@@ -97,9 +98,9 @@ impl RightFoot {
         }
     }
 
-    /// The motion of both feet, from that of the left one and the distance between them.
+    /// Returns the motion of both feet, from that of the left foot and the distance between the feet in m.
     ///
-    /// With two records, the foot with the shorter record stops at its end.
+    /// With two records, the foot with the shorter record stops at the end of that record.
     pub(super) fn beside(
         &self,
         left: GroundMotion,

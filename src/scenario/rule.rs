@@ -1,4 +1,4 @@
-//! Rules for single values: the allowed values of a key, in words, as a reader and as a JSON schema.
+//! Rules for single values: the allowed values of a key in words, a reader, and a JSON schema.
 
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 use std::ops::{RangeBounds as _, RangeInclusive};
@@ -14,37 +14,37 @@ use crate::argument::short;
 pub(super) trait Rule {
     /// Type of the value in the program.
     type Read: Serialize;
-    /// The rule in words.
+    /// Returns the allowed values in words.
     fn allowed(&self) -> String;
-    /// Reads a value; the error continues a sentence about it.
+    /// Reads a value. The error is a phrase that follows the value.
     fn read(&self, value: &Value) -> Result<Self::Read, String>;
-    /// The rule as a JSON schema.
+    /// Returns the rule as a JSON schema.
     fn schema(&self) -> Value;
 }
 
-/// A finite number between two bounds, perhaps with the reason for them. Whole numbers need no decimal point.
+/// A finite number between two bounds, with an optional reason for the bounds. Integers are allowed.
 pub(super) struct Number(Bound<f64>, Bound<f64>, Option<&'static str>);
 
 /// Any finite number.
 pub(super) const ANY_NUMBER: Number = between(Unbounded, Unbounded);
 
-/// A number between two bounds.
+/// Returns the rule for a number between two bounds.
 pub(super) const fn between(low: Bound<f64>, high: Bound<f64>) -> Number {
     Number(low, high, None)
 }
 
-/// A number in a range.
+/// Returns the rule for a number in a range.
 pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
     between(Included(*range.start()), Included(*range.end()))
 }
 
-/// A number above the first bound and up to the second.
+/// Returns the rule for a number above the first bound and up to the second.
 pub(super) const fn above(low: f64, high: f64) -> Number {
     between(Excluded(low), Included(high))
 }
 
 impl Number {
-    /// The rule with the reason for its bounds.
+    /// Adds the reason for the bounds.
     pub(super) const fn because(self, why: &'static str) -> Self {
         Self(self.0, self.1, Some(why))
     }
@@ -104,10 +104,10 @@ impl Rule for Number {
     }
 }
 
-/// Reads a value; the error continues a sentence about it.
+/// Reads a value. The error is a phrase that follows the value.
 type Read<'a, T> = Box<dyn Fn(&Value) -> Result<T, String> + 'a>;
 
-/// A rule made of its parts: the allowed values in words, the JSON schema, and a reader.
+/// A rule given by its parts: allowed values in words, JSON schema, and reader.
 pub(super) struct Custom<'a, T>(pub(super) String, pub(super) Value, pub(super) Read<'a, T>);
 
 impl<T: Serialize> Rule for Custom<'_, T> {
@@ -126,7 +126,7 @@ impl<T: Serialize> Rule for Custom<'_, T> {
     }
 }
 
-/// An array whose elements follow a rule.
+/// Returns the rule for an array whose elements follow a rule.
 pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
     let allowed = format!("an array, each element {}", rule.allowed());
     let read = |value: &Value| {
@@ -141,7 +141,7 @@ pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
     Custom(allowed, schema, Box::new(read))
 }
 
-/// Values that follow a rule: a single one, or an array of at least one.
+/// Returns the rule for a value that follows a rule, or a non-empty array of such values.
 pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
     let allowed = format!("{} or an array of at least one", rule.allowed());
     let (one, list) = (rule.schema(), list(rule));
@@ -154,24 +154,24 @@ pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
     Custom(allowed, schema, Box::new(read))
 }
 
-/// True or false.
+/// Returns the rule for true or false.
 pub(super) fn switch() -> Custom<'static, bool> {
     any("true or false", "boolean", Value::as_bool)
 }
 
-/// Any string.
+/// Returns the rule for any string.
 pub(super) fn text() -> Custom<'static, String> {
     let read = |value: &Value| value.as_str().map(str::to_owned);
     any("a string", "string", read)
 }
 
-/// Any value of a kind of JSON.
+/// Returns the rule for any value of a JSON type.
 fn any<T: 'static>(allowed: &str, kind: &str, read: fn(&Value) -> Option<T>) -> Custom<'static, T> {
     let read = move |value: &Value| read(value).ok_or_else(|| is(value));
     Custom(allowed.to_owned(), json!({ "type": kind }), Box::new(read))
 }
 
-/// One of these things by its name.
+/// Returns the rule for a value that is named by a string.
 pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<'_, T> {
     let names: Vec<_> = all.iter().map(|one| name(*one)).collect();
     let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
@@ -186,7 +186,7 @@ pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<
     Custom(allowed, schema, Box::new(read))
 }
 
-/// A whole number in a range, and why the range begins where it does.
+/// A whole number in a range, with the reason for the lower bound.
 pub(super) struct Count(pub(super) RangeInclusive<usize>, pub(super) &'static str);
 
 impl Rule for Count {
@@ -212,14 +212,14 @@ impl Rule for Count {
     }
 }
 
-/// Says what a value of a wrong kind is.
+/// Returns a phrase with the kind of a value: `is a string`.
 fn is(value: &Value) -> String {
     format!("is {}", kind(value))
 }
 
-/// Suggests the known name nearest to `name`; empty when none is near.
+/// Returns a suggestion of the known name nearest to `name`; empty if none is near.
 pub(super) fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
-    // At least half the name in common: enough to match a forgotten unit or prefix, too much for a chance match.
+    // At least half of the name must agree: this finds names with a missing unit or prefix, but no unrelated names.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
     let known = known.iter().map(AsRef::as_ref);

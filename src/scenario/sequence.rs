@@ -1,4 +1,4 @@
-//! Increasing numbers: a list, or a range with a count.
+//! Ascending numbers: a list, or a range with a count.
 
 use super::prelude::*;
 
@@ -12,26 +12,26 @@ named! {
     }
 }
 
-/// Increasing numbers, each for one case of a study.
+/// Ascending numbers, one for each case of a study.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Sequence {
-    /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: includes the ends, linear by default.
+    /// `{ from = 0.1, to = 2.0, count = 20, spacing = "logarithmic" }`: includes the ends; the default spacing is linear.
     Range {
-        /// The first.
+        /// The first number.
         from: f64,
-        /// The last, above the first.
+        /// The last number, above the first.
         to: f64,
-        /// Their number, at least 2.
+        /// Number of values, at least 2.
         count: usize,
         /// Spacing of the numbers between the ends.
         spacing: Spacing,
     },
-    /// `[0.1, 0.5, 2.0]`: at least one.
+    /// `[0.1, 0.5, 2.0]`: at least one number.
     List(Vec<f64>),
 }
 
-/// An array of ascending numbers.
+/// Returns the rule for an array of ascending numbers.
 fn ascending(number: &Number) -> Custom<'_, Vec<f64>> {
     let allowed = format!(
         "an array of ascending numbers or {{ from = ..., to = ..., count = ... }}, each {}",
@@ -56,7 +56,7 @@ fn ascend(values: &[f64]) -> bool {
 const COUNT: Count = Count(2..=10_000, "the ends");
 
 impl Sequence {
-    /// The numbers.
+    /// Returns the numbers.
     #[must_use]
     pub fn values(&self) -> Vec<f64> {
         match self {
@@ -72,7 +72,7 @@ impl Sequence {
         }
     }
 
-    /// Spacing of the axis along which the numbers are drawn.
+    /// Returns the spacing of the axis on which the numbers are drawn.
     #[must_use]
     pub const fn spacing(&self) -> Spacing {
         match self {
@@ -81,7 +81,7 @@ impl Sequence {
         }
     }
 
-    /// Reads the numbers of a key, if given; each must follow `rule`.
+    /// Reads the numbers of a key; each must follow `rule`. `None` if the key is not given or wrong.
     pub(super) fn read(table: &mut Table<'_>, key: &str, rule: &Number) -> Option<Self> {
         if table.gives_table(key) || table.describes() {
             let range = table.table(key, |table| Self::read_range(table, rule));
@@ -116,8 +116,8 @@ impl Sequence {
     }
 }
 
-/// The number as people would write it: 0.12, not 0.12000000000000002. It keeps as many decimals as give the largest
-/// number twelve digits, or more if a millionth of a step needs them.
+/// Rounds a number as people would write it: 0.12 instead of 0.12000000000000002. The largest number has twelve digits; there are more decimals
+/// if a millionth of a step needs them.
 fn round(value: f64, largest: f64, step: f64) -> f64 {
     let digits = (12.0 - largest.log10().floor()).max(6.0 - step.log10().floor());
     let digits = digits.clamp(0.0, 340.0) as usize;
@@ -126,7 +126,7 @@ fn round(value: f64, largest: f64, step: f64) -> f64 {
     rounded + 0.0
 }
 
-/// A number of a range. The ends are exact, and so is every number with few digits.
+/// Returns a number of a range. The ends are exact, and so is every number with few digits.
 fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     let part = index as f64 / last as f64;
     match spacing {

@@ -1,9 +1,9 @@
-//! Texts from outside, such as titles and file names, made safe to show.
+//! Makes text from outside, such as titles and file names, safe to display.
 
-/// Escapes every character that would be invisible, or would change how the text around it reads: control and format
-/// characters, line ends, byte order marks, and marks of writing direction. Escapes are those of TOML and JSON.
+/// Escapes every character that is invisible or changes the display of other text: control and format characters, line ends, byte order marks,
+/// and marks of writing direction. Escapes are those of TOML and JSON.
 ///
-/// The joiners U+200C and U+200D stay after letters that are not ASCII: several scripts are spelled with them.
+/// The joiners U+200C and U+200D are kept after letters that are not ASCII, because several scripts need them.
 ///
 /// ```
 /// use archrock::scenario::shown;
@@ -16,7 +16,7 @@ pub fn shown(text: &str) -> String {
     escape(text, |_| false)
 }
 
-/// A text of several lines without control characters; its line ends and tabs are kept.
+/// Escapes hidden characters in a text of several lines; line ends and tabs are kept.
 #[must_use]
 pub fn shown_lines(text: &str) -> String {
     escape(text, |c| matches!(c, '\n' | '\t'))
@@ -38,7 +38,7 @@ fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
     shown
 }
 
-/// Whether a character is invisible, or changes how others read.
+/// Returns true if a character is invisible or changes the display of others.
 pub(super) fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -56,7 +56,7 @@ pub(super) fn is_hidden(c: char) -> bool {
         )
 }
 
-/// Whether a character joins or separates the shapes of the letters around it, as several scripts need it.
+/// Returns true if a character joins or separates the shapes of neighbouring letters, as in several scripts.
 fn is_joiner(c: char) -> bool {
     matches!(c, '\u{200c}' | '\u{200d}')
 }

@@ -5,18 +5,18 @@ use crate::dynamics::model::Request;
 
 /// Options of the computation of motion.
 ///
-/// The output has at least one step and at most 1e7 of them.
+/// The output has 1 to 1e7 steps.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Simulation {
-    /// Longest time to simulate, in 1e-6 to 1e6; if `None`, the default of [`Simulation::end_s`], which follows the ground motion.
+    /// Longest time to simulate in s, from 1e-6 to 1e6; `None` for the default of [`Simulation::end_s`], which depends on the ground motion.
     pub duration_s: Option<f64>,
-    /// Time between rows of the output, at least 1e-6 and at most the time to simulate.
+    /// Time between rows of the output in s, at least 1e-6 and at most the time to simulate.
     pub output_step_s: f64,
-    /// Allowed error of the integrator, relative to the state, in 1e-13 to 1e-3.
+    /// Tolerance of the integrator, relative to the state, from 1e-13 to 1e-3.
     pub relative_tolerance: f64,
-    /// The structure is at rest when its energy falls below this fraction of the energy barrier, in 1e-16 to 0.1.
+    /// Fraction of the energy barrier below which the structure is at rest, from 1e-16 to 0.1.
     pub rest_energy_ratio: f64,
-    /// Acceleration of gravity, in 0.001 to 1000.
+    /// Acceleration of gravity in m/s2, from 0.001 to 1000.
     pub gravity_m_s2: f64,
 }
 
@@ -29,7 +29,7 @@ impl Simulation {
         if let (Ok(()), Some(duration_s)) = (table.sound(), duration_s)
             && let Some(wrong) = rows_fault(duration_s, output_step_s)
         {
-            // The step is easier to change.
+            // A given step is easier to change than the duration.
             let key = ["duration_s", OUTPUT_STEP_S][usize::from(table.gives(OUTPUT_STEP_S))];
             table.wrong(key, wrong);
         }
@@ -44,9 +44,9 @@ impl Simulation {
         })
     }
 
-    /// Latest end of a history, in seconds: `duration_s`. By default it is later than the end of the ground motion by the larger of 10 s
-    /// and 20 times the square root of size over gravity, at most ten million output steps. In that time a surviving structure comes
-    /// to rest, or nearly so. The size is that of [`Structure::size_m`](super::Structure::size_m).
+    /// Returns the latest end of a history, in seconds: `duration_s`. The default is the end of the ground motion plus the larger of 10 s and 20
+    /// times the square root of size over gravity, at most ten million output steps. In that time a surviving structure comes to rest, or nearly
+    /// so. `size_m` is that of [`Structure::size_m`](super::Structure::size_m).
     #[must_use]
     pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
         let after_s = AFTER_RATIO * (size_m / self.gravity_m_s2).sqrt();
@@ -56,7 +56,7 @@ impl Simulation {
         self.duration_s.unwrap_or(default_s.min(most_s))
     }
 
-    /// Checks that the output of a history that ends by default has at least one step and fits on a disk.
+    /// Checks that the output of a history with default end has at least one step and fits on a disk.
     pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> Reading<()> {
         let is_default = self.duration_s.is_none();
         let fault = rows_fault(end_s, self.output_step_s).filter(|_| is_default);
@@ -73,12 +73,12 @@ impl Simulation {
 }
 
 const OUTPUT_STEP_S: &str = "output_step_s";
-/// By default a history ends this long after the ground motion, in seconds ...
+/// Default time of a history after the ground motion, in seconds.
 const AFTER_S: f64 = 10.0;
-/// ... or this many times the square root of size over gravity, if that is longer.
+/// Default time of a history after the ground motion, over the square root of size over gravity; the longer default counts.
 const AFTER_RATIO: f64 = 20.0;
 
-/// Why the output of a history is too short or too long, if it is.
+/// Returns the reason why the output of a history is too short or too long; `None` if it is neither.
 fn rows_fault(duration_s: f64, step_s: f64) -> Option<String> {
     let rows = duration_s / step_s;
     let (step, run, most) = (plain(step_s), plain(duration_s), Request::MOST_SAMPLES);

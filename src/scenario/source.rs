@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::{Fault, ScenarioErrors, ensure};
 
-/// The text of a scenario before it is read, and its name in errors.
+/// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     pub(super) name: String,
@@ -15,8 +15,8 @@ pub struct Source {
 }
 
 impl Source {
-    /// A text; `name` stands for the file in errors. Records of ground motion are read from files relative to the
-    /// folder of `name`.
+    /// Makes a source of a text. `name` is the file name in errors. Records of ground motion are read from files relative to the folder of
+    /// `name`.
     #[must_use]
     pub fn of_text(text: &str, name: &str) -> Self {
         Self {
@@ -26,16 +26,16 @@ impl Source {
         }
     }
 
-    /// Its name in errors.
+    /// Returns the name in errors.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The text of a file.
+    /// Reads the text of a file.
     ///
     /// # Errors
-    /// When there is no such file, or it cannot be read, is not UTF-8 text or is larger than 1 MiB.
+    /// When there is no such file, or the file cannot be read, is not UTF-8 text or is larger than 1 MiB.
     pub fn of_file(path: &Path) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
         let unreadable = |message: String| ScenarioErrors::unreadable(&name, message);
@@ -50,18 +50,18 @@ impl Source {
         })
     }
 
-    /// The text from a reader. `name` stands for the file in errors, and records of ground motion are relative to the
-    /// current folder.
+    /// Reads the text from a reader. `name` is the file name in errors. Records of ground motion are read from files relative to the current
+    /// folder.
     ///
     /// # Errors
-    /// When it cannot be read, is not UTF-8 text or is larger than 1 MiB.
+    /// When the text cannot be read, is not UTF-8 text or is larger than 1 MiB.
     pub fn of_reader(reader: impl Read, name: &str) -> Result<Self, ScenarioErrors> {
         let unreadable = |wrong: String| ScenarioErrors::unreadable(name, wrong);
         let bytes = read_at_most(reader, 1, "scenario").map_err(unreadable)?;
         let wrong = not_plain(&bytes).map(str::to_owned);
         wrong.map(unreadable).map_or(Ok(()), Err)?;
         let text = String::from_utf8(bytes).map_err(|error| {
-            // The text before the fault is the same in the lossy text.
+            // The lossy text is identical up to the fault.
             let text = String::from_utf8_lossy(error.as_bytes());
             let offset = error.utf8_error().valid_up_to();
             let fault = Fault::new(0, offset, "not UTF-8 text from here".to_owned());
@@ -75,10 +75,10 @@ impl Source {
     }
 }
 
-/// The bytes of a file of at most so many MiB.
+/// Reads the bytes of a file of at most `mib` MiB.
 pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Vec<u8>, String> {
     let (most, mut bytes) = (mib << 20, Vec::new());
-    // The limit applies while reading, because not every file knows its size.
+    // The limit applies while reading, because not every file has a known size.
     let read = reader.take(most + 1).read_to_end(&mut bytes);
     read.map_err(|error| format!("cannot be read: {error}"))?;
     ensure(bytes.len() as u64 <= most, || {
@@ -87,10 +87,10 @@ pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Ve
     Ok(bytes)
 }
 
-/// Why a file is not plain text, if its first bytes or its line ends show it.
+/// Returns the reason why a file is not plain text, from its first bytes and its line ends; `None` for plain text.
 pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
     let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
-    // Without a mark, every other byte of letters and digits in UTF-16 is zero.
+    // In UTF-16 without a mark, every other byte of letters and digits is zero.
     if is_utf_16 || bytes.iter().take(100).any(|byte| *byte == 0) {
         return Some(
             "the file is UTF-16 text, as some programs export it, or no text: save it as UTF-8 or plain text",
@@ -101,7 +101,7 @@ pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
     )
 }
 
-/// The folder that holds a file.
+/// Returns the folder that contains a file.
 fn folder_of(file: &Path) -> &Path {
     file.parent().unwrap_or(Path::new(""))
 }

@@ -1,4 +1,4 @@
-//! The shape of a circular arch, given by its mean radius, or by its span as masons and surveyors measure it.
+//! The shape of a circular arch, given by its mean radius, or by its span, as masons and surveyors measure it.
 //!
 //! ```toml
 //! [arch]
@@ -13,13 +13,13 @@ use std::mem;
 use super::prelude::*;
 use crate::mechanics::arch::MeasuredAt;
 
-/// Keys that give the shape in a resolved scenario.
+/// Keys of the shape in a resolved scenario.
 const RESOLVED: [&str; 3] = ["mean_radius_m", "thickness_ratio", "embrace_deg"];
 /// Keys of `[arch]` that do not concern the shape.
 const OTHERS: [&str; 4] = ["depth_m", "density_kg_m3", "voussoirs", "joints_deg"];
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
-/// Spans and rises may be smaller than any radius.
+/// Range of spans and rises, which may be smaller than any radius.
 const LENGTH: Number = within(&(1e-6..=1e6));
 
 /// The shape of a circular arch.
@@ -27,12 +27,12 @@ pub(super) struct Circular {
     pub(super) mean_radius_m: f64,
     pub(super) thickness_ratio: f64,
     pub(super) embrace_deg: f64,
-    /// The line whose span the scenario gives, if it gives one.
+    /// The line to which the given span refers; `None` if the scenario gives no span.
     pub(super) measured_at: Option<MeasuredAt>,
 }
 
 impl Circular {
-    /// Reads the keys of `[arch]` that give the shape.
+    /// Reads the keys of `[arch]` that define the shape.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let mean_radius_m = table.optional("mean_radius_m", &MAGNITUDE);
         let span_m = table.optional("span_m", &LENGTH);
@@ -73,7 +73,7 @@ impl Circular {
             }
         };
         let [ratio, radius] = [thickness_ratio, mean_radius_m].map(plain);
-        // An extrados radius of less than half the thickness gives a mean radius of the wrong sign.
+        // An extrados radius below half the thickness gives a negative mean radius.
         let wrong = format!(
             "is out of range: {ratio} mean radii of {radius} m; must be at least a millionth of the mean radius and \
              below twice that"
@@ -91,13 +91,13 @@ impl Circular {
         })
     }
 
-    /// The keys of the shape as the file gives them, if it gives the span.
+    /// Returns the keys of the shape as in the file; empty if the file does not give the span.
     pub(super) fn given(table: &Table<'_>) -> Map<String, Value> {
         let arch = table.as_given("arch");
         let arch = arch.as_ref().and_then(Value::as_object);
         let given = arch.filter(|arch| arch.contains_key("span_m"));
         let given = given.into_iter().flatten();
-        // A length may be written without a point.
+        // A length may be written as an integer.
         let length = |value: &Value| value.as_f64().map_or_else(|| value.clone(), Value::from);
         given
             .filter(|(key, _)| !OTHERS.contains(&key.as_str()))
@@ -105,7 +105,7 @@ impl Circular {
             .collect()
     }
 
-    /// Puts the given keys of the shape in the place of the resolved ones.
+    /// Replaces the resolved keys of the shape by the given ones.
     pub(super) fn put_given(arch: &mut Value, given: &Map<String, Value>) {
         if let Value::Object(resolved) = arch
             && !given.is_empty()
@@ -117,14 +117,14 @@ impl Circular {
     }
 }
 
-/// The embrace angle of an arc of this span and rise.
+/// Returns the embrace angle of an arc with this span and rise, in degrees.
 pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     let half_m = 0.5 * span_m;
     // The angle between chord and tangent at the crown is a quarter of the embrace angle.
     4.0 * (rise_m / half_m).atan().to_degrees()
 }
 
-/// Embrace angle of an arch of this span and rise, checked to be within its bounds.
+/// Returns the embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.
 fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
     let wrong = format!(

@@ -10,8 +10,8 @@
 //! unit = "cm/s2"
 //! ```
 //!
-//! Every record shakes the structure at every level: multiplied by every factor of `scales`, or scaled to
-//! every peak of `peaks_g`. `[ground]` is not used.
+//! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. `[ground]` is
+//! not used.
 
 use super::listing::{Listing, written};
 use super::prelude::*;
@@ -29,12 +29,12 @@ named! {
     }
 }
 
-/// Largest factor on a record: beyond it the unit must be wrong.
+/// Largest factor on a record; beyond it the unit is probably wrong.
 const MAX_SCALE: f64 = 1e6;
 const SCALE: Number = above(0.0, MAX_SCALE);
 
 impl Measure {
-    /// The range of a single level.
+    /// Returns the range of a single level.
     const fn range(self) -> &'static Number {
         match self {
             Self::Scale => &SCALE,
@@ -42,7 +42,7 @@ impl Measure {
         }
     }
 
-    /// The name of a single level in results.
+    /// Returns the name of a single level in results.
     #[must_use]
     pub const fn column(self) -> &'static str {
         match self {
@@ -68,18 +68,18 @@ pub struct Suite {
     pub measure: Measure,
     /// The levels to which each record is scaled, above 0.
     pub levels: Sequence,
-    /// Whether every record is also run mirrored, so that it acts to the other side.
+    /// True if every record is also applied mirrored, so that it acts to the other side.
     pub both_signs: bool,
-    /// The oscillator whose spectral acceleration is one of the measures of intensity.
+    /// The oscillator whose spectral acceleration is a measure of intensity.
     pub spectral: Spectral,
 }
 
 /// An oscillator with one degree of freedom.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectral {
-    /// Its period, in s.
+    /// Period of the oscillator, in s.
     pub period_s: f64,
-    /// Its damping, in percent of the critical one.
+    /// Damping of the oscillator, in percent of critical damping.
     pub damping_percent: f64,
 }
 
@@ -89,7 +89,7 @@ const DAMPING: Number = within(&(0.0..=99.0));
 const SPECTRAL_DAMPING_PERCENT: &str = "spectral_damping_percent";
 
 impl Spectral {
-    /// Oscillator of a suite that sets neither key: 1 s, and the 5 % of codes.
+    /// Default oscillator: 1 s, and 5 % damping as in codes.
     pub(crate) const DEFAULT: Self = Self {
         period_s: 1.0,
         damping_percent: 5.0,
@@ -108,7 +108,7 @@ impl Spectral {
 const MAX_CASES: usize = 1_000_000;
 
 impl Suite {
-    /// Reads `[suite]` with its records; `None`: `[simulation]` is faulty.
+    /// Reads `[suite]` with its records. `simulation` is `None` if `[simulation]` is faulty.
     pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> Reading<Self> {
         let patterns = table.required(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
@@ -149,7 +149,7 @@ impl Suite {
         1 + self.both_signs as usize
     }
 
-    /// A record scaled to a level, perhaps mirrored.
+    /// Returns a record scaled to a level, mirrored if `mirrored`.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
         let signed = if mirrored { -level } else { level };
         shaking(&self.records[record], self.measure.scaling(signed))
@@ -175,7 +175,7 @@ impl Serialize for Suite {
 
 const RECORDS: &str = "records";
 
-/// Checks that a record can be used at the strongest level, or explains why not.
+/// Checks that a record can be used at the strongest level; the error is the reason if not.
 fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result<(), String> {
     let own_g = series.peak_g(simulation.gravity_m_s2);
     series.check_not_zero(simulation.gravity_m_s2)?;
@@ -199,7 +199,7 @@ fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result
     })
 }
 
-/// The horizontal ground motion of a record.
+/// Returns the horizontal ground motion of a record.
 pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
     Record {
         component: Component::Horizontal,
@@ -209,7 +209,7 @@ pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
     }
 }
 
-/// Time in the simulation of the file's time zero; it is chosen so that no record begins before the simulation.
+/// Returns the time of the simulation at time zero of the file: no record begins before the simulation.
 fn start_s(series: &Series) -> f64 {
     (0.0 - series.first_s()).max(0.0)
 }

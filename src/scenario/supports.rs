@@ -5,7 +5,7 @@ use super::structure::Structure;
 use crate::mechanics::blocks::Supports;
 use crate::mechanics::settling::{Follower, Movement, Movements};
 
-/// Nothing stands on springings that have gone farther.
+/// Range of movements; no structure stands on springings that have moved farther.
 const MOVEMENT_M: Number = within(&(-1e3..=1e3));
 
 /// Reads `[supports]`.
@@ -24,9 +24,9 @@ fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
     })
 }
 
-/// Refuses movements on which a structure does not stand: as rigid blocks, from which elastic joints fall earlier.
+/// Rejects movements on which a structure of rigid blocks cannot stand. Elastic joints collapse earlier.
 pub(super) fn check(table: &mut Table<'_>, structure: &Structure, moved: Movements) -> Reading<()> {
-    // Other faults of the row are reported by its users.
+    // Other users of the row report its faults.
     let Ok(row) = structure.row() else {
         return Ok(());
     };

@@ -1,10 +1,10 @@
-//! Reads the tables of a TOML text so that every error is found and keeps its place.
+//! Reader of the tables of a TOML text that finds all errors and keeps their positions.
 //!
-//! Nothing here knows the keys of a scenario; each table is read in the module of its subject. A key that is missing or wrong is a fault,
-//! and a value that follows its rule stands for it: so a reader names each key once, where it fills its field. Before it compares values, it
-//! checks that all of them are those of the file ([`Table::sound`]). A table with faults is never used.
+//! This module knows no keys of scenarios; each table is read in the module of its subject. For a missing or wrong key the reader records a
+//! fault and continues with a default value. So a reader names each key once, where it fills its field. Before it compares values, it
+//! checks that all of them are from the file ([`Table::sound`]). A table with faults is never used.
 //!
-//! Reading describes: from an empty text, [`describe`] collects all tables, keys, rules and defaults that `read` has.
+//! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -17,19 +17,19 @@ use super::error::{Fault, ensure, excerpt};
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
 
-/// Stands for a value that could not be read; the reason is recorded as a [`Fault`].
+/// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reported;
 
-/// A value, or [`Reported`] if its fault has been recorded.
+/// A value, or [`Reported`] if a fault was recorded.
 pub(super) type Reading<T> = Result<T, Reported>;
 
-/// Reads the keys of a table.
+/// Function that reads the keys of a table.
 pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> Reading<T> {}
 
 impl<T, R: FnOnce(&mut Table<'_>) -> Reading<T>> Reader<T> for R {}
 
-/// Reads a whole TOML text with `read`, after replacing values as `set` says, or returns everything that is wrong.
+/// Reads a TOML text with `read` after the assignments `set`. Returns all faults if there are any.
 pub(super) fn read_text<T>(
     (text, folder): (&str, &Path),
     set: &[Assignment],
@@ -40,7 +40,7 @@ pub(super) fn read_text<T>(
     read_document(document, read)
 }
 
-/// Reads a document with `read`, or returns everything that is wrong.
+/// Reads a document with `read`. Returns all faults if there are any.
 pub(super) fn read_document<T>(
     mut document: Document<'_>,
     read: impl Reader<T>,
@@ -56,40 +56,40 @@ pub(super) fn read_document<T>(
     }
 }
 
-/// The JSON schema of all texts that `read` reads.
+/// Returns the JSON schema of all texts that `read` reads.
 pub(super) fn describe<T>(read: impl Reader<T>) -> Value {
     let document = Document::default();
     let mut table = Table::new(String::new(), &document.root, &document);
     table.description = Some(an_object());
-    // An empty text is no valid scenario: only the keys count.
+    // An empty text is not a valid scenario, but the collected keys are complete.
     let _ = read(&mut table);
     table.description.unwrap_or_default()
 }
 
-/// The JSON schema of a table without keys.
+/// Returns the JSON schema of a table without keys.
 fn an_object() -> Value {
     json!({ "type": "object", "properties": {}, "additionalProperties": false })
 }
 
-/// A table of the file, and the faults found in it.
+/// A table of the file, with its faults.
 ///
 /// The keys that have been read are the allowed keys.
 pub(super) struct Table<'a> {
-    /// Its name in messages.
+    /// Name of the table in messages.
     name: String,
-    /// The text with its header, and the offset of that header.
+    /// Number of the text with the header of the table, and offset of the header.
     place: (usize, usize),
-    /// Its path in the document.
+    /// Path of the table in the document.
     path: String,
     entries: &'a Entries,
     document: &'a Document<'a>,
-    /// The keys, and whether each is read as a table.
+    /// The keys that were read, and true for keys of tables.
     known: Vec<(String, bool)>,
     faults: Vec<Fault>,
     files: Vec<InputFile>,
-    /// True if a value is unknown without a fault: its line may be one that is not TOML.
+    /// True if a value is unknown without a fault, because a line that is not TOML may contain it.
     is_partial: bool,
-    /// The JSON schema of the keys that were read, if they are collected.
+    /// JSON schema of the keys that were read; `None` unless they are collected.
     description: Option<Value>,
 }
 
@@ -109,47 +109,47 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Notes a file that the scenario names and that has been read.
+    /// Records a file that the scenario names and that has been read.
     pub(super) fn note_file(&mut self, file: &str) {
         if let Ok(bytes) = std::fs::read(self.path(file)) {
             self.files.push(InputFile::new(file, &bytes));
         }
     }
 
-    /// The folder to which the names of files are relative.
+    /// Returns the folder to which the names of files are relative.
     pub(super) fn folder(&self) -> &'a Path {
         &self.document.folder
     }
 
-    /// The path of a file that the scenario names.
+    /// Returns the path of a file that the scenario names.
     pub(super) fn path(&self, file: &str) -> PathBuf {
         self.folder().join(file)
     }
 
-    /// Takes the noted files, of this table and of the tables in it.
+    /// Removes and returns the recorded files of this table and of the tables in it.
     pub(super) fn noted_files(&mut self) -> Vec<InputFile> {
         std::mem::take(&mut self.files)
     }
 
-    /// Gives it another name in messages.
+    /// Sets the name of the table in messages.
     pub(super) fn rename(&mut self, name: &str) {
         name.clone_into(&mut self.name);
     }
 
-    /// Succeeds if all values that have been read are those of the file.
+    /// Succeeds if all values that were read are from the file.
     pub(super) fn sound(&self) -> Reading<()> {
         let is_sound = self.faults.is_empty() && !self.is_partial;
         ensure(is_sound && self.description.is_none(), || Reported)
     }
 
-    /// The value of a key that must be given.
+    /// Returns the value of a key that must be given.
     pub(super) fn required<R: Rule<Read: Default>>(&mut self, key: &str, rule: &R) -> R::Read {
         let value = self.optional(key, rule);
         self.describe("required", || json!(key));
         self.needed(key, rule, value)
     }
 
-    /// The value of a key that was read as `value`, and that others make necessary.
+    /// Returns the value of an optional key that other keys make necessary. `value` is the result of reading the key.
     pub(super) fn needed<R: Rule<Read: Default>>(
         &mut self,
         key: &str,
@@ -162,7 +162,7 @@ impl<'a> Table<'a> {
         value.unwrap_or_default()
     }
 
-    /// The value of a key that can be left out, or `default`.
+    /// Returns the value of an optional key, or `default`.
     pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Read) -> R::Read {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
@@ -171,7 +171,7 @@ impl<'a> Table<'a> {
         value.unwrap_or(default)
     }
 
-    /// The value of a key that can be left out.
+    /// Returns the value of an optional key; `None` if it is not given or wrong.
     pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Read> {
         self.describe_key(key, || rule.schema());
         match rule.read(self.entry(key, false)?) {
@@ -183,12 +183,12 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The table of that name as `read` reads it, if given and right.
+    /// Reads the table with this name; `None` if it is not given or faulty.
     pub(super) fn table<T>(&mut self, key: &str, read: impl Reader<T>) -> Option<T> {
         self.given_table(key, read).ok().flatten()
     }
 
-    /// The table of that name as `read` reads it, if given.
+    /// Reads the table with this name; `None` if it is not given.
     pub(super) fn given_table<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<Option<T>> {
         match self.entry(key, true) {
             Some(Value::Object(entries)) => {
@@ -202,7 +202,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The tables of an array `[[key]]` that are right, each read by `read`; empty if not given.
+    /// Reads the valid tables of an array `[[key]]`; empty if it is not given.
     pub(super) fn tables<T>(&mut self, key: &str, read: impl Reader<T> + Copy) -> Vec<T> {
         let Some(entry) = self.entry(key, true) else {
             if self.describes() {
@@ -233,7 +233,7 @@ impl<'a> Table<'a> {
         tables
     }
 
-    /// The table of that name as `read` reads it; if not given, `read` gets an empty table.
+    /// Reads the table with this name; if it is not given, `read` gets an empty table.
     pub(super) fn table_or_defaults<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<T> {
         if self.may_give(&[key]) || self.describes() {
             return self.given_table(key, read)?.ok_or(Reported);
@@ -242,7 +242,8 @@ impl<'a> Table<'a> {
         self.descend(key, None, read)
     }
 
-    /// The keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file; for a description, one of them.
+    /// Returns the keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file. For a description it returns one
+    /// such key.
     pub(super) fn keys_of_other_tables(&self) -> Vec<String> {
         if self.description.is_some() {
             return vec!["table.key".to_owned()];
@@ -251,52 +252,52 @@ impl<'a> Table<'a> {
         keys.filter(|key| key.contains('.')).cloned().collect()
     }
 
-    /// A value as the file gives it, if it does.
+    /// Returns a value as in the file; `None` if it is not given.
     pub(super) fn as_given(&self, key: &str) -> Option<Value> {
         self.entries.get(key).cloned()
     }
 
-    /// Whether the file gives a table for the key.
+    /// Returns true if the file has a table with this key.
     pub(super) fn gives_table(&self, key: &str) -> bool {
         self.entries.get(key).is_some_and(Value::is_object)
     }
 
-    /// Whether the file gives the key.
+    /// Returns true if the file has this key.
     pub(super) fn gives(&self, key: &str) -> bool {
         self.entries.contains_key(key)
     }
 
-    /// Whether a table inside this one gives the key.
+    /// Returns true if a table inside this one has the key.
     pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
         let inner = self.entries.get(table);
         inner.is_some_and(|inner| inner.get(key).is_some())
     }
 
-    /// Whether the file gives one of the keys, or has lines that are not TOML and name one.
+    /// Returns true if the file has one of the keys, or if lines that are not TOML contain one.
     pub(super) fn may_give(&self, keys: &[&str]) -> bool {
         let unread = &self.document.unread;
         let mut keys = keys.iter();
         keys.any(|key| self.gives(key) || unread.contains(key))
     }
 
-    /// Whether the key is read as a table.
+    /// Returns true if the key is read as a table.
     pub(super) fn is_table(&self, key: &str) -> bool {
         let mut known = self.known.iter();
         known.any(|(known, is_table)| known == key && *is_table)
     }
 
-    /// The place of the value that the file gives for a key.
+    /// Returns the position of the value of a key.
     pub(super) fn place(&self, key: &str) -> Option<(usize, usize)> {
         self.place_of(&format!("{}/{key}", self.path))
     }
 
-    /// The place of the value with this path.
+    /// Returns the position of the value with this path.
     fn place_of(&self, path: &str) -> Option<(usize, usize)> {
         let Span { text, range, .. } = self.document.spans.get(path)?;
         Some((*text, range.start))
     }
 
-    /// Whether the keys are collected for a description.
+    /// Returns true if the keys are collected for a description.
     pub(super) const fn describes(&self) -> bool {
         self.description.is_some()
     }
@@ -310,8 +311,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Adds the allowed values of a key to the description; if the key is read in two ways, both are allowed. A key with a dot stands for
-    /// all such keys.
+    /// Adds the allowed values of a key to the description. If the key is read in two ways, both are allowed. A key with a dot represents all
+    /// such keys.
     fn describe_key(&mut self, key: &str, schema: impl FnOnce() -> Value) {
         let Some(description) = &mut self.description else {
             return;
@@ -327,12 +328,12 @@ impl<'a> Table<'a> {
         };
     }
 
-    /// Number of faults that have been found.
+    /// Returns the number of faults.
     pub(super) fn faults(&self) -> usize {
         self.faults.len()
     }
 
-    /// Removes the faults after the first `since`, if all of them are faults of files that the text names. Returns false otherwise.
+    /// Removes the faults after the first `since` if all of them are faults of files that the text names. Returns true if it has removed them.
     pub(super) fn forgives_files(&mut self, since: usize) -> bool {
         let forgives = self.faults[since..].iter().all(|fault| fault.of_file);
         if forgives {
@@ -341,7 +342,7 @@ impl<'a> Table<'a> {
         forgives
     }
 
-    /// Records that the file which `key` names is missing or wrong: `message` continues the key and its value.
+    /// Records that the file of `key` is missing or wrong. `message` follows the key and its value.
     pub(super) fn wrong_file(&mut self, key: &str, message: impl Display) -> Reported {
         let reported = self.wrong(key, message);
         if let Some(fault) = self.faults.last_mut() {
@@ -350,28 +351,28 @@ impl<'a> Table<'a> {
         reported
     }
 
-    /// Records that the given value of `key` is wrong: `message` continues the key and its value.
+    /// Records that the value of `key` is wrong. `message` follows the key and its value.
     pub(super) fn wrong(&mut self, key: &str, message: impl Display) -> Reported {
         self.wrong_in(&[], key, message)
     }
 
-    /// Records that the given value of `key` is wrong, if it is.
+    /// Records that the value of `key` is wrong if `when` is true.
     pub(super) fn refuse<M: Display>(&mut self, when: bool, key: &str, message: M) -> Reading<()> {
         ensure(!when, || self.wrong(key, message))
     }
 
-    /// Records that the whole table is wrong, if it is.
+    /// Records that the whole table is wrong if `when` is true.
     pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> Reading<()> {
         ensure(!when, || self.wrong_itself(message))
     }
 
-    /// The result of work with the given value of `key`; an error continues the key and its value.
+    /// Returns the value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
     pub(super) fn accept<T, E: Display>(&mut self, key: &str, result: Result<T, E>) -> Reading<T> {
         result.map_err(|wrong| self.wrong(key, wrong))
     }
 
-    /// Records that the given value of `key` is wrong in nested tables inside this one. If the innermost table does not give it, the
-    /// tables around it are searched; if none does, it is missing in the innermost table that is given.
+    /// Records that the value of `key` is wrong in nested tables inside this one. If the innermost table does not give the key, the
+    /// outer tables are searched. If none gives it, the fault is at the innermost given table.
     pub(super) fn wrong_in<M: Display>(
         &mut self,
         path: &[&str],
@@ -387,7 +388,7 @@ impl<'a> Table<'a> {
             around.push((format!("{path}/{table}"), inner));
         }
         let innermost = around.last().and_then(|(path, _)| self.place_of(path));
-        // With nested tables, only those are searched.
+        // With nested tables, only these are searched.
         let mut searched = around.iter().skip(path.len().min(1)).rev();
         let found =
             searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
@@ -404,8 +405,8 @@ impl<'a> Table<'a> {
         self.fault(place, format!("{given} {message}"))
     }
 
-    /// Records that an element of the array given for `key` is wrong; elements are counted from 0. A
-    /// value that is not an array counts as its only element.
+    /// Records that an element of the array of `key` is wrong; elements are counted from 0. A value that is not an array counts as
+    /// its only element.
     pub(super) fn wrong_element<M: Display>(&mut self, key: &str, at: usize, wrong: M) -> Reported {
         let Some(element) = self.entries.get(key).and_then(|value| value.get(at)) else {
             return self.wrong(key, wrong);
@@ -416,14 +417,14 @@ impl<'a> Table<'a> {
         self.fault(place, format!("`{value}` in `{key}` {wrong}"))
     }
 
-    /// Records that a key is given which another excludes.
+    /// Records that a key is given which another key excludes.
     pub(super) fn excluded(&mut self, key: &str, other: &str, remedy: &str) {
         let place = self.place(key).unwrap_or(self.place);
         let message = format!("`{key}` cannot be combined with `{other}`; {remedy}");
         self.fault(place, message);
     }
 
-    /// Records that the whole table is wrong: `message` continues its name.
+    /// Records that the whole table is wrong. `message` follows its name.
     pub(super) fn wrong_itself(&mut self, message: impl Display) -> Reported {
         self.fault(self.place, format!("{} {message}", self.name))
     }
@@ -433,7 +434,7 @@ impl<'a> Table<'a> {
         Reported
     }
 
-    /// The entry of a key, if the file gives it.
+    /// Returns the entry of a key; `None` if the file does not give it.
     fn entry(&mut self, key: &str, is_table: bool) -> Option<&'a Value> {
         if !self.known.iter().any(|(known, _)| known == key) {
             self.known.push((key.to_owned(), is_table));
@@ -473,7 +474,7 @@ impl<'a> Table<'a> {
     }
 
     fn reject_unknown_keys(&mut self) {
-        // A reader that refuses the whole table reads no keys.
+        // A reader that rejects the whole table reads no keys.
         if self.known.is_empty() && !self.faults.is_empty() {
             return;
         }
@@ -498,7 +499,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Keys of earlier versions, by their table, and their replacements.
+/// Keys of earlier versions: table, key, and message with the replacement.
 const REPLACED: [(&str, &str, &str); 2] = [
     (
         "the scenario",

@@ -19,17 +19,18 @@ use crate::mechanics::stability::falls;
 use crate::mechanics::tie::{Anchor, Tie, TieError};
 
 const COORDINATE_M: Number = within(&(-1e6..=1e6));
-/// The stiffest tie, in N/m: a steel bar of 30,000 mm2 that is 0.6 m long. Beyond it a tie is as good as rigid, and only costs time.
+/// Largest stiffness of a tie, in N/m: a steel bar of 30,000 mm2 with a length of 0.6 m. Stiffer ties are practically rigid, and computations
+/// take longer.
 const STIFFEST_N_M: f64 = 1e10;
-/// The most ties of a structure.
+/// Largest number of ties of a structure.
 const MOST_TIES: usize = 200;
 const BLOCK: Count = Count(
     0..=MAX_BLOCKS,
     "blocks are counted from 1, and 0 is the ground",
 );
 
-/// A point this far from a block, in sizes of the structure, still holds on to it where the block is named: curved sides are drawn
-/// with straight lines.
+/// Largest distance of an end of a tie from its named block, over the size of the structure. Curved sides are drawn with straight lines, so a
+/// point may be slightly outside.
 const NEAR_RATIO: f64 = 0.01;
 
 named! {
@@ -40,39 +41,39 @@ named! {
     }
 }
 
-/// The contents of `[[tie]]`, in the units of its keys.
+/// The contents of `[[tie]]`, in the units of the keys.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieTable {
     /// Named ends; `None` if the ends are given by coordinates or height.
     pub between: Option<Between>,
-    /// Height of a level tie between the intrados on both sides.
+    /// Height of a horizontal tie between the intrados on both sides, in m; `None` if the ends are given otherwise.
     pub height_m: Option<f64>,
-    /// Coordinates of the first end.
+    /// Coordinates of the first end, in m; `None` if the ends are given otherwise.
     pub from_m: Option<[f64; 2]>,
-    /// Block of the first end, from 1; 0 is the ground.
+    /// Block of the first end, from 1; 0 is the ground; `None` if the coordinates determine it.
     pub from_block: Option<usize>,
-    /// Coordinates of the second end.
+    /// Coordinates of the second end, in m; `None` if the ends are given otherwise.
     pub to_m: Option<[f64; 2]>,
-    /// Block of the second end, from 1; 0 is the ground.
+    /// Block of the second end, from 1; 0 is the ground; `None` if the coordinates determine it.
     pub to_block: Option<usize>,
-    /// Area of its section.
+    /// Area of the section, in mm2; `None` if the stiffness is given.
     pub area_mm2: Option<f64>,
-    /// Young's modulus.
+    /// Young's modulus, in GPa; `None` if the stiffness is given.
     pub modulus_gpa: Option<f64>,
-    /// Force per metre of extension, instead of area and modulus.
+    /// Stiffness, in N/m; `None` if area and modulus are given.
     pub stiffness_n_m: Option<f64>,
-    /// Force in the undeformed structure.
+    /// Force in the undeformed structure, in N.
     pub prestress_n: f64,
-    /// Force at which the tie yields.
+    /// Yield force, in N; `None` if the tie does not yield, or its yield stress is given.
     pub yield_force_n: Option<f64>,
-    /// Stress at which the tie yields.
+    /// Yield stress, in MPa; `None` if the tie does not yield, or its yield force is given.
     pub yield_stress_mpa: Option<f64>,
-    /// Strain at which the tie breaks.
+    /// Strain at which the tie breaks; `None` if it does not break.
     pub breaks_at_strain: Option<f64>,
 }
 
 impl TieTable {
-    /// Reads all of `[[tie]]`.
+    /// Reads all tables `[[tie]]`.
     pub(super) fn read_all(table: &mut Table<'_>) -> Vec<Self> {
         let ties = table.tables("tie", Self::read);
         let count = ties.len();
@@ -117,16 +118,16 @@ impl TieTable {
         Ok(read)
     }
 
-    /// The tie in a row of blocks, where its springings are these joints.
+    /// Makes the tie of a row of blocks. `springings` are the joints of its springings, if it has any.
     ///
     /// # Errors
-    /// Explains what to change.
+    /// The change that the tie needs.
     fn placed(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<Tie, String> {
         let ends = self.ends(row, springings)?;
         let [first, second] = ends.map(|end| end.at_m);
         let length_m = (second - first).norm();
         let stiffness_n_m = match (self.area_mm2, self.modulus_gpa, self.stiffness_n_m) {
-            // A square millimetre and a GPa make a thousand newtons.
+            // A square millimetre times a GPa is a thousand newtons.
             (Some(area_mm2), Some(modulus_gpa), _) => 1e3 * area_mm2 * modulus_gpa / length_m,
             (_, _, stiffness_n_m) => stiffness_n_m.unwrap_or(0.0),
         };
@@ -183,7 +184,7 @@ impl TieTable {
             let at_m = row.joints[joint].intrados_m;
             Anchor { block, at_m }
         };
-        // The piers of the arch: the block before the left springing, and the one behind the right.
+        // The piers of the arch: the block before the left springing, and the block after the right springing.
         let behind = (right < row.blocks.len()).then_some(right);
         Ok([end(left, left.checked_sub(1)), end(right, behind)])
     }
@@ -196,7 +197,7 @@ fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
     table.accept(key, point.map_err(|_| wrong)).ok()
 }
 
-/// A point of a block, or of the ground if the block is 0.
+/// Returns a point of a block, or of the ground if `block` is 0.
 fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
     let at_m = Vector2::from(point_m);
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
@@ -242,7 +243,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
     Ok(Anchor { block, at_m })
 }
 
-/// The two points of the intrados, taken as straight from joint to joint, at a height.
+/// Returns the two points of the intrados at a height. The intrados is a straight line between joints.
 fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     let pairs = row.joints.windows(2).enumerate();
     let crossings = pairs.filter_map(|(block, pair)| {
@@ -265,7 +266,7 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     })
 }
 
-/// The ties of a structure.
+/// Makes the ties of a structure.
 pub(super) fn placed(
     table: &mut Table<'_>,
     ties: &[TieTable],
@@ -278,7 +279,7 @@ pub(super) fn placed(
     placed.collect()
 }
 
-/// A column of any number of drums with its ties.
+/// Adds ties to a column, which may have drums.
 pub(super) fn tied_column(
     table: &mut Table<'_>,
     ties: &[TieTable],

@@ -4,8 +4,8 @@ use serde_json::{Map, Value};
 
 use super::shown::is_hidden;
 
-/// The text of a table and of all tables in it. A table with the key `from` or `deviation` describes a spread; it is
-/// written in one line.
+/// Returns the text of a table and of all tables in it. A table with the key `from` or `deviation` is a range or a distribution, and is written
+/// in one line.
 pub(crate) fn toml_text(table: &Value) -> String {
     let mut text = String::new();
     write_table(&mut text, "", table.as_object().unwrap_or(&Map::new()));
@@ -17,7 +17,7 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
         let spread = |it: &Map<_, _>| it.contains_key("from") || it.contains_key("deviation");
         value.as_object().is_some_and(|it| !spread(it))
     });
-    // Even an empty table has a meaning, so its header is written.
+    // An empty table has a meaning too, so its header is written.
     if !name.is_empty() && (!keys.is_empty() || tables.is_empty()) {
         if !text.is_empty() {
             text.push('\n');
@@ -50,7 +50,7 @@ pub(super) fn inline(value: &Value) -> String {
                 .map(|(key, value)| format!("{key} = {}", inline(value)));
             format!("{{ {} }}", pairs.collect::<Vec<_>>().join(", "))
         }
-        // The shortest digits that read back as the same number; TOML libraries would write out all zeros of 1e-9.
+        // The shortest digits that read back as the same number; TOML libraries would write all zeros of 1e-9.
         Value::Number(number) if number.is_f64() => {
             format!("{:?}", number.as_f64().unwrap_or(f64::NAN))
         }
@@ -58,7 +58,7 @@ pub(super) fn inline(value: &Value) -> String {
     }
 }
 
-/// A key, in quotation marks if it contains a dot.
+/// Returns a key, in quotation marks if it contains a dot.
 fn bare(key: &str) -> String {
     if key.contains('.') {
         quoted(key)
@@ -67,7 +67,7 @@ fn bare(key: &str) -> String {
     }
 }
 
-/// A string as TOML writes it.
+/// Returns a string in the syntax of TOML.
 pub(super) fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {

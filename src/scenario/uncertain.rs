@@ -8,8 +8,8 @@
 //! "free_hinges.friction_coefficient" = { from = 0.5, to = 0.8 }
 //! ```
 //!
-//! Every number that is a key of another table may be uncertain. A sample gives each of them a value, from one point of
-//! a Sobol sequence with Owen scrambling.
+//! Every number of another table may be uncertain. A sample gives each uncertain number a value, from one point of a Sobol sequence with Owen
+//! scrambling.
 
 use super::Scenario;
 use super::prelude::*;
@@ -18,11 +18,11 @@ use super::variant::{number, parts, value};
 use crate::bisection::{Width, bisect, middle};
 
 named! {
-    /// Deviation of a number from the scenario's value.
+    /// Distribution of a number about the value in the scenario.
     pub enum Distribution {
-        /// Normal, with that value as its mean.
+        /// Normal distribution, with that value as its mean.
         Normal = "normal",
-        /// Lognormal, with that value as its median; the deviation is that of the logarithm.
+        /// Lognormal distribution, with that value as its median; the deviation is that of the logarithm.
         Lognormal = "lognormal",
     }
 }
@@ -31,46 +31,46 @@ named! {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Spread {
-    /// Uniformly over a range.
+    /// Uniform distribution over a range.
     Range {
         /// The smallest value.
         from: f64,
-        /// The largest.
+        /// The largest value.
         to: f64,
-        /// Whether the values or their logarithms are spread uniformly.
+        /// Spacing: the values or their logarithms are uniformly distributed.
         spacing: Spacing,
     },
-    /// Around the scenario's value, cut off at [`MOST_DEVIATIONS`].
+    /// Distribution about the value in the scenario, truncated at [`MOST_DEVIATIONS`].
     About {
-        /// Standard deviation, in the unit of the key; for a lognormal one that of the natural logarithm, without unit.
+        /// Standard deviation, in the unit of the key; that of the natural logarithm for a lognormal distribution.
         deviation: f64,
         /// The form of the distribution.
         distribution: Distribution,
     },
 }
 
-/// Number of standard deviations at which normal distributions are cut off.
+/// Number of standard deviations at which distributions are truncated.
 pub const MOST_DEVIATIONS: f64 = 3.0;
 
 /// An uncertain number of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertainKey {
-    /// Its key, as `table.key`.
+    /// Key of the number: `table.key`.
     pub key: String,
     /// Distribution of its values.
     pub spread: Spread,
-    /// The scenario's own value, if it has one.
+    /// Value in the scenario; `None` if the scenario has no value.
     pub own: Option<f64>,
 }
 
-/// The uncertain numbers of a scenario, and how many samples are taken.
+/// The uncertain numbers of a scenario, and the number of samples.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Uncertain {
     /// The number of samples, at least 1.
     pub samples: usize,
-    /// The seed of the scrambling.
+    /// Seed of the scrambling.
     pub seed: u32,
-    /// True: total indices are computed, which takes further samples.
+    /// True to compute total indices, which needs additional samples.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub total_indices: bool,
     /// The numbers, at least one, in the order of the file.
@@ -78,10 +78,10 @@ pub struct Uncertain {
     pub keys: Vec<UncertainKey>,
 }
 
-/// No more samples than the sequence has points.
+/// Range of the number of samples: the sequence has no more points.
 const SAMPLES: Count = Count(1..=65_536, "one sample");
 const SEED: Count = Count(0..=u32::MAX as usize, "the first");
-/// No more keys than the sequence has dimensions.
+/// Largest number of keys, because the sequence has that many dimensions.
 const MAX_KEYS: usize = 256;
 const SPREAD: &str = "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
                       { deviation = 0.003 }";
@@ -117,7 +117,7 @@ impl Spread {
         Ok(Self::Range { from, to, spacing })
     }
 
-    /// The quantile: the value below which this part of all values lies, in 0 to 1.
+    /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1. `own` is the value in the scenario.
     fn at(self, part: f64, own: f64) -> f64 {
         match self {
             Self::Range {
@@ -137,17 +137,17 @@ impl Spread {
     }
 }
 
-/// The probability that a standard normal variable lies below this deviation.
+/// Returns the probability that a standard normal variable is below this deviation.
 fn normal(deviations: f64) -> f64 {
     0.5 * libm::erfc(-deviations * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The quantile of a standard normal distribution that is cut off at [`MOST_DEVIATIONS`].
+/// Computes a quantile of the standard normal distribution truncated at [`MOST_DEVIATIONS`].
 fn cut_normal(part: f64) -> f64 {
     let most = MOST_DEVIATIONS;
     let below = normal(-most);
     let wanted = below + part * (1.0 - 2.0 * below);
-    // The ends, which are reported as bounds, are exact.
+    // The ends are reported as bounds, so they are exact.
     if part <= 0.0 || part >= 1.0 {
         return if part <= 0.0 { -most } else { most };
     }
@@ -157,7 +157,7 @@ fn cut_normal(part: f64) -> f64 {
     middle(low, high)
 }
 
-/// Writes each key with its spread.
+/// Writes each key with its distribution.
 fn by_key<S: Serializer>(keys: &[UncertainKey], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(keys.iter().map(|key| (&key.key, key.spread)))
 }
@@ -166,7 +166,7 @@ const TABLE: &str = "uncertain";
 const TOTAL_INDICES: &str = "total_indices";
 
 impl Uncertain {
-    /// Reads `[uncertain]`. It is [checked](Uncertain::check) later against the rest of the scenario.
+    /// Reads `[uncertain]`. [`Uncertain::check`] checks it later against the rest of the scenario.
     pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
@@ -195,13 +195,13 @@ impl Uncertain {
         })
     }
 
-    /// Tables with uncertain numbers that resolving would replace, such as span and rise of an arch. They keep the keys of the file: the
-    /// uncertain numbers vary, and the other given numbers do not.
+    /// Returns the tables with uncertain numbers that resolved keys would replace, such as span and rise of an arch. These tables keep the keys
+    /// of the file, so that the other given numbers stay constant while the uncertain numbers vary.
     pub(super) fn as_given(&self, table: &Table<'_>, resolved: &Value) -> Map<String, Value> {
         let mut kept = Map::new();
         for key in &self.keys {
             let name = parts(&key.key).swap_remove(0);
-            // Of a record only its strength and its start may vary, which the resolved scenario has.
+            // Only strength and start of a record may vary; the resolved scenario has both.
             let Some(given) = table.as_given(name).filter(|_| name != "ground") else {
                 continue;
             };
@@ -209,7 +209,7 @@ impl Uncertain {
                 kept.insert(name.to_owned(), given);
             }
         }
-        // Entries of lists that the file does not give are there in the resolved table only.
+        // Entries of lists that the file does not give are only in the resolved table.
         let tables = Value::Object(kept.clone());
         for key in &self.keys {
             let parts = parts(&key.key);
@@ -221,8 +221,8 @@ impl Uncertain {
         kept
     }
 
-    /// Adds the scenario's own values, and refuses keys and values that the scenario does not allow. The faults go to the
-    /// table around `[uncertain]`.
+    /// Adds the values in the scenario, and rejects keys and values that the scenario does not allow. The faults are recorded in the table that
+    /// contains `[uncertain]`.
     pub(super) fn check(
         mut self,
         table: &mut Table<'_>,
@@ -241,7 +241,7 @@ impl Uncertain {
             let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(part))).collect();
             scenario.with_values(&values)
         };
-        // Reading a scenario takes time: if all keys are allowed together, each is.
+        // Reading a scenario takes time, so all keys are tried together first.
         if PROBED.iter().all(|part| allows(&self.keys, *part).is_ok()) {
             return Ok(self);
         }
@@ -251,7 +251,7 @@ impl Uncertain {
             }
         }
         faulty?;
-        // Each key is allowed by itself; two keys that fix the same quantity are not allowed together.
+        // Each key is allowed alone, so two keys set the same quantity.
         for count in 2..=self.keys.len() {
             if let Err(wrong) = allows(&self.keys[..count], 0.5) {
                 let wrong = format!("contradicts the keys before it: {wrong}");
@@ -261,7 +261,7 @@ impl Uncertain {
         Ok(self)
     }
 
-    /// Number of cases. With total indices, behind all samples, each sample has one more case for each key, in which only that key
+    /// Returns the number of cases. With total indices, after all samples, each sample has one more case for each key, in which only that key
     /// has another value.
     #[must_use]
     pub fn cases(&self) -> usize {
@@ -269,11 +269,11 @@ impl Uncertain {
         self.samples.saturating_mul(1 + keys)
     }
 
-    /// The point of a sample, counted from 0: one number above 0 and below 1 for each key.
+    /// Returns the point of a sample, counted from 0: a number between 0 and 1, exclusive, for each key.
     #[must_use]
     pub fn point(&self, sample: usize) -> Vec<f64> {
         let keys = self.keys.len();
-        // A case behind the samples has the values of sample `like`, except for the key `other`.
+        // A case after the samples has the values of sample `like`, except for the key `other`.
         let (like, other) = match sample.checked_sub(self.samples) {
             Some(behind) if self.total_indices => (behind / keys, Some(behind % keys)),
             _ => (sample, None),
@@ -285,26 +285,26 @@ impl Uncertain {
         (0..keys).map(at).collect()
     }
 
-    /// A coordinate of a point of the sequence.
+    /// Returns a coordinate of a point of the sequence.
     fn coordinate(&self, index: usize, dimension: usize) -> f64 {
-        // The sequence has numbers of 24 bits: each stands for the middle of the interval that rounds down to it.
+        // The sequence has numbers of 24 bits. The middle of the interval that is rounded down to such a number is used.
         const HALF_BIT: f64 = 0.5 / (1_u32 << 24) as f64;
         let whole = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
         let part = sobol_burley::sample(whole(index), whole(dimension), self.seed);
         f64::from(part) + HALF_BIT
     }
 
-    /// The values of a sample, counted from 0, in the order of the keys.
+    /// Returns the values of a sample, counted from 0, in the order of the keys.
     #[must_use]
     pub fn values(&self, sample: usize) -> Vec<f64> {
         let parts = self.point(sample).into_iter().zip(&self.keys);
         parts.map(|(part, key)| key.at(part)).collect()
     }
 
-    /// The scenario with these values of the keys, without its studies and with nothing uncertain.
+    /// Returns the scenario with these values of the keys, without studies and without uncertain numbers.
     ///
     /// # Errors
-    /// Explains why the scenario does not allow the values.
+    /// The reason why the scenario does not allow the values.
     pub fn scenario(&self, scenario: &Scenario, values: &[f64]) -> Result<Scenario, String> {
         let keys = self.keys.iter().map(|key| key.key.as_str());
         let values: Vec<_> = keys.zip(values.iter().copied()).collect();
@@ -312,7 +312,7 @@ impl Uncertain {
     }
 }
 
-/// Whether a table of the file gives a number that the resolved one does not have.
+/// Returns true if a table of the file gives a number that the resolved table does not have.
 fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
     match given {
         Value::Object(given) => {
@@ -324,11 +324,11 @@ fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
     }
 }
 
-/// Parts of all values at which keys are tried: the smallest value, the largest, and one that is not a whole number.
+/// Fractions of the distribution at which keys are tried: the smallest value, the largest value, and one that is not a whole number.
 const PROBED: [f64; 3] = [0.0, 1.0, 0.381_966];
 
 impl UncertainKey {
-    /// Adds the scenario's own value, and refuses a key that is no number or one of those before it.
+    /// Adds the value in the scenario. Rejects a key that is not a number, or is one of the previous keys.
     fn complete(
         &mut self,
         before: &[Self],
@@ -339,7 +339,7 @@ impl UncertainKey {
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
         let wrong = "is the same as a key before it; leave one out";
         ensure(!is_known, || wrong)?;
-        // Where the file gives another number, a length may be written without a point.
+        // If the file gives other keys, a length may be written as an integer.
         let resolved = number(resolved, &self.key);
         let is_given = resolved.is_none();
         let given = || value(&scenario.to_resolved_json(), &self.key).cloned();
@@ -361,11 +361,11 @@ impl UncertainKey {
         })
     }
 
-    /// Refuses values that the scenario does not allow, with its own values of all other keys.
+    /// Rejects values that the scenario does not allow while all other keys have their own values.
     fn check(&self, scenario: &Scenario) -> Result<(), String> {
         let largest = self.at(0.0).abs().max(self.at(1.0).abs());
         for part in PROBED {
-            // A bound that only rounding keeps from zero is zero.
+            // A bound that differs from zero by rounding errors only is zero.
             let value = Some(self.at(part)).filter(|value| value.abs() > 1e-12 * largest);
             let value = value.unwrap_or(0.0);
             let allowed = scenario.with_values(&[(&self.key, value)]);
@@ -377,7 +377,7 @@ impl UncertainKey {
         Ok(())
     }
 
-    /// The quantile: the value below which this part of all values lies, in 0 to 1.
+    /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         self.spread.at(part, self.own.unwrap_or(0.0))

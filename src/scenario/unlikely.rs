@@ -1,4 +1,4 @@
-//! Finds input that is possible but unlikely, such as a length in centimetres.
+//! Warnings about input that is possible but unlikely, such as a length in centimetres.
 
 use std::ops::RangeInclusive;
 
@@ -8,42 +8,42 @@ use super::{Format, Ground, PulseGround, Scaling, Scenario, Series, Structure};
 use crate::dynamics::model::Model;
 use crate::mechanics::sway::Sway;
 
-/// The strongest recorded ground accelerations are a little above 2 g, and those below the lower limit move no masonry. A value outside is
-/// probably in another unit.
+/// Usual peaks of records, in g. The strongest recorded accelerations are a little above 2 g, and weaker ones than the lower limit move no
+/// masonry. Other values are probably in another unit.
 const PEAK_G: RangeInclusive<f64> = 0.01..=3.0;
-/// Records have 50 to 200 samples a second. Longer steps than this are probably in another unit.
+/// Longest usual step of a record, in s: records have 50 to 200 samples a second. Longer steps are probably in another unit.
 const RECORD_STEP_S: f64 = 0.1;
-/// A pulse this many times as strong as the one that starts the structure would throw it.
+/// Largest usual ratio of the peak of a pulse to the acceleration that starts the structure.
 const PEAK_OVER_INCIPIENT: f64 = 20.0;
-/// The largest masonry arches span 140 m.
+/// Largest usual radius, in m: the largest masonry arches span 140 m.
 const RADIUS_M: f64 = 100.0;
-/// More than the thickness of any arch.
+/// Largest usual thickness of an arch, in m.
 const THICKNESS_M: f64 = 5.0;
-/// More than the size of any column or arch on piers.
+/// Largest usual size of a column or of an arch on piers, in m.
 const SIZE_M: f64 = 200.0;
-/// Gravity on Earth, from the equator to the poles.
+/// Gravity on Earth, from the equator to the poles, in m/s2.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=9.85;
-/// Offset of a record relative to its peak.
+/// Largest usual mean of a record, over its peak.
 const OFFSET: f64 = 0.01;
-/// More steps than these take minutes.
+/// Number of steps beyond which a computation takes minutes.
 const STEPS: f64 = 1e7;
-/// With four links, a motion this long takes minutes.
+/// Duration beyond which a computation with four links takes minutes, in s.
 const DURATION_S: f64 = 1e5;
 
 impl Scenario {
-    /// Sentences about unlikely values, each with the probably intended value.
+    /// Returns sentences about unlikely values, each with the probably intended value.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
         self.unlikely_with(|| starts_g(&*self.model().ok()?))
     }
 
-    /// The unlikely values, as [`Scenario::unlikely`], of a scenario whose model of motion is at hand.
+    /// Returns the sentences of [`Scenario::unlikely`] for a scenario whose model of motion is known.
     #[must_use]
     pub fn unlikely_of(&self, model: &dyn Model) -> Vec<String> {
         self.unlikely_with(|| starts_g(model))
     }
 
-    /// The unlikely values; `starts_g` finds the least acceleration that starts the structure, in g.
+    /// Returns sentences about unlikely values. `starts_g` computes the smallest acceleration that starts the structure, in g.
     fn unlikely_with(&self, starts_g: impl FnOnce() -> Option<f64>) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let of_series = |series: &Series| series.unlikely(gravity_m_s2);
@@ -57,7 +57,7 @@ impl Scenario {
             Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, starts_g)),
             None => {}
         }
-        // A wrong unit is wrong in all tables, so only the first record is described.
+        // A wrong unit affects all tables, so only the first record is described.
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         let mut records = records.map(of_series).filter(|faults| !faults.is_empty());
         unlikely.extend(records.next().into_iter().flatten());
@@ -79,11 +79,11 @@ impl Scenario {
         if peak_g > *PEAK_G.end() {
             return Some(format!("the pulse peaks at {} g: {unit}", plain(peak_g)));
         }
-        // On springings that have moved the structure stands on three hinges, and a fraction of its own strength starts it.
+        // On moved springings the structure stands on three hinges, and a small push starts it.
         if self.motion.supports().is_some() {
             return None;
         }
-        // Any push starts a structure that stands on hinges held by ties.
+        // Any push starts a structure on hinges that are held by ties.
         let times = along_g / starts_g().filter(|starts_g| *starts_g > 0.0)?;
         (times > PEAK_OVER_INCIPIENT).then(|| {
             let peak = plain(along_g);
@@ -93,7 +93,7 @@ impl Scenario {
         })
     }
 
-    /// Warns that a motion up to the end of the simulation takes long to compute.
+    /// Returns a warning if a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<String> {
         let request = self.request();
         let begin = format!("the simulation lasts {} s", short(request.end_s));
@@ -113,7 +113,7 @@ impl Scenario {
     }
 }
 
-/// The least acceleration that starts the structure of a model to either side, in g.
+/// Returns the smallest acceleration that starts the structure of a model to either side, in g.
 fn starts_g(model: &dyn Model) -> Option<f64> {
     let sides = Sway::ALL.iter();
     let sides = sides.filter_map(|sway| model.incipient_acceleration_g(*sway));
@@ -148,7 +148,7 @@ impl Structure {
     }
 }
 
-/// Warns that a length is larger than usual, and names a unit in which it would be usual.
+/// Returns a warning if a length is larger than usual, with a unit in which it would be usual.
 fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
     let is_huge = length_m > 10.0 * usual_m;
     let unit = ["centimetres", "millimetres"][usize::from(is_huge)];
@@ -156,7 +156,7 @@ fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
 }
 
 impl Series {
-    /// Sentences about unlikely values of a record, each with the probably intended value.
+    /// Returns sentences about unlikely values of a record, each with the probably intended value.
     #[must_use]
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
         let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));

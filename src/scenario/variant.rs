@@ -1,18 +1,17 @@
-//! A scenario with values that differ from those in its text.
+//! Variants of a scenario: values that differ from those in the text.
 
 use super::document::{Document, Entries};
 use super::prelude::*;
 use super::{Assignment, Changes, Scenario, Series, span, table};
 
-/// Tables that describe a study or the check, not the structure or ground motion under study.
+/// Tables of studies and of the check.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
 
 impl Scenario {
-    /// The scenario with other numbers for some keys, each named `table.key`. Studies and the check are left out. The samples
-    /// of a record stay the same.
+    /// Returns the scenario with other numbers for some keys, each named `table.key`, without studies and check. Records are not read again.
     ///
     /// # Errors
-    /// Explains the fault of the keys or of the changed scenario.
+    /// The fault of the keys or of the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
         let mut resolved = self.resolved();
         if let Value::Object(tables) = &mut resolved {
@@ -35,7 +34,7 @@ impl Scenario {
     }
 }
 
-/// Sets a number of the structure or of its motion.
+/// Makes the assignment of a number of the structure or of its motion.
 fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
     let parts = parts(key);
     if STUDIES.contains(&parts[0]) {
@@ -48,7 +47,7 @@ fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
         parts.len() > 1 && parts.iter().all(|part| is_name(part)),
         || format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
     )?;
-    // Whole numbers may stand for counts.
+    // Whole numbers may be counts.
     let number = match value.fract() == 0.0 && value.abs() < 1e15 {
         true => format!("{value:.0}"),
         false => format!("{value:?}").to_lowercase(),
@@ -60,18 +59,18 @@ fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
     })
 }
 
-/// Whether a text is a key of TOML without quotation marks.
+/// Returns true if a text is a TOML key without quotation marks.
 fn is_name(text: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     !text.is_empty() && text.chars().all(is_letter)
 }
 
-/// The parts of a key, `table.key`.
+/// Returns the parts of a key `table.key`.
 pub(super) fn parts(key: &str) -> Vec<&str> {
     key.split('.').map(str::trim).collect()
 }
 
-/// A value of some tables by its key, entries of lists counted from 1.
+/// Returns a value of some tables by its key; entries of lists are counted from 1.
 pub(super) fn value<'v>(tables: &'v Value, key: &str) -> Option<&'v Value> {
     parts(key)
         .iter()
@@ -81,7 +80,7 @@ pub(super) fn value<'v>(tables: &'v Value, key: &str) -> Option<&'v Value> {
         })
 }
 
-/// A value of a resolved scenario by its key; also the thickness of a circular arch, of which the resolved scenario has the ratio.
+/// Returns a value of a resolved scenario by its key. The thickness of a circular arch is computed from the ratio in the resolved scenario.
 pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     if let Some(found) = value(resolved, key) {
         return Some(found.clone());
@@ -96,7 +95,7 @@ pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     }
 }
 
-/// Pairs of keys for one quantity: setting one removes the other.
+/// Alternative keys of one quantity: setting one removes the other.
 const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/arch", "thickness_m", "thickness_ratio"],
     ["/arch", "rise_m", "embrace_deg"],
@@ -104,7 +103,7 @@ const ALTERNATIVES: [[&str; 3]; 4] = [
     ["/ground/right/record", "scale", "peak_g"],
 ];
 
-/// Removes the values in place of which new ones are given: an arch keeps either its thickness or its ratio.
+/// Removes the alternatives of new values: an arch keeps either its thickness or its ratio.
 fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
     let both_ways = ALTERNATIVES.map(|[name, one, other]| [[name, one, other], [name, other, one]]);
     for [name, given, goes] in both_ways.into_iter().flatten() {
@@ -117,8 +116,8 @@ fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
     }
 }
 
-/// Changes values that depend on the new ones. The last joint of an arch is at the other springing; drums share a new height of their column
-/// in their proportions, and the height is that of new drums.
+/// Changes values that depend on new ones. The last joint of an arch moves to the other springing. Drums keep their proportions under a new
+/// height of the column; new drums set the height of the column.
 fn fit(tables: &mut Entries, keys: &[Vec<&str>]) {
     let is_new = |wanted: [&str; 2]| keys.iter().any(|key| key.starts_with(&wanted));
     if let Some(Value::Object(arch)) = tables.get_mut("arch") {
@@ -151,13 +150,13 @@ fn fit(tables: &mut Entries, keys: &[Vec<&str>]) {
             ([false, true], _) => {
                 column.insert("height_m".to_owned(), Value::from(sum_m));
             }
-            // If both are given, the reader checks that they add up.
+            // If both are given, the reader checks the sum.
             _ => {}
         }
     }
 }
 
-/// The numbers of a list.
+/// Returns the numbers of a list.
 fn numbers(table: &Entries, key: &str) -> Option<Vec<f64>> {
     let numbers = table.get(key)?.as_array()?.iter();
     Some(numbers.filter_map(Value::as_f64).collect())

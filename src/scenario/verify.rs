@@ -54,16 +54,16 @@ named! {
 named! {
     /// The sides to which a mechanism is checked.
     pub enum CheckedSides {
-        /// Both; the worse result counts.
+        /// Both sides; the worse result counts.
         Both = "both",
-        /// To the right only: something holds the structure on the other side.
+        /// The right side only: something holds the structure on the other side.
         Right = "right",
-        /// To the left only.
+        /// The left side only.
         Left = "left",
     }
 }
 
-/// Period of the elastic vibration before a mechanism moves, for a structure that no walls hold.
+/// Period of the elastic vibration before a mechanism moves, of a structure that walls do not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum FreeStanding {
@@ -72,9 +72,9 @@ pub enum FreeStanding {
         /// The period, in seconds.
         t0_s: f64,
     },
-    /// The period by [C8.7.1.7].
+    /// The period from formula [C8.7.1.7].
     Elastic {
-        /// 6.2 for a cantilever, 2.2 if it is supported at both ends.
+        /// Factor of the support: 6.2 for a cantilever, 2.2 for supports at both ends.
         kappa: f64,
         /// Height or span, in metres.
         length_m: f64,
@@ -86,8 +86,8 @@ pub enum FreeStanding {
 }
 
 impl FreeStanding {
-    /// The period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and
-    /// the weight per volume `W` [C8.7.1.7].
+    /// Returns the period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and the
+    /// weight per volume `W` [C8.7.1.7].
     #[must_use]
     pub fn period_s(&self, density_kg_m3: f64) -> f64 {
         match *self {
@@ -114,27 +114,27 @@ pub struct Verify {
     pub behaviour_factor: f64,
     /// The sides that are checked.
     pub sides: CheckedSides,
-    /// If given, the structure is free to vibrate before it moves; `None`: walls hold it all along.
+    /// Elastic vibration of a structure that is free to vibrate before it moves; `None` if walls hold it up to the mechanism.
     pub free_standing: Option<FreeStanding>,
     /// Records of the dynamic route.
     #[serde(flatten)]
     pub records: Records,
 }
 
-/// Records of the motion at the place of the mechanism, for each limit state that is checked with records.
+/// Records of the motion at the position of the mechanism, for each limit state that is checked with records.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Records(ByState<Vec<Series>>);
 
-/// Keys that name the records of a limit state.
+/// Keys of the records of a limit state.
 const RECORDS: [(LimitState, &str); 2] = [
     (LimitState::Slv, "slv_records"),
     (LimitState::Slc, "slc_records"),
 ];
-/// The least number of records of which the worst counts (NTC 2018, § 7.3.5).
+/// Smallest number of records; with few records the worst counts (NTC 2018, § 7.3.5).
 const LEAST_RECORDS: usize = 3;
 
 impl Records {
-    /// The records of a state.
+    /// Returns the records of a limit state.
     #[must_use]
     pub fn of(&self, state: LimitState) -> &[Series] {
         self.0.get(&state).map_or(&[], Vec::as_slice)
@@ -181,10 +181,10 @@ impl Serialize for Records {
     }
 }
 
-/// FC of the lowest level of knowledge, LC1 (Tab. C8.5.IV); it applies if the load multiplier does not account for the
-/// compressive strength.
+/// Default confidence factor FC: that of the lowest level of knowledge, LC1 (Tab. C8.5.IV). It applies if the load multiplier does not account
+/// for the compressive strength.
 pub const CONFIDENCE_FACTOR: f64 = 1.35;
-/// q if nothing better is known (C8.7.1.2.1.7).
+/// Default behaviour factor q (C8.7.1.2.1.7).
 pub const BEHAVIOUR_FACTOR: f64 = 2.0;
 
 const CONFIDENCE: Number =
@@ -206,7 +206,7 @@ impl Default for Verify {
 }
 
 impl Verify {
-    /// Reads `[verify]`, whose files are relative to `folder`.
+    /// Reads `[verify]` with its records.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
         let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
@@ -218,7 +218,7 @@ impl Verify {
         })
     }
 
-    /// Refuses records for states that are not checked, and records if only one side is checked.
+    /// Rejects records of limit states that are not checked, and records if only one side is checked.
     pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> Reading<()> {
         let has_records = |(state, _): &(LimitState, _)| !self.records.of(*state).is_empty();
         for (state, key) in RECORDS.into_iter().filter(has_records) {
@@ -257,7 +257,7 @@ impl FreeStanding {
     }
 }
 
-/// One value for each limit state that has one.
+/// Values by limit state.
 pub type ByState<T> = BTreeMap<LimitState, T>;
 
 fn read_by_state<T>(
@@ -290,10 +290,10 @@ pub struct CodeDemand {
     /// Topography.
     #[serde(flatten)]
     pub relief: Relief,
-    /// Hazard of each state that is checked.
+    /// Hazard of each checked limit state.
     #[serde(flatten)]
     pub hazards: ByState<Hazard>,
-    /// Position at a height in a building; `None`: on the ground.
+    /// Position in a building; `None` on the ground.
     pub height: Option<Height>,
 }
 
@@ -301,14 +301,14 @@ pub struct CodeDemand {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Relief {
-    /// A category, with its largest coefficient.
+    /// A category, with the largest coefficient of the category.
     Topography(Topography),
     /// The coefficient itself.
     TopographicFactor(f64),
 }
 
 impl Relief {
-    /// The coefficient `S_T`.
+    /// Returns the coefficient `S_T`.
     #[must_use]
     pub const fn factor(&self) -> f64 {
         match self {
@@ -318,21 +318,21 @@ impl Relief {
     }
 }
 
-/// The building in which the mechanism stands.
+/// The building that carries the mechanism.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Height {
-    /// The building's modes.
+    /// Modes of the building.
     pub modes: Vec<BuildingMode>,
 }
 
 /// A mode of a building, with its vibration at each limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BuildingMode {
-    /// Participation factor; its sign depends on that of the modal shape.
+    /// Participation factor; its sign depends on the sign of the modal shape.
     pub gamma: f64,
     /// Modal shape at the height of the mechanism.
     pub psi: f64,
-    /// Its vibration at each limit state.
+    /// Vibration of the mode at each limit state.
     #[serde(flatten)]
     pub states: ByState<ModeState>,
 }
@@ -349,11 +349,11 @@ pub struct ModeState {
 /// A spectrum given by points, and the rule of its limit state.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PointDemand {
-    /// Its file.
+    /// Name of the file.
     pub spectrum: String,
     /// Damping of the given spectrum, in per cent.
     pub damping_percent: f64,
-    /// The rule of the state; `None` for SLD, which is the onset of motion.
+    /// Rule of the limit state; `None` for SLD, which is the onset of motion.
     pub state: Option<StateRule>,
     /// The points.
     #[serde(skip)]
@@ -363,20 +363,20 @@ pub struct PointDemand {
 /// The rule that defines a limit state in terms of displacements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StateRule {
-    /// Fraction of the ultimate displacement that may be reached.
+    /// Fraction of the ultimate displacement that is allowed.
     pub part_of_d0: f64,
-    /// The period is pi times this factor times `sqrt(d / a)`.
+    /// Factor of the period, which is pi times this factor times `sqrt(d / a)`.
     pub period_factor: f64,
     /// Damping of the mechanism, in per cent.
     pub damping_percent: f64,
     /// Divisor of the accelerations of the mechanism.
     pub divide_acceleration: f64,
-    /// Divisor of the displacements that may be reached, applied once the period is known.
+    /// Divisor of the allowed displacements; it does not affect the period.
     pub divide_displacement: f64,
 }
 
 impl StateRule {
-    /// The rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
+    /// Returns the rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
     #[must_use]
     pub const fn circolare(state: LimitState, confidence_factor: f64) -> Option<Self> {
         let (part_of_d0, period_factor, damping_percent) = match state {
@@ -394,15 +394,15 @@ impl StateRule {
     }
 }
 
-/// The code's own ranges depend on the soil; [`GroundSpectrum::new`] checks them.
+/// Range of the parameters. The ranges of the code depend on the soil; [`GroundSpectrum::new`] checks them.
 const HAZARD: Number = between(Excluded(0.0), Unbounded).because("NTC 2018, § 3.2");
 const TOPOGRAPHIC_FACTOR: Number =
     within(&(1.0..=2.0)).because("NTC 2018, Tab. 3.2.V has 1.0 to 1.4");
-/// At more damping than this the spectrum of a floor is no longer larger than its peak.
+/// Largest damping: beyond it the spectrum of a floor does not exceed its peak acceleration.
 const DAMPING_PERCENT: Number = above(0.0, 30.0);
 const DIVIDE: Number = within(&(1.0..=10.0));
 
-/// Keys of `[demand]` that define spectra of the code.
+/// Keys of `[demand]` for spectra of the code.
 const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "height"];
 
 impl Demand {
@@ -437,7 +437,7 @@ impl Demand {
         Ok(demand)
     }
 
-    /// The limit states that are checked.
+    /// Returns the checked limit states.
     pub fn states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
         states.filter(|state| match self {
@@ -488,7 +488,7 @@ fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
 }
 
 impl Height {
-    /// Reads `[demand.height]`, for the states with these hazards.
+    /// Reads `[demand.height]`, for the limit states with these hazards.
     fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> Reading<Self> {
         let modes = table.tables("modes", BuildingMode::read);
         table.sound()?;
@@ -509,7 +509,7 @@ impl Height {
         Ok(Self { modes })
     }
 
-    /// The modes at a limit state.
+    /// Returns the modes at a limit state.
     #[must_use]
     pub fn at(&self, state: LimitState) -> Vec<Mode> {
         let modes = self.modes.iter();
@@ -577,7 +577,7 @@ impl StateRule {
     }
 }
 
-/// Reads the points of a spectrum from a file; the error explains the fault in the file.
+/// Reads the points of a spectrum from a file. The error is the fault in the file.
 fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, String> {
     let rows = read_numbers::<2>(path)?;
     let points = rows.iter().map(|(_, [period_s, at_g])| (*period_s, *at_g));

@@ -7,14 +7,14 @@ use crate::mechanics::arch::{Arch, MeasuredAt};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::masonry::{CircularArch, Masonry, Pier, Piers, Shape};
 
-/// A length of a structure.
+/// A dimension of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dimension {
-    /// Its ends, in metres: of a width from left to right, of a height from below.
+    /// Ends, in metres: of a width from left to right, of a height from bottom to top.
     pub ends_m: [Vector2<f64>; 2],
-    /// Place of the dimension beside the structure.
+    /// Side of the structure on which the dimension is drawn.
     pub side: DimensionSide,
-    /// Label on the drawing: the value, with the name if the place is ambiguous.
+    /// Label on the drawing: the value, with the name if the position is ambiguous.
     pub text: String,
     /// Name and value in words.
     pub words: String,
@@ -23,11 +23,11 @@ pub struct Dimension {
 named! {
     /// Side of the structure on which a dimension is drawn.
     pub enum DimensionSide {
-        /// Below, for a width.
+        /// Below the structure, for a width.
         Below = "below",
-        /// A height.
+        /// Left of the structure, for a height.
         Left = "left",
-        /// A height.
+        /// Right of the structure, for a height.
         Right = "right",
     }
 }
@@ -36,7 +36,7 @@ named! {
 type Ends = [Vector2<f64>; 2];
 
 impl Dimension {
-    /// A dimension; its label has the name if the place is ambiguous: `is_named`.
+    /// Makes a dimension. `is_named` adds the name to its label.
     fn new(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str, is_named: bool) -> Self {
         let along_m = ends_m[1] - ends_m[0];
         let length_m = match side {
@@ -55,7 +55,7 @@ impl Dimension {
     }
 }
 
-/// A number for a drawing: to a millimetre, or three digits.
+/// Returns a length for a drawing, rounded to a millimetre, or to three digits below 0.1.
 #[must_use]
 pub fn metres(length_m: f64) -> String {
     let rounded = if length_m.abs() < 0.1 {
@@ -67,7 +67,7 @@ pub fn metres(length_m: f64) -> String {
 }
 
 impl Structure {
-    /// Dimensions of the structure.
+    /// Returns the dimensions of the structure.
     #[must_use]
     pub fn dimensions(&self) -> Vec<Dimension> {
         match self {
@@ -88,7 +88,7 @@ impl Structure {
     }
 }
 
-/// The circular arch of masonry, which may also have piers, fill and loads.
+/// Returns the circular arch of masonry, which may have piers, fill and loads; `None` for other shapes.
 pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
     match &masonry.shape {
         Shape::Circular(circular) => Some(&circular.arch),
@@ -96,7 +96,7 @@ pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
     }
 }
 
-/// Lowest and highest coordinates of the blocks of a row.
+/// Returns the lowest and the highest coordinates of the blocks of a row.
 pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
     let corners = row.outlines_m.iter().flatten();
     let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
@@ -105,7 +105,7 @@ pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
     })
 }
 
-/// Width and height between the lowest and the highest coordinates.
+/// Returns width and height between the lowest and the highest coordinates.
 fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
     let [right, top] = [Vector2::new(high.x, low.y), Vector2::new(low.x, high.y)];
     [
@@ -114,7 +114,7 @@ fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
     ]
 }
 
-/// Span and rise between the ends of a line and the height of its crown. The words name the line if it was set.
+/// Returns span and rise from the ends of a line and the height of its crown. The words name the line if it was given.
 fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimension; 2] {
     let crown = Vector2::new(ends[0].x, crown_m);
     let mut dimensions = [
@@ -168,7 +168,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     dimensions
 }
 
-/// Height and width of a pier, whose inner corner at the springing is given.
+/// Returns height and width of a pier, from the inner corner at its springing.
 fn of_pier(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension; 2] {
     let foot = inner - Vector2::new(0.0, pier.height_m);
     let base = match side {

@@ -38,12 +38,12 @@ pub enum Structure {
     Arch(Arch),
     /// A free-standing column, from `[column]`.
     Column(Column),
-    /// An arch of another shape, on piers or with a load: a row of blocks.
+    /// An arch of another shape, on piers or with loads, or given blocks: a row of blocks.
     #[serde(untagged)]
     Masonry(Box<Masonry>),
 }
 
-/// Error: a structure has no model of motion.
+/// Reasons why a structure has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum ModelError {
     /// The structure does not rock as four links.
@@ -52,7 +52,7 @@ pub enum ModelError {
     /// The structure is not a row of blocks that can stand.
     #[error(transparent)]
     FreeHinges(#[from] RowModelError),
-    /// The structure does not stand on its elastic joints.
+    /// The structure cannot stand on its elastic joints.
     #[error(transparent)]
     ElasticJoints(RowModelError),
 }
@@ -93,7 +93,7 @@ impl Structure {
         Ok((structure, ties))
     }
 
-    /// Ties of the structure.
+    /// Returns the ties of the structure.
     #[must_use]
     pub fn ties(&self) -> &[Tie] {
         match self {
@@ -103,10 +103,10 @@ impl Structure {
         }
     }
 
-    /// The model of the motion as mechanisms of one degree of freedom: four links, or Housner's block.
+    /// Makes the model of mechanisms of one degree of freedom: four links, or Housner's block.
     ///
     /// # Errors
-    /// When it does not rock as four links.
+    /// When the structure does not rock as four links.
     pub fn model<L: Into<ImpactLaw>>(
         &self,
         law: L,
@@ -119,10 +119,10 @@ impl Structure {
         })
     }
 
-    /// The four-link model, with the properties that only four links have; `None` for a column.
+    /// Makes the four-link model, with the properties that only four links have; `None` for a column.
     ///
     /// # Errors
-    /// When it does not rock as four links.
+    /// When the structure does not rock as four links.
     pub fn four_links<L: Into<ImpactLaw>>(
         &self,
         law: L,
@@ -134,7 +134,7 @@ impl Structure {
         })
     }
 
-    /// The parts of which it consists.
+    /// Returns the structure as parts with masses.
     #[must_use]
     pub fn as_parts(&self) -> &dyn Parts {
         match self {
@@ -144,7 +144,7 @@ impl Structure {
         }
     }
 
-    /// Fill and loads to draw on the structure; `None` if it cannot carry any.
+    /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
     #[must_use]
     pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
         match self {
@@ -153,25 +153,25 @@ impl Structure {
         }
     }
 
-    /// True for an arch, which thrusts at its springings; false for a free-standing column.
+    /// Returns true for an arch, which has thrust at its springings; false for a free-standing column.
     #[must_use]
     pub const fn thrusts(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
-    /// True if the structure stands on one support, like a column.
+    /// Returns true if the structure stands on one support, as a column does.
     #[must_use]
     pub fn stands_on_one_support(&self) -> bool {
         self.row().is_ok_and(|row| row.supports == Supports::Left)
     }
 
-    /// True for shapes that are symmetric for all dimensions.
+    /// Returns true for shapes that are symmetric for all dimensions.
     #[must_use]
     pub const fn is_symmetric(&self) -> bool {
         !matches!(self, Self::Masonry(_))
     }
 
-    /// The circular arch, if the structure is one without piers, fill, loads and ties.
+    /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
     #[must_use]
     pub const fn circular(&self) -> Option<&Arch> {
         match self {
@@ -180,7 +180,7 @@ impl Structure {
         }
     }
 
-    /// Length out of plane in m and density in kg/m3; if densities differ, the first.
+    /// Returns the length out of plane in m and the density in kg/m3; if densities differ, the first.
     pub(crate) fn depth_and_density(&self) -> (f64, f64) {
         match self {
             Self::Arch(arch) => (arch.depth_m, arch.density_kg_m3),
@@ -192,8 +192,8 @@ impl Structure {
         }
     }
 
-    /// Release rotations must stay below this limit position of the first mechanism, in rad. `None` if that mechanism
-    /// has more than one degree of freedom. Drums turn about the base as one block.
+    /// Returns the limit position of the first mechanism, in rad: initial rotations must be smaller. `None` if that mechanism has more than one
+    /// degree of freedom. Drums turn about the base as one block.
     pub(super) fn release_limit_rad(&self) -> Option<f64> {
         // The limit position does not depend on the impact model.
         let Some(links) = self.four_links(ImpactModel::MaxRestitution).ok()? else {
@@ -203,10 +203,10 @@ impl Structure {
         Some(sides.fold(f64::INFINITY, f64::min))
     }
 
-    /// The structure as a row of blocks.
+    /// Returns the structure as a row of blocks.
     ///
     /// # Errors
-    /// When it is an arch without voussoirs.
+    /// When the structure is an arch without voussoirs.
     pub fn row(&self) -> Result<Row, RowError> {
         match self {
             Self::Arch(arch) => arch.row(),
@@ -215,7 +215,7 @@ impl Structure {
         }
     }
 
-    /// The length that scales its motion, in m: the mean radius of an arch, half the diagonal of a column.
+    /// Returns the length that scales the motion, in m: the mean radius of an arch, half the diagonal of a column.
     #[must_use]
     pub fn size_m(&self) -> f64 {
         match self {
@@ -225,16 +225,16 @@ impl Structure {
         }
     }
 
-    /// The model of the motion as a row of rigid blocks whose joints open and close.
+    /// Makes the model of a row of rigid blocks whose joints open and close.
     ///
     /// # Errors
-    /// When it is an arch without voussoirs, or cannot stand.
+    /// When the structure is an arch without voussoirs, or cannot stand.
     pub fn free_hinges(&self, options: RowOptions) -> Result<FreeHinges, RowModelError> {
         FreeHinges::new(self.row()?)?.with_options(options)
     }
 }
 
-/// A row of blocks as four links, with the depth that the scenario gives.
+/// Makes the four-link model of a row of blocks, with the depth in the scenario.
 fn four_link_row<L: Into<ImpactLaw>>(
     masonry: &Masonry,
     law: L,
@@ -250,8 +250,8 @@ enum Read {
     Shape(Shape),
 }
 
-/// Reads `[arch]`. If it is `alone`, without piers or loads, with equal voussoirs or none, it must start as four links.
-/// With free hinges it must instead have voussoirs and stand.
+/// Reads `[arch]`. With `alone` the arch has no piers, fill, loads or ties; with equal voussoirs or none it must then start as four links. With
+/// free hinges it must have voussoirs and stand.
 fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<Read> {
     let circular = Circular::read(table);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
@@ -297,7 +297,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
     }
 }
 
-/// Explains why limit analysis refuses the arch, and what to change.
+/// Returns the reason why limit analysis rejects the arch, and the remedy.
 fn why_not(arch: &Arch, error: LimitError) -> String {
     let embrace_deg = arch.embrace_deg;
     let embrace = plain(embrace_deg);
@@ -327,10 +327,10 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 
 const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 
-/// Keys of `[column]` that only models with joints have.
+/// Keys of `[column]` that need a model with joints.
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
 
-/// Reads `[column]`; drums and a taper are for models of blocks only.
+/// Reads `[column]`. Drums and a taper need a model with joints.
 fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);

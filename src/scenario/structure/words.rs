@@ -1,4 +1,4 @@
-//! A structure in words: its dimensions, frame of reference and places of ties.
+//! A structure in words: dimensions, frame of reference and positions of ties.
 
 use super::Structure;
 use super::dimensions::{circular, metres};
@@ -7,7 +7,7 @@ use crate::mechanics::masonry::{FillLevel, Masonry, Shape};
 use crate::mechanics::tie::Tie;
 
 impl Structure {
-    /// The structure in words, with properties that its drawing does not show.
+    /// Returns the structure in words, with properties that its drawing does not show.
     #[must_use]
     pub fn described(&self) -> String {
         let (depth_m, density_kg_m3) = self.depth_and_density();
@@ -32,7 +32,7 @@ impl Structure {
         parts.join("; ")
     }
 
-    /// Origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
+    /// Returns the origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
     #[must_use]
     pub fn origin(&self) -> String {
         let circular = match self {
@@ -59,7 +59,7 @@ impl Structure {
         words.to_owned()
     }
 
-    /// The frame of reference and the place of each tie, a line each; empty without ties.
+    /// Returns the frame of reference and the position of each tie, one line each; empty without ties.
     #[must_use]
     pub fn tie_places(&self) -> Vec<String> {
         let mut places = self.ties_in_words();
@@ -69,7 +69,7 @@ impl Structure {
         places
     }
 
-    /// The place of each tie: its ends, and its height above the springings of an arch.
+    /// Returns the position of each tie in words: its ends, and its height above the springings of an arch.
     #[must_use]
     pub fn ties_in_words(&self) -> Vec<String> {
         let springing_m = match self {
@@ -82,7 +82,7 @@ impl Structure {
     }
 }
 
-/// The line along which span and rise are measured, in words, if the scenario gives them.
+/// Returns the line along which span and rise are measured, in words; `None` if the scenario does not give them.
 fn measured(arch: &Arch) -> Option<String> {
     let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
@@ -122,7 +122,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<String> {
     parts
 }
 
-/// Height of the intrados of the springings above the centre of the circle, in metres; rounding of a semicircle counts as zero.
+/// Returns the height of the intrados of the springings above the centre of the circle, in metres; zero for a semicircle with rounding errors.
 fn springing_m(arch: &Arch) -> f64 {
     let radius_m = arch.radius_at_m(MeasuredAt::Intrados);
     let [_, rise_m] = arch.span_and_rise_m(MeasuredAt::Intrados);
@@ -147,9 +147,9 @@ fn place(tie: &Tie, springing_m: Option<f64>) -> String {
     format!("from {from} m to {to} m{above}")
 }
 
-/// A height beside a level, in words.
+/// Returns a height relative to a level, in words.
 fn height(above_m: f64) -> String {
-    // Heights closer than a micrometre are equal.
+    // Heights up to a micrometre count as zero.
     let height = metres(above_m.abs());
     match above_m {
         -1e-6..1e-6 => "level with".to_owned(),
