@@ -16,7 +16,7 @@ macro_rules! named {
             /// All variants, in the order of their definition.
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
-            /// Its name in scenarios and results.
+            /// Returns the name in scenarios and results.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)+ }

@@ -96,7 +96,7 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
 /// Point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
-    /// Its position in the undeformed structure, in metres.
+    /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// Index of the body; `None` for a fixed point.
     pub body: Option<usize>,
@@ -113,7 +113,7 @@ impl Carried {
 /// Control point, whose displacement is reported: a point of the structure, or the common centre of several points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Control {
-    /// Its position in the undeformed structure, in metres.
+    /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// Points with their weights; the weights sum to one.
     points: Vec<(f64, Carried)>,
@@ -161,7 +161,7 @@ pub struct CurvePoint {
     pub oscillator_displacement_m: f64,
     /// Acceleration `a*` of the equivalent oscillator, in multiples of gravity.
     pub oscillator_acceleration_g: f64,
-    /// Its secant period in seconds, 0 at rest; `None` at the unstable equilibrium, where it is infinite.
+    /// Secant period of the oscillator in seconds, 0 at rest; `None` at the unstable equilibrium, where the period is infinite.
     pub secant_period_s: Option<f64>,
     /// Friction coefficient required to prevent sliding.
     pub friction: f64,

@@ -31,9 +31,9 @@ pub struct Coefficients {
 pub struct Motion {
     /// The coordinate `q`.
     pub q_rad: f64,
-    /// Its rate, times `sqrt(L/g)`.
+    /// Rate of the coordinate, times `sqrt(L/g)`.
     pub rate: f64,
-    /// Its second derivative, times `L/g`.
+    /// Second derivative of the coordinate, times `L/g`.
     pub acceleration: f64,
     /// Force per unit mass in the frame of the ground, in g: gravity less the ground's acceleration.
     pub body_force_g: Vector2<f64>,

@@ -204,7 +204,7 @@ pub(crate) use remembered;
 pub struct Dual<const D: usize> {
     /// The number.
     pub value: f64,
-    /// Its derivatives.
+    /// Derivatives of the number.
     pub slope: [f64; D],
 }
 

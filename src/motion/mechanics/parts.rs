@@ -17,9 +17,9 @@ const PARTS: usize = 720;
 pub struct Part {
     /// Position of its middle along the structure: angle from the left springing in radians, or index of the joint before it plus one half.
     pub place: f64,
-    /// Its mass, in kg.
+    /// Mass of the part, in kg.
     pub mass_kg: f64,
-    /// Its centre of gravity, in metres.
+    /// Centre of gravity of the part, in metres.
     pub centre_m: Vector2<f64>,
 }
 
@@ -30,14 +30,14 @@ pub enum Outline {
     Ring {
         /// The ring.
         ring: Ring,
-        /// Its mean radius.
+        /// Mean radius of the ring, in metres.
         mean_radius_m: f64,
-        /// Its joints, in radians from the left springing; empty if hinges open anywhere.
+        /// Joints of the ring, in radians from the left springing; empty if hinges open anywhere.
         joints_rad: Vec<f64>,
     },
     /// One body.
     Block {
-        /// Its corners.
+        /// Corners of the body, in metres.
         outline_m: Vec<Vector2<f64>>,
     },
     /// One body per block.
@@ -50,7 +50,7 @@ pub enum Outline {
 /// Undeformed section at which the position of the thrust line is known, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Section {
-    /// Its midpoint.
+    /// Midpoint of the section, in metres.
     pub middle_m: Vector2<f64>,
     /// Vector from its intrados end to its extrados end; in a column, from left to right.
     pub across_m: Vector2<f64>,

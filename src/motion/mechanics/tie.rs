@@ -31,7 +31,7 @@ impl Anchor {
 /// Tie in the undeformed structure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tie {
-    /// Its two ends.
+    /// Both ends.
     pub ends: [Anchor; 2],
     /// Stiffness: force in N per metre of stretch.
     pub stiffness_n_m: f64,

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 pub struct MovingBody {
     /// Mass of the body and of its load, in kg.
     pub mass_kg: f64,
-    /// Its centre of gravity in the undeformed structure, in metres.
+    /// Centre of gravity in the undeformed structure, in metres.
     pub centre_m: Vector2<f64>,
     /// Virtual displacement of its centre: x in the direction of the sway, y upwards.
     pub displacement: Vector2<f64>,

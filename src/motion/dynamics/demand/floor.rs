@@ -41,7 +41,7 @@ impl Mode {
         1.1 * damping_factor(damping_percent) / (self.damping_percent / 100.0).sqrt()
     }
 
-    /// Its ordinate, [C7.2.6], in g.
+    /// Returns the ordinate of the mode, [C7.2.6], in g.
     fn acceleration_g(&self, ground: &GroundSpectrum, period_s: f64, damping_percent: f64) -> f64 {
         let factor = self.amplification(damping_percent);
         let [low, high] = PLATEAU.map(|part| period_s / (part * self.t_s));

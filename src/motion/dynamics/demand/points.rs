@@ -73,7 +73,7 @@ impl PointSpectrum {
     /// # Errors
     /// When there is no row for it.
     pub fn peak_g(&self) -> Result<f64, Beyond> {
-        // It is the same at every damping.
+        // The peak acceleration does not depend on the damping.
         self.acceleration_g(0.0, self.damping_percent)
     }
 

@@ -53,7 +53,7 @@ impl ImpactModel {
         Ok(())
     }
 
-    /// Its name in scenarios and results.
+    /// Returns the name in scenarios and results.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

@@ -22,7 +22,7 @@ use crate::mechanics::geometry::ring::MassMoments;
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
 struct Body {
-    /// Its bar, undeformed.
+    /// Undeformed bar of the body.
     bar: Vector2<f64>,
     /// First mass moment over the bar, as complex numbers: it turns with the bar.
     first_per_bar: Vector2<f64>,

@@ -105,7 +105,7 @@ impl Load {
         }
     }
 
-    /// Its resultant on a body of the given moments.
+    /// Returns the resultant on a body of the given moments.
     #[must_use]
     pub fn resultant(&self, body: &MassMoments) -> Momentum {
         let mut resultant = self.turning.momentum(body);
@@ -117,7 +117,7 @@ impl Load {
 /// Rigid part of the ring, in the frame of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Part {
-    /// Its last section.
+    /// Last section of the part.
     pub end_rad: f64,
     load: Load,
     /// Resultant at the left springing if the part extended to it.

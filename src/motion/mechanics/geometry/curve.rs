@@ -30,16 +30,16 @@ const GAUSS: [(f64, f64); 4] = [
 pub enum Curve {
     /// A straight line.
     Line {
-        /// Its start.
+        /// Start of the line.
         from: Vector2<f64>,
-        /// Its end.
+        /// End of the line.
         to: Vector2<f64>,
     },
     /// An arc of a circle.
     Arc {
         /// Centre of the circle.
         centre: Vector2<f64>,
-        /// Its radius.
+        /// Radius of the circle.
         radius: f64,
         /// Angles at its start and its end, anticlockwise from the x axis, in radians.
         angles_rad: [f64; 2],

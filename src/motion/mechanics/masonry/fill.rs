@@ -19,7 +19,7 @@ pub struct Fill {
     /// Level of its top.
     #[serde(flatten)]
     pub level: FillLevel,
-    /// Its density in kg/m3.
+    /// Density of the fill in kg/m3.
     pub density_kg_m3: f64,
 }
 

@@ -60,7 +60,7 @@ pub(super) fn part(index: usize, count: usize) -> f64 {
 /// A circular arch, of equal voussoirs or with joints at given angles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CircularArch {
-    /// Its ring.
+    /// Ring of the arch.
     #[serde(flatten)]
     pub arch: Arch,
     /// Angles of its joints from the left springing, in degrees, both springings included; `None` for equal voussoirs.
@@ -140,7 +140,7 @@ pub(super) fn cut_elliptic(dimensions: &Dimensions) -> Result<CutArch, ArgumentE
 /// lengths along the middle line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BasketArch {
-    /// Its dimensions.
+    /// Span, rise, thickness, voussoirs and material.
     #[serde(flatten)]
     pub dimensions: Dimensions,
     /// Angle of the arc at the crown, in degrees; the classical construction has three arcs of 60 degrees.

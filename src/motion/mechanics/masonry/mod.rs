@@ -72,7 +72,7 @@ pub struct Dimensions {
     pub thickness_m: f64,
     /// Number of voussoirs.
     pub voussoirs: usize,
-    /// Its material.
+    /// Depth and density.
     #[serde(flatten)]
     pub material: Material,
 }
@@ -173,7 +173,7 @@ impl Shape {
 #[readonly::make]
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Masonry {
-    /// Its shape.
+    /// Shape of the arch.
     #[serde(flatten)]
     pub shape: Shape,
     /// Piers under its springings.
@@ -184,7 +184,7 @@ pub struct Masonry {
     /// Masses on its extrados.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<PlacedLoad>,
-    /// Its blocks and joints.
+    /// Blocks and joints.
     #[serde(skip)]
     pub row: Row,
     /// Fill and loads in pictures.
