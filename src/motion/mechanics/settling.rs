@@ -96,8 +96,8 @@ impl Movements {
     /// Returns whether both supports have moved as one rigid body, within rounding error.
     fn are_one_motion(&self, row: &Row) -> bool {
         let [left, right] = self.poses(row);
-        let gone_m = left.translation.norm().max(row.size_m);
-        (left.translation - right.translation).norm() <= ROUNDING * gone_m
+        let moved_m = left.translation.norm().max(row.size_m);
+        (left.translation - right.translation).norm() <= ROUNDING * moved_m
             && (left.rotation_rad() - right.rotation_rad()).abs() <= ROUNDING
     }
 
@@ -279,11 +279,11 @@ impl<'a> Follower<'a> {
         if self.hinges.is_none() && last.are_one_motion(row) {
             return Ok(self.move_along(&movements, [from, to])?);
         }
-        let way = |at: f64| Condition {
+        let path = |at: f64| Condition {
             supports: movements(at).poses(row),
             force_g,
         };
-        self.follow(&way, [from, to], (to - from) / extent)
+        self.follow(&path, [from, to], (to - from) / extent)
     }
 
     /// Moves the undeformed row as one rigid body with its supports, until gravity opens joints of the rotated row.
@@ -345,11 +345,11 @@ impl<'a> Follower<'a> {
         let mut pushed = self.clone();
         pushed.slack = ROUNDING + lacks;
         let condition = self.condition;
-        let way = move |push_g: f64| Condition {
+        let path = move |push_g: f64| Condition {
             force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),
             ..condition
         };
-        let falls_g = pushed.follow(&way, [from_g, LARGEST_PUSH_G], 1.0)?;
+        let falls_g = pushed.follow(&path, [from_g, LARGEST_PUSH_G], 1.0)?;
         // Two computations of the same push differ by rounding errors.
         Ok(falls_g.map(|capacity_g| capacity_g.max(first_g)))
     }
@@ -358,13 +358,13 @@ impl<'a> Follower<'a> {
     /// row or turns by a radian, or while a push grows by gravity. Returns the parameter at which the row falls; `None` if it reaches the end.
     fn follow(
         &mut self,
-        way: &impl Fn(f64) -> Condition,
+        path: &impl Fn(f64) -> Condition,
         [from, to]: [f64; 2],
         unit: f64,
     ) -> Result<Option<f64>, SettlingError> {
         let mut low = from;
         if self.hinges.is_none() {
-            match self.give_way(way, low, unit)? {
+            match self.give_way(path, low, unit)? {
                 Some(at) => low = at,
                 None => return Ok(Some(low)),
             }
@@ -372,13 +372,13 @@ impl<'a> Follower<'a> {
         let (mut step, mut rates) = (STEP, Vec::new());
         while low < to {
             let next = (low + step * unit).min(to);
-            let condition = way(next);
+            let condition = path(next);
             let state = self.state_in(&condition);
             let margin_there = self.margin(state.as_ref());
             let held = state.filter(|_| margin_there >= 0.0);
-            let goes_evenly = |state: &State| self.goes_evenly(state, &rates, next - low);
-            let evenly = held.as_ref().is_some_and(goes_evenly);
-            if step > STEP && !evenly {
+            let is_steady = |state: &State| self.is_steady(state, &rates, next - low);
+            let steady = held.as_ref().is_some_and(is_steady);
+            if step > STEP && !steady {
                 step = (0.25 * step).max(STEP);
                 continue;
             }
@@ -388,43 +388,43 @@ impl<'a> Follower<'a> {
                     rates = self.rates(&state, next - low).collect();
                     self.stand(&condition, state);
                 }
-                if evenly {
+                if steady {
                     step = (2.0 * step).min(LONGEST_STEP);
                 }
                 low = next;
                 continue;
             }
-            let margin = |at: f64| self.margin(self.state_in(&way(at)).as_ref());
+            let margin = |at: f64| self.margin(self.state_in(&path(at)).as_ref());
             // With ties the forces are accurate to the tolerance only.
             let is_held = self.is_held_by_ties();
             let rounding = if is_held { self.slack } else { 0.0 };
             let (last, _) = falls_below_zero(low, (next, margin_there), rounding, margin);
-            self.stand_in(&way(last));
-            match self.give_way(way, last, unit)? {
+            self.stand_in(&path(last));
+            match self.give_way(path, last, unit)? {
                 Some(at) => low = at,
                 None => return Ok(Some(last)),
             }
             (step, rates) = (STEP, Vec::new());
         }
-        self.stand_in(&way(to.max(low)));
+        self.stand_in(&path(to.max(low)));
         Ok(None)
     }
 
-    /// Returns the rotation rates of the blocks between here and another state, over a distance `way` along the path.
-    fn rates(&self, there: &State, way: f64) -> impl Iterator<Item = f64> {
+    /// Returns the rotation rates of the blocks between here and another state, over `distance` along the path.
+    fn rates(&self, there: &State, distance: f64) -> impl Iterator<Item = f64> {
         let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);
-        turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / way)
+        turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / distance)
     }
 
     /// Returns whether all blocks turn as fast as in the step `before`, and no tie yields or breaks. Returns false without a step before, as without
     /// ties.
-    fn goes_evenly(&self, there: &State, before: &[f64], way: f64) -> bool {
+    fn is_steady(&self, there: &State, before: &[f64], distance: f64) -> bool {
         let most = before.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         let alike =
-            |(before, now): (&f64, f64)| (before - now).abs() <= EVEN * most + ROUNDING / way;
+            |(before, now): (&f64, f64)| (before - now).abs() <= EVEN * most + ROUNDING / distance;
         let yielded = |memory: &TieMemory<Lanes<1>>| (memory.yielded_m, memory.is_broken());
-        let mut before_and_now = before.iter().zip(self.rates(there, way));
+        let mut before_and_now = before.iter().zip(self.rates(there, distance));
         let ties = self.stance.ties.iter().map(yielded);
         !before.is_empty() && before_and_now.all(alike) && ties.eq(there.ties.iter().map(yielded))
     }
@@ -470,16 +470,16 @@ impl<'a> Follower<'a> {
     /// Replaces hinges that become inadmissible. Returns the position along the path from which other hinges carry the row; `None` if it falls.
     fn give_way(
         &mut self,
-        way: &impl Fn(f64) -> Condition,
+        path: &impl Fn(f64) -> Condition,
         at: f64,
         unit: f64,
     ) -> Result<Option<f64>, SettlingError> {
         let before = self.hinges.clone();
-        let last = way(at);
+        let last = path(at);
         let mut parted = None;
         for nudge in NUDGES {
             let beyond = at + nudge * unit;
-            let condition = way(beyond);
+            let condition = path(beyond);
             let state = self.state_in(&condition);
             let causes = state.map_or_else(Vec::new, |state| state.beyond(-self.slack));
             let snap = |after: Option<&Pins>| Snap {

@@ -45,8 +45,8 @@ impl<'a> GroundVelocity<'a> {
     /// between times and corners; it is exact for records and constant accelerations.
     #[must_use]
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
-        let mut way = Way::new(self.clone());
-        times_s.iter().map(|time_s| way.to(*time_s)).collect()
+        let mut path = Path::new(self.clone());
+        times_s.iter().map(|time_s| path.to(*time_s)).collect()
     }
 }
 
@@ -65,7 +65,7 @@ impl GroundMotion {
 
 /// Position of the ground, advanced from its start.
 #[derive(Clone, Debug)]
-struct Way<'a> {
+struct Path<'a> {
     velocity: GroundVelocity<'a>,
     /// Current piece, time and position.
     piece: usize,
@@ -73,7 +73,7 @@ struct Way<'a> {
     at_m: Vector2<f64>,
 }
 
-impl<'a> Way<'a> {
+impl<'a> Path<'a> {
     fn new(velocity: GroundVelocity<'a>) -> Self {
         Self {
             piece: 0,
@@ -113,7 +113,7 @@ impl<'a> Way<'a> {
 /// Displacement of the right foot of a structure relative to its left foot.
 #[derive(Clone, Debug)]
 pub(in crate::dynamics) struct FeetApart<'a> {
-    ways: [Way<'a>; 2],
+    paths: [Path<'a>; 2],
     /// Time at which the relative motion ends, in seconds.
     end_s: f64,
 }
@@ -129,14 +129,14 @@ impl<'a> FeetApart<'a> {
     fn between(feet: [&'a GroundMotion; 2]) -> Self {
         let [left_s, right_s] = feet.map(GroundMotion::end_s);
         Self {
-            ways: feet.map(|ground| Way::new(GroundVelocity::new(ground))),
+            paths: feet.map(|ground| Path::new(GroundVelocity::new(ground))),
             end_s: left_s.max(right_s).max(0.0),
         }
     }
 
     /// Returns the displacement at a time not before the last one, to the right and upwards, in m.
     pub(in crate::dynamics) fn at(&mut self, time_s: f64) -> Vector2<f64> {
-        let [left, right] = &mut self.ways;
+        let [left, right] = &mut self.paths;
         let time_s = time_s.min(self.end_s);
         right.to(time_s) - left.to(time_s)
     }
@@ -144,7 +144,7 @@ impl<'a> FeetApart<'a> {
     /// Returns the displacement at a later time, in m, without advancing.
     pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
-        let [left_m, right_m] = self.ways.each_ref().map(|way| way.ahead(time_s).1);
+        let [left_m, right_m] = self.paths.each_ref().map(|path| path.ahead(time_s).1);
         right_m - left_m
     }
 
@@ -153,7 +153,7 @@ impl<'a> FeetApart<'a> {
         if time_s >= self.end_s {
             return Vector2::zeros();
         }
-        let [left_m_s, right_m_s] = self.ways.each_ref().map(|way| way.velocity.at(time_s));
+        let [left_m_s, right_m_s] = self.paths.each_ref().map(|path| path.velocity.at(time_s));
         right_m_s - left_m_s
     }
 }
