@@ -253,7 +253,7 @@ pub trait MechanismModel: Model {
     /// Returns free-standing blocks equivalent to the first mechanism to a side.
     fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
 
-    /// Returns the first mechanism to a side at a fraction `part` of the displacement at its unstable equilibrium; `None` without such a mechanism.
+    /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium; `None` without such a mechanism.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
     /// Returns the mass times the horizontal displacement of the centre of gravity, in kg m towards the side of the sway, at a coordinate of the

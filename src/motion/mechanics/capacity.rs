@@ -40,7 +40,7 @@ pub struct Displaced {
     pub friction: f64,
 }
 
-/// Returns the first mechanism to a side at a fraction `part` of the displacement at its unstable equilibrium. `None` without such a mechanism.
+/// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
 #[must_use]
 pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
     let link = structure.link_from(sway, 0)?;
@@ -186,7 +186,7 @@ pub struct Capacity {
     pub ties: Vec<TieOnTheWay>,
 }
 
-/// Fractions of the displacement at the unstable equilibrium at which a tie yields or breaks.
+/// Fractions of the rotation at the unstable equilibrium at which a tie yields or breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivesWay {
     /// Fraction at which the tie first yields; `None` if it does not.
@@ -224,12 +224,12 @@ pub enum CapacityError {
 /// Number of intervals of a capacity curve.
 const INTERVALS: u32 = 100;
 
-/// Step of the central differences for the initial velocities, as a fraction of the displacement at the unstable equilibrium. Their error is of the
+/// Step of the central differences for the initial velocities, as a fraction of the rotation at the unstable equilibrium. Their error is of the
 /// order of its square.
 const START: f64 = 1e-5;
 
 impl Capacity {
-    /// Computes the capacity of a mechanism. `displaced` returns its positions at fractions of the displacement at the unstable equilibrium; `masses`
+    /// Computes the capacity of a mechanism. `displaced` returns its positions at fractions of the rotation at the unstable equilibrium; `masses`
     /// are in kg.
     ///
     /// # Errors

@@ -8,11 +8,11 @@ use crate::mechanics::sway::Sway;
 /// Rotations of the bodies of a mechanism, or their rates.
 pub(super) type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
 
-/// A structure on moving ground at an instant.
+/// State of a structure on moving ground at one time.
 pub(super) type Now<'a, C> = Moment<'a, <C as MechanismChain>::Mechanism>;
 
-/// Returns the rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground: a sway to the left is the mirror
-/// image, which swaps the bodies and changes the sign of their rotations.
+/// Returns the rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground. A sway to the left is reflected,
+/// which reverses the order of the bodies and the sign of their rotations.
 pub(super) fn seen_from_ground<C: MechanismChain>(
     sway: Sway,
     mut rotations: Rotations<C>,

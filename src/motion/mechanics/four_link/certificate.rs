@@ -1,16 +1,13 @@
-//! The most kinetic energy that an impact can leave: the projection onto all admissible fields.
+//! Largest kinetic energy after an impact: projection onto all admissible fields.
 //!
-//! The paper chooses the mechanism after an impact among those with four hinges, and there may be a better
-//! motion with more. Let `K` be the velocity fields that open and never close a joint of the ring, without
-//! sliding: any number of rotations about the edge points of joints, none of them backwards. `K` is a convex
-//! cone, and the velocity `w` of the closing mechanism has one nearest field `P w` in it, the motion after the
-//! perfectly inelastic impact of Moreau. No four-link mechanism with hinges at these joints exceeds its
-//! restitution `r = <Pw, Pw> / <w, w>`.
+//! The paper selects the mechanism after an impact among those with four hinges; a motion with more hinges may keep more energy. Let `K` be the
+//! velocity fields that open joints of the ring and never close them, without sliding: any number of opening rotations about the edge points of
+//! joints. `K` is a convex cone. The velocity `w` of the closing mechanism has a unique nearest field `P w` in `K`, the motion after the perfectly
+//! inelastic impact of Moreau. No four-link mechanism with hinges at these joints exceeds its restitution `r = <Pw, Pw> / <w, w>`.
 //!
-//! On a ring cut into rigid voussoirs the projection is a convex quadratic program. Its multipliers are the
-//! impulses at the edges of the joints. Compression at both edges means that the resultant passes inside the
-//! ring, so the optimality conditions are the theorem of the paper in its exact form: a motion is the projection
-//! if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
+//! For a ring cut into rigid voussoirs, the projection is a convex quadratic program. Its multipliers are the impulses at the edges of the joints.
+//! Compression at both edges means that the resultant passes inside the ring. The optimality conditions are therefore the theorem of the paper in its
+//! exact form: a motion is the projection if and only if its impulse line is admissible (Moreau's decomposition of `w` into polar parts).
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, SolverStatus};
@@ -24,8 +21,8 @@ use crate::mechanics::geometry::field::{Field, Twist};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 
-/// Number of equal parts from which the projection of a continuous ring is computed by default. The error of
-/// `r` falls with the square of the number; here it is about 1e-6, by test.
+/// Default number of equal parts for the projection of a continuous ring. The error of `r` decreases with the square of this number; here it is about
+/// 1e-6, by test.
 pub const DEFAULT_JOINTS: usize = 720;
 
 /// The field nearest to the closing velocity, over all admissible fields.
@@ -56,8 +53,8 @@ impl Projection {
     }
 }
 
-/// Joints that rotate less than this fraction of the largest rotation, or of the rate of the closing mechanism,
-/// count as closed: the solver leaves that much at the ends of zones, where both opening and impulse vanish.
+/// Rotation of a joint, over the largest rotation or the rate of the closing mechanism, below which the joint counts as closed. The solver leaves
+/// such errors at the ends of zones, where both opening and impulse are zero.
 const MIN_OPENING: f64 = 1e-3;
 
 /// A joint at the impact; rates and impulses are per unit rate of the closing mechanism.
@@ -81,12 +78,11 @@ pub struct ProjectionError {
     reason: SolverStatus,
 }
 
-/// Joints at which the projection opens the ring: those of the voussoirs, or the springings and the sections
-/// between `count` equal parts.
+/// Returns the joints at which the projection may open the ring: those of the voussoirs, or the springings and the sections between `count` equal
+/// parts.
 ///
-/// In a continuous ring the hinges of `mechanism`, the one to be certified, replace the joints nearest to them.
-/// The cone then contains that mechanism, and bounds its restitution coefficient from above for any number of
-/// joints.
+/// In a continuous ring the hinges of `mechanism`, if given, replace the joints nearest to them. The cone then contains this mechanism, and bounds
+/// its restitution coefficient from above for any number of joints.
 #[must_use]
 pub fn joints_rad(
     profile: &dyn Profile,
@@ -100,7 +96,7 @@ pub fn joints_rad(
             let mut joints = profile.sections(count);
             let (spacing, end) = (joints[1], profile.end());
             let mut hinges: Vec<f64> = mechanism.map_or(Vec::new(), |m| m.hinges_rad.to_vec());
-            // A hinge at a springing already has its joint; a body in between would have no mass.
+            // A hinge at a springing already has a joint; a body between the two would have no mass.
             hinges.retain(|hinge| *hinge > 1e-6 * spacing && end - hinge > 1e-6 * spacing);
             joints.retain(|joint| {
                 let apart = |hinge: &f64| (hinge - joint).abs() > 0.5 * spacing;
@@ -113,17 +109,17 @@ pub fn joints_rad(
     }
 }
 
-/// Returns the field nearest to `before` among those that open and never close the given joints.
+/// Returns the field nearest to `before` among those that open the given joints and never close them.
 ///
-/// The variables are the motions of the bodies between the joints, in axes in which their kinetic energy is
-/// half a sum of squares: what is sought is the point of a polyhedral cone nearest to a given point. Each joint
-/// couples two neighbours only, so that the work grows with the number of joints.
+/// The variables are the motions of the bodies between the joints, in axes in which their kinetic energy is half a sum of squares. The solution is
+/// the point of a polyhedral cone nearest to a given point. Each joint couples two neighbours only, so the effort is proportional to the number of
+/// joints.
 ///
 /// # Errors
-/// When the solver does not reach its tolerance.
+/// If the solver does not reach its tolerance.
 ///
 /// # Panics
-/// When there are fewer than two joints.
+/// If there are fewer than two joints.
 pub fn project(
     before: &Field,
     profile: &dyn Profile,
@@ -196,7 +192,7 @@ pub fn project(
     })
 }
 
-/// Components of a field, over the scale, along the motions of the bodies between the joints.
+/// Returns the components of a field, divided by `scale`, along the motions of the bodies between the joints.
 fn components(
     field: &Field,
     profile: &dyn Profile,
@@ -215,8 +211,8 @@ fn components(
     components.collect()
 }
 
-/// Motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half:
-/// two translations and the rotation about its centre of gravity.
+/// Returns motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half: two translations and the
+/// rotation about its centre of gravity.
 fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twist; 3] {
     let moments = profile.sector(from_rad, to_rad);
     let shift = 1.0 / moments.mass.sqrt();

@@ -37,8 +37,8 @@ impl ImpulseLine {
         }
     }
 
-    /// Returns the impulses at the hinges A, B, C, D on the part towards the crown: by the ground on the left body, by the left body on the middle
-    /// one, by the right body on the middle one, by the ground on the right body.
+    /// Returns the impulses at the hinges A, B, C, D on the part towards the crown. At A and D the ground acts on the left and the right body; at B
+    /// and C these bodies act on the middle one.
     ///
     /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
     #[must_use]

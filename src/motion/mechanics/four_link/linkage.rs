@@ -1,11 +1,10 @@
-//! The four-link mechanism at finite rotations: a four-bar linkage in closed form.
+//! Four-link mechanism at finite rotations: a four-bar linkage in closed form.
 //!
-//! Between impacts the hinges stay where they are in the material. A, D and the ground are one bar, the
-//! three moving bodies the others. The coordinate `q` is the **clockwise rotation of the left body** A-B
-//! (of the mechanism that sways right). While the arch falls, the angle at B flattens until A, B and C are
-//! on one line, which is the limit position of the right body. If the right body's rotation were the
-//! coordinate, the others would turn infinitely fast there. With that of the left body nothing special
-//! happens, and the equation of motion stays well conditioned beyond the limit.
+//! Between impacts the hinges stay at the same points of the material. A, D and the ground form one bar, the three moving bodies the others. The
+//! coordinate `q` is the **clockwise rotation of the left body** A-B (of the mechanism that sways right). While the arch falls, the angle at B
+//! flattens until A, B and C are on one line, the limit position of the right body. With the right body's rotation as coordinate, the rates of the
+//! others would be infinite there. With that of the left body all rates are finite, and the equation of motion stays well conditioned beyond the
+//! limit.
 
 use std::sync::Arc;
 
@@ -24,7 +23,7 @@ use crate::mechanics::geometry::ring::MassMoments;
 struct Body {
     /// Undeformed bar of the body.
     bar: Vector2<f64>,
-    /// First mass moment over the bar, as complex numbers: it turns with the bar.
+    /// First mass moment over the bar, as complex numbers; this ratio is constant, because both rotate together.
     first_per_bar: Vector2<f64>,
     /// Polar mass moment.
     polar: f64,
@@ -56,9 +55,9 @@ impl Body {
     }
 }
 
-/// The four-bar linkage of a mechanism that sways right; lengths in mean radii, unit density.
+/// Four-bar linkage of a mechanism that sways right; lengths in mean radii, unit density.
 ///
-/// The middle body moves with B and turns about it; its mass is counted as a load of the left body at B.
+/// The middle body moves with B and rotates about B; its mass counts as a load of the left body at B.
 #[derive(Clone, Debug)]
 pub struct Linkage {
     profile: Arc<dyn Profile>,
@@ -69,11 +68,11 @@ pub struct Linkage {
     middle: Body,
     /// Bar D-C.
     right: Body,
-    /// From A to D.
+    /// Vector from A to D.
     ground: Vector2<f64>,
 }
 
-/// The bars at some `q`.
+/// Bars at a given `q`.
 struct Bars {
     left: Vector2<f64>,
     middle: Vector2<f64>,
@@ -137,15 +136,15 @@ impl Linkage {
         }
     }
 
-    /// Returns the rotation rates of the middle and the right body per unit `q'` (that of the left is -1): cross products close the loop of
+    /// Returns the rotation rates of the middle and the right body per unit `q'`; that of the left body is -1. They satisfy the closure of
     /// velocities.
     fn rates(bars: &Bars) -> (f64, f64) {
         let [middle, right] = [bars.right, bars.middle].map(|bar| bars.left.perp(&bar));
         (middle * bars.per_cross, right * bars.per_cross)
     }
 
-    /// Derivatives of the rates of the middle and the right body with respect to `q`: they close the loop
-    /// of accelerations, in which those along the bars are known.
+    /// Returns the derivatives by `q` of the rates of the middle and the right body. They satisfy the closure of accelerations, with known
+    /// accelerations along the bars.
     fn slopes(bars: &Bars, middle_rate: f64, right_rate: f64) -> (f64, f64) {
         let inward = bars.left + bars.middle * (middle_rate * middle_rate)
             - bars.right * (right_rate * right_rate);
@@ -211,8 +210,8 @@ impl Linkage {
         ThrustLine::new(&*self.profile, parts)
     }
 
-    /// Returns the limit position, the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
-    /// cannot follow any further.
+    /// Returns the limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
+    /// cannot move further.
     #[must_use]
     pub fn limit_rad(&self) -> f64 {
         let [left, middle, right, base] =
@@ -252,7 +251,7 @@ impl Mechanism for Linkage {
             first * middle_rate + self.right.first(bars.right) * right_rate
                 - self.left.first(bars.left),
         );
-        // The middle body moves with B and turns about it: this couples the left rate with its own.
+        // The middle body moves with B and rotates about B, which couples its rate with that of the left body.
         let coupling = bars.left.dot(&first);
         let coupling_slope = -(1.0 + middle_rate) * bars.left.perp(&first);
         Coefficients {
@@ -269,8 +268,8 @@ impl Mechanism for Linkage {
         }
     }
 
-    /// Mass times displacement of the common centre of gravity at `q`: the integrals of `S_x` and
-    /// `S_y` from zero. Times gravity the second is the potential energy.
+    /// Returns the mass times the displacement of the common centre of gravity at `q`: the integrals of `S_x` and `S_y` from zero. The second one
+    /// times gravity is the potential energy.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let bars = self.bars(q_rad);
         self.left.first(bars.left - self.left.bar)

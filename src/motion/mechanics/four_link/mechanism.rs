@@ -1,9 +1,8 @@
-//! The four-link mechanism in the undeformed configuration.
+//! Four-link mechanism in the undeformed configuration.
 //!
-//! One orientation is enough: everything in [`crate::mechanics`] is about the mechanism that **sways right**, with
-//! hinges on intrados, extrados, intrados, extrados from the left springing. A sway to the left is a sway to the right
-//! seen in a mirror ([`Sway`]). A ring is its own mirror image, so that left and right agree to the last bit; a row
-//! of blocks may not be, and then has a profile for either side.
+//! One orientation is sufficient: [`crate::mechanics`] always describes the mechanism that **sways right**, with hinges on intrados, extrados,
+//! intrados, extrados from the left springing. A sway to the left is reflected ([`Sway`]). A ring is symmetric, so left and right agree exactly. A
+//! row of blocks may not be symmetric, and then has a profile for each side.
 
 use nalgebra::Vector2;
 
@@ -42,11 +41,10 @@ pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
     })
 }
 
-/// A kinematically admissible four-link mechanism that sways right.
+/// Kinematically admissible four-link mechanism that sways right.
 ///
-/// The hinges A, B, C, D divide the ring into bodies that stand (before A, after D) and move: left
-/// (A-B), middle (B-C) and right (C-D). Its rate `q'` is the clockwise rate of the left body, the one
-/// that turns about the first hinge; see [`super::linkage`] for the reason.
+/// The hinges A, B, C, D divide the ring into bodies at rest (before A, after D) and moving bodies: left (A-B), middle (B-C) and right (C-D). The
+/// rate `q'` is the clockwise rate of the left body, which rotates about the first hinge; see [`super::linkage`] for the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourLink {
     /// Sections of the hinges A, B, C, D, in radians from the left springing.

@@ -1,9 +1,8 @@
 //! Lines of resultants: the thrust line of a load and the impulse line of an impact.
 //!
-//! Cut the ring at a section. The part before it transmits to the part after it the reaction
-//! at the left springing plus the whole load in between: a force with a line of action, or, when
-//! the load is a change of velocity, an impulse. The points where these lines cross their sections
-//! make the thrust line (the impulse line). Through a hinge it passes by definition.
+//! Consider a section of the ring. The part before the section transmits to the part after it the reaction at the left springing plus all loads in
+//! between. This is a force with a line of action or, if the load is a change of velocity, an impulse. The points where these lines cross their
+//! sections form the thrust line (impulse line). It passes through every hinge by definition.
 
 use std::sync::Arc;
 
@@ -42,7 +41,7 @@ pub struct SectionResultant {
 }
 
 impl SectionResultant {
-    /// Components and position, at a section, of a force with its moment about the centre of the ring.
+    /// Returns components and position, at a section, of a force with its moment about the centre of the ring.
     #[must_use]
     pub fn new(profile: &dyn Profile, angle_rad: f64, resultant: &Momentum) -> Self {
         let normal = resultant.linear.dot(&profile.onward(angle_rad));
@@ -62,9 +61,9 @@ impl SectionResultant {
 /// An extreme value and the section where it is found, in radians from the left springing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremum {
-    /// The value.
+    /// Extreme value.
     pub value: f64,
-    /// The section.
+    /// Section of this value.
     pub angle_rad: f64,
 }
 
@@ -75,8 +74,7 @@ pub struct Extremes {
     pub eccentricity_ratio: Extremum,
     /// Smallest normal resultant.
     pub normal: Extremum,
-    /// Largest ratio of the tangential to the normal resultant: the friction coefficient needed to prevent
-    /// sliding; infinite if there is tension.
+    /// Largest ratio of the tangential to the normal resultant, the friction coefficient required to prevent sliding; infinite if there is tension.
     pub friction_ratio: Extremum,
 }
 
@@ -122,7 +120,7 @@ impl ResultantLine {
         self.start + self.load.momentum_to(&*self.profile, angle_rad)
     }
 
-    /// Components and position at a section.
+    /// Returns components and position of the resultant at a section.
     #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))

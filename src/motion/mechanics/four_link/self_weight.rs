@@ -1,6 +1,6 @@
-//! Whether a ring carries its own weight, by statics alone.
+//! Stability of a ring under its own weight, by statics only.
 //!
-//! The static theorem: a ring without tensile strength stands if and only if some thrust line under its weight
+//! The static theorem: a ring without tensile strength is stable if and only if a thrust line under its weight
 //! stays inside it at every section (at every joint, for voussoirs, which are rigid). Ring and weight are
 //! symmetric, and the mean of an admissible line and its mirror image is admissible: so only symmetric lines
 //! matter, whose resultant at the crown is horizontal. That leaves two unknowns, the thrust `h` and its moment
@@ -14,12 +14,12 @@
 //! r_i N <= k + c (1 - cos phi) <= r_e N
 //! ```
 //!
-//! with `r_i` and `r_e` the radii of intrados and extrados: a linear programme in two variables. For a given
+//! with `r_i` and `r_e` the radii of intrados and extrados: a linear program in two variables. For a given
 //! `h` the sections bound `k` from below by a convex function of `h` and from above by a concave one; the ring
-//! stands if there is room between them at the best `h`. Where hinges sit anywhere the governing sections are
+//! is stable if there is an interval between them at the best `h`. If hinges may be anywhere, the governing sections are
 //! known in closed form or by one equation, so the answer is exact to rounding for both kinds of ring.
 //!
-//! A thicker ring stands if a thinner one does: the line of the thinner one is inside, since by the right-hand
+//! A thicker ring is stable if a thinner one is: the line of the thinner one is inside, since by the right-hand
 //! inequality `r_e N` grows with `t` faster than `c (1 - cos phi)` up to `t = 2`.
 
 use super::mechanism::HingeSites;
@@ -33,17 +33,17 @@ pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
     margin.is_none_or(|margin| margin > 0.0)
 }
 
-/// Thrust lines of a ring under its own weight that are their own mirror images.
+/// Symmetric thrust lines of a ring under its own weight.
 struct SymmetricLines {
     ring: Ring,
     sites: HingeSites,
-    /// Angles from the crown, ascending: the joints of half the ring, or else its crown and springing.
+    /// Angles from the crown, ascending: the joints of half the ring, or its crown and springing.
     sections_rad: Vec<f64>,
-    /// Distance of the weight of a slice from the centre, `c`.
+    /// Distance `c` of the weight of a slice from the centre.
     slice_radius: f64,
 }
 
-/// A bound on `k`, with its slope over `h`.
+/// Bound on `k`, with its derivative by `h`.
 #[derive(Clone, Copy)]
 struct Bound {
     value: f64,
@@ -71,7 +71,7 @@ impl SymmetricLines {
     /// Returns the `k` for which the thrust line with thrust `h` meets an edge at a section.
     fn touching(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
         let (sin, cos) = angle_rad.sin_cos();
-        // 1 - cos phi without cancellation in shallow rings.
+        // This form of 1 - cos phi avoids cancellation in shallow rings.
         let drop = 2.0 * (0.5 * angle_rad).sin().powi(2);
         let radius = self.ring.radius(edge);
         Bound {
@@ -92,10 +92,10 @@ impl SymmetricLines {
         least.expect("a ring has a springing")
     }
 
-    /// Returns the largest `k` of a line of thrust `h` that is nowhere above the extrados.
+    /// Returns the largest `k` of a thrust line with thrust `h` that is nowhere above the extrados.
     ///
-    /// From crown to springing [`Self::touching`] first rises, if at all, and then falls (see
-    /// [`Self::haunch_rad`]): it is least at one of the two.
+    /// From crown to springing [`Self::touching`] may first increase, and then decreases (see [`Self::haunch_rad`]): its minimum is at one of the
+    /// two.
     fn largest(&self, h: f64) -> Bound {
         let sections = self.sections_rad.iter();
         let bounds = sections.map(|angle| self.touching(Edge::Extrados, h, *angle));
@@ -103,11 +103,11 @@ impl SymmetricLines {
         largest.expect("a ring has a springing")
     }
 
-    /// Returns the section of a continuous ring at which a line of thrust `h` that stays above the intrados touches it: where [`Self::touching`] is
-    /// largest.
+    /// Returns the section of a continuous ring at which a thrust line with thrust `h` above the intrados touches the intrados: where
+    /// [`Self::touching`] is largest.
     ///
-    /// Its slope vanishes where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side rises from 1 to infinity
-    /// between crown and 90 degrees: the slope changes its sign at most once, from positive to negative.
+    /// Its slope is zero where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side increases from 1 to infinity between crown and 90 degrees.
+    /// The slope therefore changes its sign at most once, from positive to negative.
     fn haunch_rad(&self, h: f64) -> f64 {
         let radius = self.ring.radius(Edge::Intrados);
         let rises = |angle: f64| {

@@ -1,10 +1,8 @@
 //! Piecewise rigid fields over the ring, and their momenta.
 //!
-//! A velocity field in which every part of the ring moves as a rigid body, a uniform acceleration
-//! field such as gravity, and the change of velocity at an impact are the same object: rigid
-//! motions ([`Twist`]) on consecutive sectors. Two such fields have a scalar product, the integral
-//! of `rho v . w`, which is twice a kinetic energy when `v = w` and a virtual power when one of them
-//! is a load per unit mass.
+//! A field consists of rigid motions ([`Twist`]) on consecutive sectors. Examples are a velocity field with rigid parts of the ring, a uniform
+//! acceleration field such as gravity, and the change of velocity in an impact. Two fields have a scalar product, the integral of `rho v . w`. It is
+//! twice a kinetic energy for `v = w`, and a virtual power if one of the fields is a load per unit mass.
 
 use std::ops::Add;
 
@@ -113,8 +111,8 @@ impl Field {
         momenta.fold(Momentum::ZERO, Add::add)
     }
 
-    /// Returns the scalar product with another field: the integral of `rho v . w` over the ring, cut at the sections of both (the seven bodies of Eq.
-    /// (3) of the paper, up to nine in general).
+    /// Returns the scalar product with another field: the integral of `rho v . w` over the ring. The sum runs over the sectors between the sections
+    /// of both fields.
     #[must_use]
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let mut sum = 0.0;

@@ -94,7 +94,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the mechanism at a fraction `part` of its ultimate displacement.
+    /// Returns the mechanism at a fraction `part` of its ultimate rotation.
     ///
     /// # Panics
     /// Never: the bodies meet at all displacements of the mechanism.
@@ -119,7 +119,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the fractions of the ultimate displacement at which each tie yields and breaks. Yielding after the break does not count.
+    /// Returns the fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
     #[must_use]
     pub fn ties_give_way(&self) -> Vec<GivesWay> {
         let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
@@ -136,7 +136,7 @@ impl<'a> Held<'a> {
         ties.collect()
     }
 
-    /// Returns the interval of fractions of the ultimate displacement in which an irreversible event of a tie happens: neighbouring numbers, or twice
+    /// Returns the interval of fractions of the ultimate rotation in which an irreversible event of a tie happens: neighbouring numbers, or twice
     /// zero if it has happened at the start; `None` if it never happens.
     fn first(&self, tie: usize, does: impl Fn(&TieMemory<Lanes<1>>) -> bool) -> Option<[f64; 2]> {
         let does_at = |part: f64| {
