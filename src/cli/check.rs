@@ -31,7 +31,7 @@ pub struct Arguments {
     figure: FigureOption,
 }
 
-/// Gravity for record files without a scenario.
+/// Gravity for record files without a scenario, in m/s2.
 const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments) -> Result<(), Failure> {
@@ -53,7 +53,7 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     refused(&wrong)
 }
 
-/// The contents of a file, as text and as JSON.
+/// Returns the contents of a file, as text and as JSON.
 fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
     if Format::of_file(file).is_some() || is_format_given(arguments) {
         return check_record(file, arguments);
@@ -78,7 +78,7 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
     ))
 }
 
-/// Reads the scenario. If its only faults concern motion, warns of them and reads it for static analysis.
+/// Reads the scenario. If its only faults concern motion, prints them as warnings and reads it for static analysis.
 fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     let wrong = match input.read(None) {
         Err(Failure::Input(wrong)) => wrong,
@@ -93,7 +93,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     Ok(scenario)
 }
 
-/// The blocks of the model of motion, or the structure itself if the model has none. If supports have moved, blocks are drawn in their
+/// Returns the blocks of the model of motion, or the structure itself if the model has no blocks. On moved supports blocks are in their
 /// positions at time 0.
 fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let joints = scenario.motion.hinges().has_joints();
@@ -121,15 +121,15 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     Ok(scene)
 }
 
-/// True if `--set` gives the key `format`, so the file is a record.
+/// Returns true if `--set` gives the key `format`: the file is then a record.
 fn is_format_given(arguments: &Arguments) -> bool {
     let mut keys = arguments.set.assignments().iter();
     keys.any(|assignment| assignment.key() == "format")
 }
 
-/// The contents of a record file, as text and as JSON.
+/// Returns the contents of a record file, as text and as JSON.
 fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
-    // Files of other formats may be among the tables; keys of tables do not apply to them.
+    // Keys of tables do not apply to files of other formats among the arguments.
     let is_table = |file: &Path| match Format::of_file(file) {
         Some(format) => format == Format::Csv,
         None => is_format_given(arguments),
@@ -224,7 +224,7 @@ fn record_text(series: &Series, intensity: &Intensity) -> String {
     )
 }
 
-/// The format and the unit of a record.
+/// Returns format and unit of a record, in words.
 fn kind(series: &Series) -> String {
     let format = match series.layout.format {
         Format::At2 => "AT2 file (PEER)",

@@ -20,7 +20,7 @@ use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, print, warn};
 
-/// The model of a scenario.
+/// Makes the model of mechanisms of a scenario.
 pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
     let model = scenario.mechanisms();
     model.map_err(|error| Failure::Input(error.to_string()))
@@ -67,7 +67,7 @@ pub fn answer(answer: &Answer, format: Format) -> Result<(), Failure> {
     }
 }
 
-/// The four-link model of a scenario; the error for a column begins with `what`, a subject and its verb.
+/// Makes the four-link model of a scenario. `what` is the subject and verb of the error for a column.
 pub fn four_links(scenario: &Scenario, what: &str) -> Result<FourLinks, Failure> {
     let model = scenario.structure.four_links(scenario.motion.impact());
     model

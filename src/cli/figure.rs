@@ -33,7 +33,7 @@ pub struct FigureOption {
 }
 
 impl FigureOption {
-    /// How pictures are laid out.
+    /// Returns the layout of pictures.
     pub fn get(self) -> Result<Figure, Failure> {
         let mut figure = self.figure_width.unwrap_or(Figure::SCREEN);
         if let Some(text_pt) = self.font_size {
@@ -45,7 +45,7 @@ impl FigureOption {
         Ok(figure)
     }
 
-    /// A folder whose pictures are written in the chosen format.
+    /// Sets the format of pictures of a folder.
     pub fn printed(self, place: Destination) -> Destination {
         place.with_pictures(self.figure_format)
     }
@@ -61,7 +61,7 @@ pub struct PanelsOption {
 }
 
 impl PanelsOption {
-    /// The figure with the chosen panels.
+    /// Selects the chosen panels of a figure.
     pub fn of(&self, mut figure: Figure) -> Figure {
         for panel in &self.panels {
             figure.panels.get_or_insert_default()[*panel as usize] = true;

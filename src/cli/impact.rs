@@ -48,7 +48,7 @@ pub struct Arguments {
 }
 
 impl Arguments {
-    /// Whether an option for arches only is given.
+    /// Returns true if an option for arches only is given.
     fn of_arches_only(&self) -> bool {
         self.models || self.certificate || self.line.is_some() || self.plot.is_some()
     }

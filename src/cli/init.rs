@@ -39,13 +39,13 @@ enum Kind {
     Verify,
 }
 
-/// The file that describes all keys of scenarios to editors.
+/// Name of the file with the JSON schema of scenarios, for editors.
 const SCHEMA: &str = "archrock.schema.json";
-/// The record file that is written beside scenarios with a record.
+/// Name and contents of the record file that is written beside scenarios with a record.
 const RECORD: (&str, &str) = ("record.csv", include_str!("init/record.csv"));
 
 impl Kind {
-    /// Name and text of the scenario, the command that runs it, and true if it has a record.
+    /// Returns name and text of the scenario, the command for it, and true if it has a record.
     const fn about(self) -> (&'static str, &'static str, &'static str, bool) {
         match self {
             Self::Arch => ("arch", include_str!("init/arch.toml"), "run", false),
@@ -92,7 +92,7 @@ fn cannot_write(path: &Path, error: &io::Error) -> Failure {
     Failure::Input(format!("cannot write {}: {error}", path.display()))
 }
 
-/// Writes a new file; refuses to replace one that exists.
+/// Writes a new file; an existing file is an error.
 fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
     let cannot = |error: io::Error| match error.kind() {
         ErrorKind::AlreadyExists => Failure::Input(format!(

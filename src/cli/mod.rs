@@ -151,7 +151,7 @@ impl From<OutputError> for Failure {
     }
 }
 
-/// The result, or `None` if the input is wrong, which is noted.
+/// Returns the result. If the input is wrong, adds the message to `wrong` and returns `None`.
 fn noted<T>(result: Result<T, Failure>, wrong: &mut Vec<String>) -> Result<Option<T>, Failure> {
     match result {
         Err(Failure::Input(message)) => {
@@ -162,7 +162,7 @@ fn noted<T>(result: Result<T, Failure>, wrong: &mut Vec<String>) -> Result<Optio
     }
 }
 
-/// Fails if anything is wrong.
+/// Returns an error if there is any message.
 fn refused(wrong: &[String]) -> Result<(), Failure> {
     match wrong {
         [] => Ok(()),
@@ -196,7 +196,7 @@ pub fn main() -> ExitCode {
         Err(Failure::Work(message)) => (1, message),
         Err(Failure::Input(message)) => (2, message),
     };
-    // When standard error fails there is nowhere to report it.
+    // If standard error fails, there is no place for a message.
     let _ = writeln!(io::stderr(), "error: {}", shown_lines(&message));
     ExitCode::from(code)
 }
@@ -218,8 +218,7 @@ const REPLACED: [(&str, &str); 4] = [
     ),
 ];
 
-/// Adds to the error the replacement of a command or option of earlier versions, or the command that was probably meant; two swapped
-/// letters count as one mistake.
+/// Adds to the error the replacement of a former command or option, or the most similar command; two swapped letters count as one mistake.
 fn likely(mut error: clap::Error) -> clap::Error {
     for kind in [ContextKind::InvalidSubcommand, ContextKind::InvalidArg] {
         let Some(ContextValue::String(given)) = error.get(kind) else {
@@ -243,10 +242,10 @@ fn likely(mut error: clap::Error) -> clap::Error {
     error
 }
 
-/// More mistakes than these are no typing error.
+/// Largest number of typing mistakes in a command.
 const FAR: usize = 2;
 
-/// Warns of unlikely values in a scenario or a record.
+/// Prints warnings about unlikely values in a scenario or a record.
 fn warn(unlikely: &[String]) {
     for unlikely in unlikely {
         progress::say(&format!("warning: {unlikely}"));
@@ -269,14 +268,14 @@ fn show(results: &Results, format: Format) -> Result<(), Failure> {
     }
 }
 
-/// Prints summaries as JSON: one by itself, several as an array.
+/// Prints summaries as JSON: one summary alone, several as an array.
 fn print_all(summaries: impl IntoIterator<Item = Value>) -> Result<(), Failure> {
     let mut all: Vec<Value> = summaries.into_iter().collect();
     let only = (all.len() == 1).then(|| all.pop()).flatten();
     print(&pretty(&only.unwrap_or(Value::Array(all))))
 }
 
-/// Prints a result on standard output. Names in it may hold control characters that a terminal would obey.
+/// Prints a result on standard output. Control characters in names are escaped, because a terminal would obey them.
 fn print(text: &str) -> Result<(), Failure> {
     let text = shown_lines(text);
     let mut out = io::stdout().lock();

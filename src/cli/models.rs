@@ -7,7 +7,7 @@ use super::Failure;
 use super::progress::say;
 use super::scenario_file::Input;
 
-/// Four links and free hinges.
+/// Value of the option for both rigid models: four links and free hinges.
 const BOTH: &str = "both";
 
 fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
@@ -31,7 +31,7 @@ pub struct ModelsOption {
 }
 
 impl ModelsOption {
-    /// Reads the scenario once for each chosen model; without a choice, with the model of its tables.
+    /// Reads the scenario once for each chosen model; without a choice, once with the model of its tables.
     pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
         let mut models: Vec<Hinges> = Vec::new();
         for hinges in self.hinges.iter().flatten() {
@@ -46,7 +46,7 @@ impl ModelsOption {
         scenarios.collect()
     }
 
-    /// Reads a scenario with one model.
+    /// Reads a scenario with one model; several models are an error.
     pub fn read_one(&self, input: &Input<'_>, command: &str) -> Result<Scenario, Failure> {
         let mut scenarios = self.read(input)?;
         if scenarios.len() > 1 {
@@ -57,7 +57,7 @@ impl ModelsOption {
     }
 }
 
-/// Warns of unlikely numbers of a scenario, and of a table that its model ignores.
+/// Prints warnings about unlikely numbers of a scenario, and about a table that its model ignores.
 pub fn warn_of(scenarios: &[Scenario]) {
     super::warn(&scenarios[0].unlikely());
     if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {

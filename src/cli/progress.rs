@@ -8,20 +8,20 @@ use std::time::{Duration, Instant};
 use archrock::scenario::shown_lines;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Whether only errors and results are printed.
+/// True if only errors and results are printed.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// Chooses whether only errors and results are printed.
+/// Sets whether only errors and results are printed.
 pub fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
-/// Whether Ctrl-C was pressed.
+/// True after Ctrl-C.
 pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
-/// On Ctrl-C: ends the work between two lines of its file; on a second Ctrl-C, at once.
+/// Installs the handler of Ctrl-C: the first one ends the work between two lines of its file, the second one ends the program.
 pub fn listen_to_interrupts() {
-    // Without the handler Ctrl-C still ends the program, without a message.
+    // Without the handler Ctrl-C ends the program without a message.
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {
             process::exit(INTERRUPTED_CODE);
@@ -29,7 +29,7 @@ pub fn listen_to_interrupts() {
     });
 }
 
-/// The exit code of shells for a program ended by Ctrl-C.
+/// Exit code of shells for a program that was ended by Ctrl-C.
 pub const INTERRUPTED_CODE: i32 = 130;
 
 /// Prints a line on standard error, unless the program is quiet.
@@ -41,27 +41,27 @@ pub fn say(text: &str) {
 
 /// Prints a line on standard error.
 pub fn say_always(text: &str) {
-    // When standard error fails there is nowhere to report it.
+    // If standard error fails, there is no place for a message.
     let _ = writeln!(io::stderr(), "{}", shown_lines(text));
 }
 
-/// Progress: a bar on a terminal, a line a minute elsewhere.
+/// Display of progress: a bar on a terminal, otherwise a line per minute.
 pub struct Display {
     bar: ProgressBar,
     begun: Instant,
-    /// The time before the bar is shown; `None`: there is no bar.
+    /// Time before the bar is shown; `None` if there is no bar.
     patience: Option<Duration>,
-    /// Time of the last line; `None`: no lines are printed.
+    /// Time of the last line; `None` if no lines are printed.
     said: Option<Instant>,
 }
 
-/// Time between lines.
+/// Interval between lines.
 const MINUTE: Duration = Duration::from_secs(60);
-/// The bar counts thousandths of the work.
+/// Length of the bar: it counts thousandths of the work.
 const WHOLE: u64 = 1000;
 
 impl Display {
-    /// Shows nothing yet; a computation that takes less than the `patience` has no bar.
+    /// Makes a display without a bar. The bar appears if the computation takes longer than `patience`.
     pub fn new(patience: Duration) -> Self {
         let quiet = QUIET.load(Ordering::Relaxed);
         let on_terminal = io::stderr().is_terminal();
@@ -76,7 +76,7 @@ impl Display {
         }
     }
 
-    /// Shows the part of the work that is done, and words about it, made from the time that it took.
+    /// Shows the completed fraction of the work. `words` makes a message from the elapsed time.
     pub fn show(&mut self, part: f64, words: impl FnOnce(Duration) -> String) {
         let elapsed = self.begun.elapsed();
         if let Some(said) = &mut self.said
@@ -93,7 +93,7 @@ impl Display {
         }
     }
 
-    /// Ends the progress without removing the bar.
+    /// Ends the progress and leaves the bar on the terminal.
     pub fn abandon(&self) {
         self.bar.abandon();
     }
@@ -105,7 +105,8 @@ impl Drop for Display {
     }
 }
 
-/// "12 a second, 3 minutes left", from the mean of all finished cases: with a moving mean one slow case would spoil the estimate.
+/// Returns speed and remaining time, such as "12 a second, 3 minutes left". They are means over all finished cases, so a single slow case has
+/// little effect.
 pub fn pace(done: usize, left: usize, elapsed: Duration) -> String {
     if done == 0 {
         return "none finished yet".to_owned();
@@ -120,8 +121,8 @@ pub fn pace(done: usize, left: usize, elapsed: Duration) -> String {
     format!("{rate}, {} left", HumanDuration(each.mul_f64(left as f64)))
 }
 
-/// The time left, from the part of the work that is done.
+/// Returns the remaining time, from the completed fraction of the work.
 pub fn left(part: f64, elapsed: Duration) -> HumanDuration {
-    // At the beginning nothing is known.
+    // At the beginning the estimate is arbitrary, so it is limited.
     HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).clamp(0.0, 1e6)))
 }

@@ -37,14 +37,14 @@ pub struct SetOption {
 }
 
 impl ScenarioFile {
-    /// Reads its text.
+    /// Reads the text of the scenario.
     pub fn open(&self) -> Result<Input<'_>, Failure> {
         self.set.open(&self.scenario)
     }
 }
 
 impl SetOption {
-    /// The assignments given with `--set`.
+    /// Returns the assignments given with `--set`.
     pub fn assignments(&self) -> &[Assignment] {
         &self.set
     }
@@ -72,13 +72,13 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// Scenarios that differ only in their model of motion, and the folder for their results, if any. They are named after their file and the
-/// record of the suite that shakes them.
+/// Name of a task, scenarios that differ only in their model of motion, and the folder for their results, if there is one. The name is that of
+/// the scenario file, with the record of the suite.
 pub type Task = (String, Vec<Scenario>, Option<Destination>);
 
 impl SuiteOption {
-    /// The scenarios of a file, which differ in their model of motion, with the folder `root`. With `--suite`, once for each record of the
-    /// suite, shaken by it, with a folder inside `root`. All scenarios must pass the check.
+    /// Returns the tasks of a scenario file, with the folder `root`. With `--suite` there is one task for each record of the suite, with a
+    /// folder inside `root`. All scenarios must pass `check`.
     pub fn tasks(
         self,
         input: &Input<'_>,
@@ -112,7 +112,7 @@ impl SuiteOption {
     }
 }
 
-/// Whether this path stands for standard input.
+/// Returns true if this path means standard input.
 pub fn is_stdin(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -126,12 +126,12 @@ pub struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// Reads the scenario with this model of motion; `None`: its tables choose the model.
+    /// Reads the scenario with this model of motion; `None` if the tables of the scenario choose the model.
     pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
         self.read_for(hinges, false)
     }
 
-    /// Scenario for static analysis: it needs neither the records of its ground motion nor a model of motion.
+    /// Reads the scenario for static analysis, which needs neither the records of the ground motion nor a model of motion.
     pub fn read_statics(&self) -> Result<Scenario, Failure> {
         self.read_for(None, true)
     }
@@ -149,24 +149,24 @@ impl Input<'_> {
         })
     }
 
-    /// Reads the scenario for computations on the undeformed structure; refuses moved springings.
+    /// Reads the scenario for computations on the undeformed structure; moved springings are an error.
     pub fn read_as_built(&self) -> Result<Scenario, Failure> {
         self.as_built(self.read(None)?)
     }
 
-    /// Refuses a scenario whose springings have moved.
+    /// Returns an error for a scenario with moved springings.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();
         built.map_err(|message| self.wrong(message))?;
         Ok(scenario)
     }
 
-    /// A failure for this reason, with the name of the scenario file in front.
+    /// Makes a failure with this reason, after the name of the scenario file.
     pub fn wrong(&self, reason: impl Into<String>) -> Failure {
         self.about(Failure::Input(reason.into()))
     }
 
-    /// The failure, with the name of the scenario file in front.
+    /// Adds the name of the scenario file before the message of a failure.
     pub fn about(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
@@ -174,7 +174,7 @@ impl Input<'_> {
         }
     }
 
-    /// Name of the folder for the results.
+    /// Returns the name of the folder for the results.
     pub fn stem(&self) -> &Path {
         if is_stdin(self.path) {
             return Path::new("stdin");
@@ -182,8 +182,8 @@ impl Input<'_> {
         Path::new(self.path.file_stem().unwrap_or_default())
     }
 
-    /// The folder for results: `out`, or else a folder named after the scenario file. That folder is refused if it holds
-    /// results of another scenario file of the same name.
+    /// Returns the folder for results: `out`, or a folder named after the scenario file. The latter is an error if it contains results of
+    /// another scenario file with the same name.
     pub fn results(&self, out: Option<&Path>) -> Result<Destination, Failure> {
         if let Some(out) = out {
             return Ok(Destination::of(out));
@@ -195,7 +195,7 @@ impl Input<'_> {
     }
 }
 
-/// The path of a scenario file, from the current folder if the file is below it, otherwise from the root.
+/// Returns the path of a scenario file: relative to the current folder if the file is below it, otherwise absolute.
 fn origin(path: &Path) -> String {
     let own = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let here = env::current_dir().and_then(|here| here.canonicalize());
@@ -207,16 +207,16 @@ fn origin(path: &Path) -> String {
 #[derive(Clone, Default)]
 pub struct Destination {
     path: PathBuf,
-    /// The scenario file that names the folder; `None` with `--out`.
+    /// The scenario file after which the folder is named; `None` with `--out`.
     origin: Option<String>,
-    /// The format of pictures beside SVG.
+    /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
-    /// The command whose results go there, once the folder is locked. Folders inside this one share the lock.
+    /// The command that writes results to the locked folder. Folders inside this one share the lock.
     locked: Rc<OnceCell<(Batch, Writer)>>,
 }
 
 impl Destination {
-    /// A folder that was given with `--out`.
+    /// Makes the destination of a folder given with `--out`.
     pub fn of(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
@@ -224,9 +224,9 @@ impl Destination {
         }
     }
 
-    /// Locks the folder and everything below it for a command, before anything is written. The results of its last run are removed when
-    /// those of this run are published. Warns of results of other commands that come from another scenario. Several parts of a study may be
-    /// computed in one folder at the same time.
+    /// Locks the folder and everything below it for a command, before anything is written. Results of the last run are removed when those of
+    /// this run are published. Prints warnings about results of other commands from another scenario. Several parts of a study may be computed
+    /// in one folder at the same time.
     pub fn lock(&self, writer: Writer, origin: &Origin, is_part: bool) -> Result<(), Failure> {
         let batch = Batch::lock(&self.path, !is_part).map_err(elsewhere)?;
         if !is_part {
@@ -241,7 +241,7 @@ impl Destination {
         self.locked.get().expect("the folder is locked")
     }
 
-    /// The folder inside this one for the comparison of several models.
+    /// Returns the folder inside this one for the comparison of several models.
     pub fn of_models(&self) -> Self {
         self.within(self.locked().1.models(&self.path))
     }
@@ -251,17 +251,17 @@ impl Destination {
         Ok(self.locked().0.publish()?)
     }
 
-    /// Drops the results that are not published.
+    /// Deletes the results that are not published.
     pub fn abandon(&self) {
         self.locked().0.abandon();
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// The folder for a model of motion: one of its own inside this folder if there are several models.
+    /// Returns the folder for a model of motion: a subfolder if there are several models.
     pub fn of_model(&self, scenario: &Scenario, several: bool) -> Self {
         match several {
             true => self.within(scenario.motion.hinges().name()),
@@ -269,7 +269,7 @@ impl Destination {
         }
     }
 
-    /// A folder inside this one.
+    /// Returns a folder inside this one.
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
         Self {
             path: self.path.join(name),
@@ -278,12 +278,12 @@ impl Destination {
         }
     }
 
-    /// This folder, with every picture in this format too.
+    /// Sets the format of pictures in addition to SVG.
     pub fn with_pictures(self, pictures: Option<PictureFormat>) -> Self {
         Self { pictures, ..self }
     }
 
-    /// Refuses results of two tasks in one place.
+    /// Returns an error if two tasks would write to the same folder.
     pub fn check_distinct(tasks: &[Task]) -> Result<(), Failure> {
         let mut first = BTreeMap::new();
         let mut wrong = Vec::new();
@@ -299,7 +299,7 @@ impl Destination {
         refused(&wrong)
     }
 
-    /// The folder inside this one for the results of one record of the suite.
+    /// Returns the folder inside this one for the results of one record of the suite.
     pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
         let name = Path::new(record).file_name().unwrap_or_default();
         let origin = self.origin.clone();
@@ -310,7 +310,7 @@ impl Destination {
         .checked()
     }
 
-    /// The folder, unless it holds the results of another scenario file.
+    /// Returns the folder; an error if it contains the results of another scenario file.
     fn checked(self) -> Result<Self, Failure> {
         let known = self.path.join(ORIGIN);
         // Reading a pipe of that name would never end.
@@ -325,7 +325,7 @@ impl Destination {
         Ok(self)
     }
 
-    /// Prepares results in the folder, which are not published yet. A history has written its files already.
+    /// Prepares results in the folder without publishing them. A history has already written its files.
     pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
         if results.files.is_empty() {
             return Ok(());
@@ -333,7 +333,7 @@ impl Destination {
         Ok(results.write(self.open(&results.names())?)?)
     }
 
-    /// The folder and the names of the result files in it.
+    /// Returns the folder and the names of its result files, in words.
     pub fn holds(&self, results: &Results) -> String {
         let also = self.pictures.filter(|format| *format != PictureFormat::Svg);
         let also = also.map_or("", |format| match format {
@@ -344,7 +344,7 @@ impl Destination {
         format!("{path}: {names}{also}")
     }
 
-    /// Opens the folder for files of these names, the seal last; a failure suggests `--out`.
+    /// Opens the folder for files with these names, the seal last. The error suggests `--out`.
     pub fn open(&self, names: &[&str]) -> Result<Folder, String> {
         let mut all = names.to_vec();
         if self.origin.is_some() {
@@ -353,7 +353,7 @@ impl Destination {
         let (batch, writer) = self.locked();
         let folder = batch.folder(&self.path, &all);
         let mut folder = folder.map_err(elsewhere)?;
-        // A killed run may have left others.
+        // A killed run may have left other files.
         let others = writer.files.iter().filter(|name| !names.contains(name));
         others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {
@@ -364,7 +364,7 @@ impl Destination {
     }
 }
 
-/// Error for a folder that cannot be used.
+/// Returns the error of a folder that cannot be used.
 fn elsewhere(error: OutputError) -> String {
     format!("{error}; choose another folder with --out")
 }

@@ -67,7 +67,7 @@ enum Color {
 }
 
 impl MapOption {
-    /// The style of a map.
+    /// Returns the style of a map.
     fn style(self, scenario: &Scenario, figure: Figure) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
         let model = scenario.motion.hinges().model();
@@ -86,7 +86,7 @@ impl MapOption {
         })
     }
 
-    /// The style of results that are merged.
+    /// Returns the style of results that are merged.
     fn merged(
         self,
         kind: StudyKind,
@@ -132,7 +132,7 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     compute(kinds, study, &input, &scenarios, style)
 }
 
-/// Computes a study and that of its samples for scenarios that differ in their models of motion, one by one; publishes and prints the
+/// Computes a study and the study of its samples, for each of the scenarios, which differ in their models of motion. Publishes and prints the
 /// results.
 fn compute(
     kinds: [StudyKind; 2],
@@ -196,7 +196,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     show(&results, &place, arguments.format)
 }
 
-/// Reports results that are published.
+/// Prints published results.
 fn show(results: &Results, place: &Destination, format: Format) -> Result<(), Failure> {
     if let Format::Json = format {
         return print(&pretty(&results.summary));

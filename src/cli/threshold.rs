@@ -91,7 +91,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Finds the threshold for each value of a key.
+/// Computes the threshold for each value of a key.
 fn thresholds_along(
     study: &StudyArguments,
     session: Session<'_>,

@@ -11,7 +11,7 @@ use super::text::{LINE_PX, TEXT_PX, Text};
 pub struct Scale {
     /// Value at the start of the axis.
     pub low: f64,
-    /// Value at its end.
+    /// Value at the end of the axis.
     pub high: f64,
     steps: Steps,
 }
@@ -21,12 +21,12 @@ pub struct Scale {
 enum Steps {
     /// Equal differences.
     Linear(f64),
-    /// About equal ratios; equal ratios have equal distances.
+    /// About equal ratios; on the axis equal ratios have equal distances.
     Logarithmic,
 }
 
 impl Scale {
-    /// The scale that holds all `values`, with about `ticks` ticks; from 0 to 1 if there are no values.
+    /// Makes a scale that contains all `values`, with about `ticks` ticks; from 0 to 1 without values.
     #[must_use]
     pub fn around(values: impl IntoIterator<Item = f64>, ticks: u32) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -36,7 +36,7 @@ impl Scale {
         if low > high {
             (low, high) = (0.0, 1.0);
         }
-        // A constant gets a margin of half its size; zero gets a margin of one.
+        // The margin of a constant is half its value; the margin of zero is one.
         if high - low <= 1e-9 * high.abs().max(low.abs()) {
             let room = if high == 0.0 { 1.0 } else { 0.5 * high.abs() };
             (low, high) = (low - room, high + room);
@@ -49,7 +49,7 @@ impl Scale {
         }
     }
 
-    /// The scale from `low` to `high` exactly, with about `ticks` ticks.
+    /// Makes a scale from `low` to `high` exactly, with about `ticks` ticks.
     #[must_use]
     pub fn exactly(low: f64, high: f64, ticks: u32) -> Self {
         Self {
@@ -59,7 +59,7 @@ impl Scale {
         }
     }
 
-    /// The logarithmic scale from `low` to `high` exactly; `low` is raised to the least positive number if necessary.
+    /// Makes a logarithmic scale from `low` to `high` exactly; `low` is raised to the smallest positive number if necessary.
     #[must_use]
     pub const fn logarithmic(low: f64, high: f64) -> Self {
         Self {
@@ -69,7 +69,7 @@ impl Scale {
         }
     }
 
-    /// Positions of the ticks with their texts.
+    /// Returns the positions of the ticks with their texts.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
         match self.steps {
             Steps::Linear(step) => self.linear_ticks(step),
@@ -77,7 +77,7 @@ impl Scale {
         }
     }
 
-    /// Powers of ten and multiples of them; the more powers, the fewer multiples.
+    /// Returns ticks at powers of ten and multiples of them; the more powers, the fewer multiples.
     fn logarithmic_ticks(&self) -> Vec<(f64, String)> {
         let decades = (self.high / self.low).log10();
         let digits: &[u32] = match decades {
@@ -103,7 +103,7 @@ impl Scale {
         let first = (self.low / step - 1e-6).ceil();
         let count = (self.high / step + 1e-6).floor() - first;
         let largest = self.low.abs().max(self.high.abs());
-        // Very large and very small values are written with powers of ten.
+        // Very large and very small values are written as powers of ten.
         let exponent = step.log10().floor();
         let plain = largest < 1e5 && exponent >= -5.0;
         let (count, digits) = (count.max(0.0) as u32, (-exponent).max(0.0) as usize);
@@ -119,7 +119,7 @@ impl Scale {
             .collect()
     }
 
-    /// The value at a fraction of the axis, from 0 to 1.
+    /// Returns the value at a fraction of the axis, from 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         match self.steps {
@@ -136,7 +136,7 @@ impl Scale {
     }
 }
 
-/// The distance, 1, 2 or 5 times a power of ten, that divides `span` into about `ticks` parts.
+/// Returns a tick distance, 1, 2 or 5 times a power of ten, that divides `span` into about `ticks` parts.
 fn tick_step(span: f64, ticks: u32) -> f64 {
     let rough = span / f64::from(ticks.max(1));
     let power = 10_f64.powf(rough.log10().floor());
@@ -150,10 +150,10 @@ fn tick_step(span: f64, ticks: u32) -> f64 {
         }
 }
 
-/// A frame with scales: places values on the sheet.
+/// A frame with scales, which converts values to positions on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axes {
-    /// Its position.
+    /// Position of the frame.
     pub frame: Frame,
     /// Scale along the lower side.
     pub x: Scale,
@@ -162,7 +162,7 @@ pub struct Axes {
 }
 
 impl Axes {
-    /// The place of a pair of values.
+    /// Returns the position of a pair of values.
     #[must_use]
     pub fn place(&self, x: f64, y: f64) -> Vector2<f64> {
         let [left, top, width, height] = self.frame.parts();
@@ -170,7 +170,7 @@ impl Axes {
         Vector2::new(x, top + height * (1.0 - self.y.part(y)))
     }
 
-    /// Draws frame, ticks and the label of the y axis, above a panel or along the axis.
+    /// Draws frame, ticks and the label of the y axis. The label of a panel is above the frame.
     pub(crate) fn draw(&self, drawing: &mut Drawing, y_label: &str, is_panel: bool) {
         let widest_px = self.grid(drawing);
         let [left, top, _, height] = self.frame.parts();
@@ -178,7 +178,7 @@ impl Axes {
             let at = Vector2::new(left, top - 7.0);
             return drawing.label(at, Anchor::Start, 0.0, y_label);
         }
-        // Beside the texts of the ticks, in as many lines as necessary.
+        // Left of the tick texts, in as many lines as necessary.
         let mut x = (left - TICK_TEXT_PX - widest_px - 6.0).min(left - 54.0);
         for line in Text::lines(y_label, height.max(120.0)).into_iter().rev() {
             let at = Vector2::new(x, top + 0.5 * height);
@@ -187,14 +187,14 @@ impl Axes {
         }
     }
 
-    /// Draws frame and ticks, those of the y axis with their texts; returns the width of the widest of these.
+    /// Draws frame and ticks, and the texts of the y axis. Returns the width of the widest text.
     fn grid(&self, drawing: &mut Drawing) -> f64 {
         let thin = Stroke::new(color::BLACK, 0.8, "");
         let faint = Stroke::new("#dddddd", 0.6, "");
         let [left, top, width, height] = self.frame.parts();
         let (right, bottom) = (left + width, top + height);
         let mut widest_px: f64 = 0.0;
-        // Texts come from below, and none is on another.
+        // Texts are drawn from bottom to top; overlapping ones are omitted.
         let mut highest = f64::INFINITY;
         for (value, text) in self.y.ticks() {
             let y = self.place(self.x.low, value).y;
@@ -217,13 +217,13 @@ impl Axes {
         widest_px
     }
 
-    /// Draws the texts of the ticks on the lower side and the label of the axis; nothing without a label.
+    /// Draws the tick texts on the lower side and the label of the axis; nothing without a label.
     pub(crate) fn label_x(&self, drawing: &mut Drawing, label: &str) {
         if label.is_empty() {
             return;
         }
         let bottom = self.frame.top + self.frame.height;
-        // Texts come from the left, and none is on another.
+        // Texts are drawn from left to right; overlapping ones are omitted.
         let mut farthest = f64::NEG_INFINITY;
         for (value, text) in self.x.ticks() {
             let text = Text::from(text);
@@ -234,7 +234,7 @@ impl Axes {
                 drawing.label(at, Anchor::Middle, 0.0, text);
             }
         }
-        // In the middle, unless it would leave the sheet.
+        // The label is centred, unless it would extend beyond the sheet.
         let label = Text::from(label);
         let middle = self.frame.left + 0.5 * self.frame.width;
         let most = self.frame.left + self.frame.width + RIGHT_PX - 0.5 * label.px() - 4.0;

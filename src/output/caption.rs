@@ -1,14 +1,14 @@
-//! One line with the input of a picture: the structure, the ground and the model of motion.
+//! A line with the input of a picture: structure, ground motion and model of motion.
 
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::scenario::{
     Axis, Ground, Quantity, Record, RightFoot, Scaling, Scenario, Series, Structure,
 };
 
-/// True if a value of this key varies along the axes of a picture. The table of a pulse is called `pulse`.
+/// Returns true if an axis of the picture varies this key. The table of a pulse is named `pulse`.
 type Varies<'a> = &'a dyn Fn(&str) -> bool;
 
-/// The caption. It leaves out what varies along the axes.
+/// Returns the caption without the values that vary along the axes.
 #[must_use]
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     let varied: Vec<String> = axes.iter().map(|axis| varied_key(axis)).collect();
@@ -19,7 +19,7 @@ pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     parts.join("; ")
 }
 
-/// The key of the value that an axis varies.
+/// Returns the key that an axis varies.
 fn varied_key(axis: &Axis) -> String {
     let name = axis.quantity.name();
     match axis.quantity {
@@ -34,7 +34,7 @@ fn varied_key(axis: &Axis) -> String {
     }
 }
 
-/// The structure, with its values that do not vary.
+/// Returns the structure in words, with its constant values.
 fn structure(structure: &Structure, varies: Varies<'_>) -> String {
     let shape = |name: &str, values: &[(&str, &str, f64, &str)]| -> Vec<String> {
         let constant = values
@@ -85,12 +85,12 @@ fn structure(structure: &Structure, varies: Varies<'_>) -> String {
     }
 }
 
-/// Four digits are enough to identify a value.
+/// Rounds a value to four digits, which identify it in a caption.
 fn four_digits(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value)
 }
 
-/// The ground motion: the pulse, or the record with its scale; and the motion of the right foot.
+/// Returns the ground motion in words: the pulse, or the record with its scale; and the motion of the right foot.
 #[must_use]
 pub fn ground_in_words(scenario: &Scenario) -> String {
     let words = ground(scenario, &|_| false);

@@ -1,37 +1,37 @@
-//! Charts as values: axes, marks in the units of the axes, and a legend.
+//! Charts: axes, marks in the units of the axes, and a legend.
 
 use super::axes::{Axes, Scale};
 use super::figure::Figure;
 use super::sheet::{Height, Key, Sheet};
 use super::svg::{Drawing, Frame, Stroke};
 
-/// Distance of a plot to the left side of the picture, with room for the label of its y axis.
+/// Distance from the left side of the picture to a plot, with space for the label of the y axis.
 pub(crate) const LEFT_PX: f64 = 85.0;
-/// Distance of a panel, whose label is above it.
+/// Distance from the left side of the picture to a panel, whose label is above it.
 pub(crate) const PANEL_LEFT_PX: f64 = 66.0;
 /// Height of the texts below a plot.
 pub(crate) const BELOW_PX: f64 = 56.0;
 
-/// A chart, or a panel of several with one x axis.
+/// A chart, or one of several panels with a common x axis.
 pub(crate) struct Chart {
-    /// Height of its plot on the screen.
+    /// Height of the plot on the screen, in pixels.
     pub(crate) height_px: f64,
-    /// Label and scale along the lower side; an empty label leaves only ticks.
+    /// Label and scale of the lower side; with an empty label only ticks are drawn.
     pub(crate) x: (String, Scale),
-    /// Label and scale along the left side.
+    /// Label and scale of the left side.
     pub(crate) y: (String, Scale),
-    /// Whether the label of the y axis is above the plot.
+    /// True if the label of the y axis is above the plot.
     pub(crate) is_panel: bool,
-    /// Entries of its legend.
+    /// Entries of the legend.
     pub(crate) keys: Vec<Key>,
-    /// Marks below the grid.
+    /// Marks drawn before the grid.
     pub(crate) below: Vec<Mark>,
-    /// Marks above the grid.
+    /// Marks drawn after the grid.
     pub(crate) marks: Vec<Mark>,
 }
 
 impl Chart {
-    /// A chart with axes and no marks.
+    /// Makes a chart with axes and without marks.
     pub(crate) fn new(height_px: f64, x: (&str, Scale), y: (&str, Scale)) -> Self {
         Self {
             height_px,
@@ -44,7 +44,7 @@ impl Chart {
         }
     }
 
-    /// A chart of curves on scales that hold them all, and zero along y; each is in the legend by its name.
+    /// Makes a chart of curves on scales that contain all curves, and zero on the y axis. Each curve is in the legend.
     pub(crate) fn around(
         figure: Figure,
         height_px: f64,
@@ -57,21 +57,21 @@ impl Chart {
         Self::new(height_px, (x_label, x), (y_label, y)).with_named(curves)
     }
 
-    /// This chart with more marks, each also in the legend by its name.
+    /// Adds marks, each also as an entry of the legend.
     pub(crate) fn with_named(mut self, marks: Vec<Mark>) -> Self {
         self.keys.extend(marks.iter().map(Mark::key));
         self.marks.extend(marks);
         self
     }
 
-    /// The chart alone, below a title.
+    /// Draws the chart alone, below a title.
     pub(crate) fn draw(self, figure: Figure, title: &str) -> String {
         let mut sheet = Sheet::new(figure, title);
         self.add_to(&mut sheet);
         sheet.finish()
     }
 
-    /// Adds legend, plot and axes to a picture; returns the number of the plot among its parts.
+    /// Adds legend, plot and axes to a picture. Returns the index of the plot among the parts of the picture.
     pub(crate) fn add_to(mut self, sheet: &mut Sheet<'_>) -> usize {
         sheet.legend(LEFT_PX, std::mem::take(&mut self.keys));
         sheet.gap(8.0);
@@ -80,7 +80,7 @@ impl Chart {
         plot
     }
 
-    /// Adds plot and axes to a picture; returns the number of the plot among its parts.
+    /// Adds plot and axes to a picture. Returns the index of the plot among the parts of the picture.
     pub(crate) fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
         let figure = sheet.figure;
         let height = Height::Plot(figure.height_px(self.height_px));
@@ -100,7 +100,7 @@ impl Chart {
     }
 }
 
-/// A mark of a chart: its name for scripts and tests, its shape, and the line around it, whose colour also fills areas.
+/// A mark of a chart: its name for scripts and tests, its shape, and its stroke, whose colour also fills areas.
 #[derive(Clone, Debug)]
 pub(crate) struct Mark {
     pub(crate) name: String,
@@ -108,13 +108,13 @@ pub(crate) struct Mark {
     shape: Shape,
 }
 
-/// Values along both axes.
+/// Values on both axes.
 pub(crate) type Point = (f64, f64);
 
 /// The shape of a mark.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
-    /// A curve; it is interrupted at values that are not finite.
+    /// A curve, interrupted at values that are not finite.
     Curve(Vec<Point>),
     /// A filled area.
     Area(Vec<Point>),
@@ -126,13 +126,13 @@ pub(crate) enum Shape {
     Circle(Point, f64),
     /// An arrow at the right end of the plot at this y, for a value beyond the axis.
     Beyond(f64),
-    /// Short lines at the lower side; one that is too close to the last is left out.
+    /// Short lines at the lower side; lines too close to the previous one are omitted.
     Ticks(Vec<f64>),
     /// Marks clipped to the plot.
     Clipped(Vec<Mark>),
 }
 
-/// Ticks closer together than this, in pixels, would merge.
+/// Smallest distance between ticks, in pixels; closer ones would merge.
 const BETWEEN_TICKS_PX: f64 = 2.5;
 
 impl Mark {
@@ -145,7 +145,7 @@ impl Mark {
         }
     }
 
-    /// A curve, interrupted at values that are not finite.
+    /// Makes a curve, interrupted at values that are not finite.
     pub(crate) fn curve(
         name: impl Into<String>,
         stroke: Stroke,
@@ -154,7 +154,7 @@ impl Mark {
         Self::new(name, stroke, Shape::Curve(points.into_iter().collect()))
     }
 
-    /// A curve that goes level from `first` and rises at each x to the height given with it, across the scale.
+    /// Makes a step curve across the scale: it starts at `first` and jumps at each x of `rises` to the given y.
     pub(crate) fn staircase(
         name: impl Into<String>,
         stroke: Stroke,
@@ -171,12 +171,12 @@ impl Mark {
         Self::curve(name, stroke, corners)
     }
 
-    /// A straight line across the plot at this x.
+    /// Makes a vertical line across the plot.
     pub(crate) fn upright(name: impl Into<String>, stroke: Stroke, x: f64, y: Scale) -> Self {
         Self::curve(name, stroke, [(x, y.low), (x, y.high)])
     }
 
-    /// An area of this colour between a lower and an upper curve.
+    /// Makes an area between a lower and an upper curve.
     pub(crate) fn between(
         name: &str,
         fill: &'static str,
@@ -188,17 +188,17 @@ impl Mark {
         Self::new(name, Stroke::new(fill, 0.0, ""), Shape::Area(corners))
     }
 
-    /// Marks clipped to the plot.
+    /// Clips marks to the plot.
     pub(crate) fn clipped(marks: Vec<Self>) -> Self {
         Self::new("", Stroke::new("", 0.0, ""), Shape::Clipped(marks))
     }
 
-    /// Its entry in a legend.
+    /// Returns the entry in a legend.
     pub(crate) fn key(&self) -> Key {
         Key::line(&self.name, self.stroke)
     }
 
-    /// The points of a curve; of other marks none.
+    /// Returns the points of a curve; empty for other marks.
     pub(crate) fn points(&self) -> &[Point] {
         match &self.shape {
             Shape::Curve(points) => points,
@@ -206,7 +206,7 @@ impl Mark {
         }
     }
 
-    /// Whether a curve is zero throughout.
+    /// Returns true if a curve is zero throughout.
     pub(crate) fn is_flat(&self) -> bool {
         self.points().iter().all(|(_, value)| *value == 0.0)
     }
@@ -262,7 +262,7 @@ impl Mark {
     }
 }
 
-/// Draws marks one above the other.
+/// Draws marks in order, the last on top.
 fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
     for mark in marks {
         mark.draw(drawing, axes);

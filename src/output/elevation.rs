@@ -1,4 +1,4 @@
-//! A structure as a drawing: its blocks with the numbers of their joints, its supports, fill and loads, its dimensions.
+//! Drawing of a structure: blocks with the numbers of their joints, supports, fill and loads, dimensions.
 
 use nalgebra::Vector2;
 
@@ -22,35 +22,35 @@ const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
 const EXTENSION: Stroke = Stroke::new("#aaaaaa", 0.5, "");
 /// Colours of the bodies of a mechanism, from left to right.
 pub(crate) const BODIES: [&str; 3] = ["#cfe3f1", "#f6dcc4", "#cce9e0"];
-/// A tie.
+/// Stroke of a tie.
 pub(crate) const TIE: Stroke = Stroke::new(color::ORANGE, 1.8, "");
-/// The undeformed outline of displaced blocks.
+/// Stroke of the undeformed outline of displaced blocks.
 const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
-/// An open hinge, and the radius of its circle.
+/// Stroke and radius of the circle at an open hinge.
 pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
 pub(crate) const HINGE_PX: f64 = 3.2;
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
 
 /// Distance from the structure to the first line of dimensions.
 const BESIDE_PX: f64 = 34.0;
-/// Distance from one line of dimensions to the next.
+/// Distance between lines of dimensions.
 const APART_PX: f64 = 26.0;
 /// Length of the arrow of a load.
 const ARROW_PX: f64 = 30.0;
 
-/// Places metres on the sheet.
+/// Converts metres to positions on the sheet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     /// A point of the structure.
     pub(crate) middle_m: Vector2<f64>,
-    /// Its place on the sheet.
+    /// Position of that point on the sheet.
     pub(crate) at: Vector2<f64>,
     /// Pixels per metre.
     pub(crate) scale: f64,
 }
 
 impl Place {
-    /// Places a box, in metres, around the middle of a column of a sheet, as high as this part.
+    /// Scales a box, in metres, to the height of a part of the sheet, around the horizontal position `middle`.
     pub(crate) fn over([low_m, high_m]: [Vector2<f64>; 2], middle: f64, part: Frame) -> Self {
         Self {
             middle_m: Vector2::new(0.5 * (low_m.x + high_m.x), low_m.y),
@@ -59,15 +59,15 @@ impl Place {
         }
     }
 
-    /// The place of a point on the sheet.
+    /// Returns the position of a point on the sheet.
     pub(crate) fn px(&self, point_m: Vector2<f64>) -> Vector2<f64> {
         let away_m = point_m - self.middle_m;
         self.at + Vector2::new(away_m.x, -away_m.y) * self.scale
     }
 }
 
-/// Draws a structure at rest with its dimensions and the numbers of its joints, and a text below. On moved supports it is drawn
-/// displaced; dashed lines show the undeformed structure, to which the dimensions refer.
+/// Draws a structure at rest with its dimensions, the numbers of its joints, and a text below. On moved supports it is drawn displaced; dashed
+/// lines then show the undeformed structure, to which the dimensions refer.
 #[must_use]
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
@@ -107,9 +107,9 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
 pub(crate) struct View<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) place: Place,
-    /// Poses of the bodies; empty: undeformed.
+    /// Poses of the bodies; empty for the undeformed structure.
     pub(crate) poses: &'a [Pose],
-    /// Its open hinges.
+    /// Open hinges.
     pub(crate) hinges: &'a [OpenHinge],
     /// Factor on the displacements.
     pub(crate) exaggeration: f64,
@@ -118,7 +118,7 @@ pub(crate) struct View<'a> {
 }
 
 impl<'a> View<'a> {
-    /// A structure to scale.
+    /// Makes a view of a structure to scale.
     pub(crate) const fn new(
         scene: &'a Scene,
         place: Place,
@@ -135,7 +135,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The place of a point on the sheet.
+    /// Returns the position of a point on the sheet.
     pub(crate) fn px(&self, mark: &Mark) -> Vector2<f64> {
         self.place.px(mark.moved(self.poses, self.exaggeration))
     }
@@ -145,7 +145,7 @@ impl<'a> View<'a> {
         corners.map(|corner| self.place.px(corner))
     }
 
-    /// Draws the undeformed blocks dashed.
+    /// Draws the undeformed blocks with dashed lines.
     pub(crate) fn draw_built(&self, drawing: &mut Drawing, name: &str) {
         for piece in self.scene.pieces(&[]) {
             let outline = piece.outline_m.iter().map(|corner| self.place.px(*corner));
@@ -153,7 +153,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws fill and loads, with or without the masses of these in words.
+    /// Draws fill and loads; `has_masses` adds the masses of loads.
     pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_masses: bool) {
         self.draw_fill(drawing);
         self.draw_loads(drawing, None, has_masses);
@@ -165,7 +165,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws the blocks, with a name and a colour for each, by its number and its body.
+    /// Draws the blocks. `look` returns name and colour of a block, from its index and its body.
     pub(crate) fn draw_blocks(
         &self,
         drawing: &mut Drawing,
@@ -189,7 +189,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws arrows for loads, from a common height if it is given, with their masses where there is room.
+    /// Draws arrows for loads, from the height `from` if it is given, with their masses if there is space.
     fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_masses: bool) {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.loads(self.hinges);
@@ -211,7 +211,7 @@ impl<'a> View<'a> {
             if has_masses {
                 let text = Text::from(format!("{} kg", metres(load.mass_kg)));
                 let half = 0.5 * text.px();
-                // Beside the last one if there is room; the words below have it anyway.
+                // Masses without space are omitted here; the text below the drawing lists all.
                 if foot.x - half > farthest {
                     farthest = foot.x + half + 8.0;
                     let at = tail - Vector2::new(0.0, 6.0);
@@ -222,7 +222,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// The room that the dimensions of a structure take on a side of it, in pixels.
+/// Returns the space that the dimensions on a side of a structure need, in pixels.
 pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
     let levels = levels(&scene.dimensions);
     let own = scene.dimensions.iter().zip(&levels);
@@ -231,7 +231,7 @@ pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
     lines.fold(0.0, f64::max)
 }
 
-/// The dimensions of a structure, beside it.
+/// Draws the dimensions of a structure beside it.
 pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let levels = levels(&scene.dimensions);
     let [low, high] = scene.frame_m().map(|corner| place.px(corner));
@@ -254,7 +254,7 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scen
         let is_short = (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside;
         let outside = Vector2::new(beside + 0.75 * TEXT_PX, 0.0);
         let (at, anchor, turn_deg) = match dimension.side {
-            // A text without room between the ends is on their right.
+            // A text that does not fit between the ends is to their right.
             DimensionSide::Below if is_short => {
                 let end = feet[0].sup(&feet[1]);
                 (end + Vector2::new(beside + 3.0, 4.5), Anchor::Start, 0.0)
@@ -268,7 +268,7 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scen
     }
 }
 
-/// Hatched ground under the supports of the structure.
+/// Draws hatched ground under the supports of the structure.
 fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let mut faces = scene.supports_m(1.0);
     let [low_m, high_m] = scene.bounds_m();
@@ -293,7 +293,7 @@ fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     }
 }
 
-/// The line of each dimension, counted from the structure, so that none is on another.
+/// Returns the line of each dimension, counted from the structure, without overlaps.
 fn levels(dimensions: &[Dimension]) -> Vec<u32> {
     let mut levels: Vec<u32> = Vec::new();
     for (index, own) in dimensions.iter().enumerate() {
@@ -320,7 +320,8 @@ fn levels(dimensions: &[Dimension]) -> Vec<u32> {
     levels
 }
 
-/// Numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth as there is room.
+/// Draws the numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth and so on if there is not enough
+/// space.
 fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
     let joints = scene.joints_m();
     let last = joints.len().saturating_sub(1);

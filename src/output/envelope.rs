@@ -1,10 +1,10 @@
-//! Thins long series for pictures.
+//! Thinning of long series for pictures.
 
 /// Largest number of columns to which a curve is thinned: about two per pixel.
 pub(crate) const COLUMNS: usize = 1600;
 
-/// A long series in at most a given number of columns. A column holds equally many values as the others; when there are too many
-/// columns, pairs of them become one.
+/// A long series in at most a given number of columns. All columns hold the same number of values; when there are too many columns, pairs of
+/// columns are joined.
 #[derive(Clone, Debug)]
 pub(crate) struct Thinned<T> {
     most: usize,
@@ -24,7 +24,7 @@ impl<T> Thinned<T> {
         }
     }
 
-    /// The column to which the next value belongs; `None` if that value begins another. `join` adds a column to the one before it.
+    /// Returns the column of the next value; `None` if that value begins a new column. `join` adds a column to the previous one.
     pub(crate) fn next(&mut self, join: impl Fn(&mut T, T)) -> Option<&mut T> {
         if self.in_last == self.group && self.columns.len() == self.most {
             let mut all = std::mem::take(&mut self.columns).into_iter();
@@ -44,7 +44,7 @@ impl<T> Thinned<T> {
     }
 }
 
-/// A long series of values, thinned to the smallest and largest of each of equal groups.
+/// A long series of values, thinned to the smallest and the largest value of each column.
 #[derive(Clone, Debug)]
 pub(crate) struct Envelope {
     /// Time and value of the minimum and of the maximum of each column.
@@ -59,7 +59,7 @@ impl Default for Envelope {
 }
 
 impl Envelope {
-    /// An envelope thinned to at most this many columns.
+    /// Makes an envelope of at most this many columns.
     pub(crate) const fn of_columns(most: usize) -> Self {
         Self {
             thinned: Thinned::new(most),
@@ -76,7 +76,7 @@ impl Envelope {
         }
     }
 
-    /// The points to draw, in order of time.
+    /// Returns the points to draw, in order of time.
     pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let extremes = self.thinned.columns.iter().flat_map(|extremes| {

@@ -1,4 +1,4 @@
-//! The layout of a picture: its width and height, the size of its text, the parts that are drawn.
+//! The layout of a picture: width and height, size of text, and drawn parts.
 
 use std::ops::RangeInclusive;
 use std::str::FromStr;
@@ -6,18 +6,18 @@ use std::str::FromStr;
 use super::svg::Frame;
 use super::text::TEXT_PX;
 
-/// The size of a picture. It is laid out in pixels, with text of 13 pixels; a wider one has room for more, not larger text.
+/// The size of a picture. The layout is in pixels, with text of 13 pixels. Wider pictures have more space, not larger text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
     /// Width in pixels.
     pub(crate) width_px: f64,
-    /// Width in print; `None`: for the screen.
+    /// Width in print, in mm; `None` for the screen.
     pub(crate) width_mm: Option<f64>,
-    /// Height in print; `None`: the natural height. Plots are stretched or squeezed to reach it, as far as their text allows.
+    /// Height in print; `None` for the natural height. Plots are stretched to this height within limits.
     pub height: Option<Height>,
-    /// Whether a title is drawn.
+    /// True to draw a title.
     pub has_title: bool,
-    /// Whether each panel of a history is drawn; `None`: all, and in a narrow picture the three that matter most.
+    /// The panels of a history to draw; `None` for all, and for the three most important ones in a narrow picture.
     pub panels: Option<[bool; Panel::ALL.len()]>,
 }
 
@@ -25,17 +25,17 @@ pub struct Figure {
 const TEXT_PT: f64 = 8.0;
 const MM_PER_PT: f64 = 25.4 / 72.0;
 
-/// Below this width, in mm, a picture is one of a column of a journal.
+/// Width in print, in mm, below which a picture is for a single column of a journal.
 const COLUMN_MM: f64 = 100.0;
-/// Largest height of such a picture, in mm, unless its height is given.
+/// Largest height of a picture for a single column, in mm, unless its height is given.
 const COLUMN_HEIGHT_MM: f64 = 120.0;
-/// Distance of plots to the right side of the picture.
+/// Distance of plots from the right side of the picture.
 pub(crate) const RIGHT_PX: f64 = 25.0;
-/// No picture has less room than one of 60 mm with text of 8 pt.
+/// Smallest width in pixels: that of 60 mm with text of 8 pt.
 const LEAST_WIDTH_PX: f64 = 60.0 / (MM_PER_PT * TEXT_PT) * TEXT_PX;
 
 named! {
-    /// A panel of the picture of a history, from above.
+    /// A panel of the picture of a history, in order from top to bottom.
     pub enum Panel {
         /// Acceleration of the ground.
         Ground = "ground",
@@ -45,11 +45,11 @@ named! {
         Joints = "joints",
         /// Slips of the joints.
         Slip = "slip",
-        /// Displacements of watched points.
+        /// Displacements of observed points.
         Points = "points",
-        /// Energy, over the barrier if that is known.
+        /// Energy, over the barrier if the barrier is known.
         Energy = "energy",
-        /// Distance of the line of thrust outside the structure.
+        /// Distance of the thrust line outside the structure.
         Thrust = "thrust",
     }
 }
@@ -67,7 +67,7 @@ impl FromStr for Panel {
 }
 
 impl Figure {
-    /// For the screen: 900 pixels.
+    /// Picture for the screen: 900 pixels wide.
     pub const SCREEN: Self = Self {
         width_px: 900.0,
         width_mm: None,
@@ -81,7 +81,7 @@ impl Figure {
     /// Heights for print, in mm.
     const HEIGHTS_MM: RangeInclusive<f64> = 20.0..=700.0;
 
-    /// For print at this width, in mm, at which text is 8 pt.
+    /// Makes a picture for print with this width, in mm, and text of 8 pt.
     fn of_width_mm(width_mm: f64) -> Self {
         Self {
             width_px: width_mm / (MM_PER_PT * TEXT_PT) * TEXT_PX,
@@ -90,10 +90,10 @@ impl Figure {
         }
     }
 
-    /// This figure with text of this size, in points.
+    /// Changes the size of text, in points.
     ///
     /// # Errors
-    /// If the picture has no width in print, or is too narrow for such text.
+    /// When the picture has no width in print, or is too narrow for such text.
     pub fn with_text_pt(self, text_pt: f64) -> Result<Self, String> {
         let Some(width_mm) = self.width_mm else {
             return Err("a size of text in points goes with a width in print".to_owned());
@@ -108,14 +108,14 @@ impl Figure {
         Ok(Self { width_px, ..self })
     }
 
-    /// Whether a panel of a history is drawn, if points are `watched` or not.
+    /// Returns true if a panel of a history is drawn. `watched` is true if there are observed points.
     #[must_use]
     pub fn shows(&self, panel: Panel, watched: bool) -> bool {
         match (self.panels, panel) {
             (Some(shown), panel) => shown[panel as usize],
             (None, Panel::Ground | Panel::Rotation) => true,
             (None, Panel::Points) => watched,
-            // A column has room for three.
+            // A single column has space for three panels.
             (None, Panel::Energy) => !(self.is_column() && watched),
             (None, Panel::Joints | Panel::Slip | Panel::Thrust) => !self.is_column(),
         }
@@ -125,14 +125,14 @@ impl Figure {
         self.width_mm.is_some_and(|width_mm| width_mm < COLUMN_MM)
     }
 
-    /// The height of a plot that is this high on the screen: a little less in narrow pictures.
+    /// Returns the height of a plot, from its height on the screen: a little less in narrow pictures.
     #[must_use]
     pub fn height_px(&self, on_screen_px: f64) -> f64 {
         let with_width = 0.35 + 0.65 * self.width_px / Self::SCREEN.width_px;
         on_screen_px * with_width
     }
 
-    /// The height, in pixels, of a picture that would by itself be `natural_px` high.
+    /// Returns the height of a picture, in pixels, from its natural height.
     pub(crate) fn wanted_px(&self, natural_px: f64) -> f64 {
         let Some(width_mm) = self.width_mm else {
             return natural_px;
@@ -145,21 +145,21 @@ impl Figure {
         }
     }
 
-    /// Number of ticks along the width, for a number on the screen.
+    /// Returns the number of ticks along the width, from the number on the screen.
     #[must_use]
     pub fn ticks(&self, on_screen: u32) -> u32 {
         let ticks = (f64::from(on_screen) * self.width_px / Self::SCREEN.width_px).round() as u32;
         ticks.max(3)
     }
 
-    /// Number of columns of at least this width that fit side by side, at most `wanted`.
+    /// Returns the number of columns of at least this width that fit side by side, at most `wanted`.
     #[must_use]
     pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
         let fit = (self.width_px / least_px) as usize;
         fit.clamp(1, wanted)
     }
 
-    /// The frame of a plot in a part of the picture, at this distance from the left side.
+    /// Returns the frame of a plot in a part of the picture, at this distance from the left side.
     pub(crate) fn right_of(&self, left: f64, part: Frame) -> Frame {
         Frame {
             left,
@@ -172,7 +172,7 @@ impl Figure {
 impl FromStr for Figure {
     type Err = String;
 
-    /// A width with its unit, such as `85mm` or `8.5cm`.
+    /// Parses a width with its unit, such as `85mm` or `8.5cm`.
     fn from_str(text: &str) -> Result<Self, String> {
         let fits = length_mm(text).filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));
         fits.map(Self::of_width_mm)
@@ -187,7 +187,7 @@ pub struct Height(f64);
 impl FromStr for Height {
     type Err = String;
 
-    /// A height with its unit, such as `60mm`.
+    /// Parses a height with its unit, such as `60mm`.
     fn from_str(text: &str) -> Result<Self, String> {
         let fits = length_mm(text).filter(|height_mm| Figure::HEIGHTS_MM.contains(height_mm));
         fits.map(Self)
@@ -195,12 +195,12 @@ impl FromStr for Height {
     }
 }
 
-/// A length with its unit, in mm.
+/// Returns a length with its unit, in mm; `None` if it cannot be parsed.
 fn length_mm(text: &str) -> Option<f64> {
     let units = [("mm", 1.0), ("cm", 10.0), ("in", 25.4)];
     units.into_iter().find_map(|(unit, mm)| {
         let number: f64 = text.trim().strip_suffix(unit)?.trim().parse().ok()?;
-        // Without the residue of rounding.
+        // Removes rounding errors.
         Some((number * mm * 1e6).round() / 1e6)
     })
 }

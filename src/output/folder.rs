@@ -1,4 +1,4 @@
-//! Folders of results: the results of one command get their names together.
+//! Folders of results. All files of one command get their names together.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, Write};
@@ -12,28 +12,28 @@ use super::print::PictureFormat;
 
 /// The results of one command, in a folder and its subfolders.
 ///
-/// The folder and everything below it stay locked as long as this value or a [`Folder`] of it lives: no other command writes there.
-/// The system unlocks the folder when the program ends, even if it is killed.
+/// The folder and everything below it stay locked while this value or one of its [`Folder`]s exists: no other command writes there. The system
+/// unlocks the folder when the program ends, even if the program is killed.
 ///
-/// Every file is written under a hidden name. [`Batch::publish`] removes the results of the last run, then gives all files
-/// their names. The seal of each folder is removed first and written last: a folder with a seal holds the results of one run.
+/// Every file is written under a hidden name. [`Batch::publish`] removes the results of the last run, then renames all files. The seal of each
+/// folder is removed first and written last: a folder with a seal contains complete results of one run.
 ///
-/// A killed run leaves its hidden files behind; the next run removes them.
+/// A killed run leaves its hidden files; the next run removes them.
 #[derive(Clone, Debug)]
 pub struct Batch(Arc<Mutex<Inner>>);
 
 #[derive(Debug)]
 struct Inner {
     path: PathBuf,
-    /// Whether other commands are locked out, rather than only those that lock others out.
+    /// True for an exclusive lock; false for a lock that is shared with other commands.
     alone: bool,
-    /// Hold the locks; empty where folders cannot be locked, as on some network drives and on Windows.
+    /// The locks; empty if folders cannot be locked, as on some network drives and on Windows.
     locks: Vec<File>,
-    /// Folders that were created for the results, outermost first.
+    /// Folders that were created for the results, the outermost first.
     made: Vec<PathBuf>,
-    /// The complete files of each folder with their paths, still under hidden names, the seal last.
+    /// The complete files of each folder, still under hidden names, with their final paths; the seal last.
     prepared: Vec<Vec<(PathBuf, TempPath)>>,
-    /// Results of earlier runs, in the order in which they are removed.
+    /// Results of earlier runs, in the order of removal.
     last: Vec<PathBuf>,
 }
 
@@ -46,21 +46,21 @@ pub struct Folder {
     files: Vec<(String, BufWriter<NamedTempFile>)>,
     /// Names of results that earlier runs may have left and that this run does not write.
     obsolete: Vec<String>,
-    /// The format of pictures beside SVG.
+    /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
-    /// Whether completing it publishes the batch.
+    /// True if completing the folder publishes the batch.
     publishes: bool,
     batch: Batch,
 }
 
-/// Beginning of the hidden names.
+/// Prefix of the hidden names.
 const PREFIX: &str = ".archrock-";
 
 impl Batch {
-    /// Locks the folder and everything below it, alone or together with others that do so too; creates the folder if necessary.
+    /// Locks the folder and everything below it, exclusively if `alone`, otherwise shared. Creates the folder if necessary.
     ///
     /// # Errors
-    /// When the folder cannot be created, or another command is writing to it, to a folder below it, or to a folder around it.
+    /// When the folder cannot be created, or another command is writing to this folder, a folder below it or a folder above it.
     pub fn lock(path: &Path, alone: bool) -> Result<Self, OutputError> {
         let mut inner = Inner {
             path: path.to_owned(),
@@ -75,8 +75,8 @@ impl Batch {
         Ok(Self(Arc::new(Mutex::new(inner))))
     }
 
-    /// Names the results of the last run, which are removed before the first new file gets its name; returns those that exist. Hidden files
-    /// beside them, which a killed run left, are removed at once.
+    /// Sets the results of the last run. They are removed just before the new files get their names. Hidden files that a killed run left beside
+    /// them are removed immediately.
     pub fn replace(&self, results: Vec<PathBuf>) {
         let mut inner = self.inner();
         if inner.alone && !inner.locks.is_empty() {
@@ -87,13 +87,13 @@ impl Batch {
         inner.last = results;
     }
 
-    /// Opens the folder, or one below it, for files with these names, the seal last.
+    /// Opens the folder, or a folder below it, for files with these names, the seal last.
     ///
     /// # Errors
     /// When the folder or a file in it cannot be created.
     pub fn folder(&self, path: &Path, names: &[&str]) -> Result<Folder, OutputError> {
         let mut inner = self.inner();
-        // The user may have removed it since it was locked.
+        // The user may have removed the folder since it was locked.
         let root = inner.path.clone();
         if !root.exists() {
             inner.make(&root)?;
@@ -118,10 +118,10 @@ impl Batch {
         Ok(folder)
     }
 
-    /// Gives all complete files their names, after removing the results of the last run.
+    /// Removes the results of the last run, then gives all complete files their names.
     ///
     /// # Errors
-    /// When the system refuses; the folders are then left without their seals, or untouched.
+    /// When the system reports an error. The folders are then without their seals, or unchanged.
     pub fn publish(&self) -> Result<(), OutputError> {
         let mut inner = self.inner();
         let failed = |path: &Path| OutputError::io(format!("cannot write {}", path.display()));
@@ -134,7 +134,7 @@ impl Batch {
         let mut emptied: Vec<&Path> = folders(&last);
         emptied.sort_by_key(|folder| std::cmp::Reverse(folder.components().count()));
         for folder in emptied.into_iter().filter(|folder| *folder != inner.path) {
-            // A folder that holds anything else stays.
+            // A folder with other files stays.
             let _ = fs::remove_dir(folder);
         }
         let (mut files, mut seals) = (Vec::new(), Vec::new());
@@ -142,7 +142,7 @@ impl Batch {
             seals.extend(folder.pop());
             files.extend(folder);
         }
-        // The comparison of several models is prepared last and sealed first: it marks their folders as those of one run.
+        // The comparison of several models is prepared last and sealed first: it shows that the folders of the models belong to one run.
         for (path, file) in files.into_iter().chain(seals.into_iter().rev()) {
             let persisted = file.persist(&path);
             persisted.map_err(|error| failed(&path)(error.error))?;
@@ -150,7 +150,7 @@ impl Batch {
         Ok(())
     }
 
-    /// Drops all files that are complete but not published.
+    /// Deletes all files that are complete but not published.
     pub fn abandon(&self) {
         self.inner().prepared.clear();
     }
@@ -161,7 +161,7 @@ impl Batch {
 }
 
 impl Inner {
-    /// Creates a folder and missing folders around it.
+    /// Creates a folder and its missing parent folders.
     fn make(&mut self, path: &Path) -> Result<(), OutputError> {
         for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
             if ancestor.as_os_str().is_empty() || ancestor.exists() {
@@ -180,10 +180,10 @@ impl Inner {
         Ok(())
     }
 
-    /// Locks the folder, and shares the lock of every folder around it with others that write below that one.
+    /// Locks the folder, and takes shared locks of all folders above it.
     fn lock(&mut self) -> Result<(), OutputError> {
         self.locks = lock(&self.path, self.alone)?.into_iter().collect();
-        // Links in the path lead to other folders around it.
+        // With links in the path, the folders above differ from those in the path.
         let canonical = self.path.canonicalize().unwrap_or_default();
         for around in canonical.ancestors().skip(1) {
             self.locks.extend(lock(around, false)?);
@@ -200,17 +200,17 @@ impl Drop for Inner {
     fn drop(&mut self) {
         self.prepared.clear();
         for made in self.made.iter().rev() {
-            // A folder that holds anything stays.
+            // A folder that is not empty stays.
             let _ = fs::remove_dir(made);
         }
     }
 }
 
 impl Folder {
-    /// Opens the folder for the files with these names, the seal last; creates the folder if necessary. [`Folder::complete`] gives the
-    /// files their names.
+    /// Opens the folder for files with these names, the seal last; creates the folder if necessary. [`Folder::complete`] gives the files their
+    /// names.
     ///
-    /// A single file is replaced in one step and cannot mix with others, so commands that write only one share the lock.
+    /// A single file is replaced in one step and cannot mix with others. So commands that write a single file share the lock.
     ///
     /// # Errors
     /// When the folder or a file in it cannot be created, or another command is writing to it.
@@ -222,28 +222,28 @@ impl Folder {
         })
     }
 
-    /// Names a result that earlier runs may have left and that this run does not write.
+    /// Adds the name of a result that earlier runs may have left and that this run does not write.
     pub fn forget(&mut self, name: &str) {
         self.obsolete.push(name.to_owned());
     }
 
-    /// This folder with every picture in this format too, beside its SVG.
+    /// Sets the format in which pictures are written in addition to SVG.
     #[must_use]
     pub fn with_pictures(mut self, pictures: Option<PictureFormat>) -> Self {
         self.pictures = pictures;
         self
     }
 
-    /// The path of the folder.
+    /// Returns the path of the folder.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Writes to the file of that name.
+    /// Writes to the file with this name.
     ///
     /// # Errors
-    /// When the system refuses.
+    /// When the system reports an error.
     ///
     /// # Panics
     /// When the folder was not opened with this name.
@@ -254,15 +254,15 @@ impl Folder {
         written.map_err(self.cannot_write(name))
     }
 
-    /// All files with their names, to be written in turn.
+    /// Returns all files with their names, to be written.
     pub fn files(&mut self) -> impl Iterator<Item = (&str, &mut impl Write)> {
         self.files.iter_mut().map(|(name, file)| (&**name, file))
     }
 
-    /// Adds a file with these contents, which is not the seal. Its name may be that of a file in a subfolder, which is created.
+    /// Adds a file with these contents. It is not the seal. The name may be in a subfolder, which is created.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the file cannot be written.
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
         if let Some(folder) = self.path.join(name).parent() {
             self.batch.inner().make(folder)?;
@@ -277,10 +277,10 @@ impl Folder {
         Ok(())
     }
 
-    /// Completes the files. They get their names when their batch is published, which a folder that was opened by itself does at once.
+    /// Completes the files. They get their names when the batch is published; [`Folder::open`] makes a batch that is published here.
     ///
     /// # Errors
-    /// When the system refuses; earlier results are then left without their seal, or untouched.
+    /// When the system reports an error. Earlier results are then without their seal, or unchanged.
     pub fn complete(mut self) -> Result<(), OutputError> {
         for (name, writer) in std::mem::take(&mut self.files) {
             let file = writer
@@ -317,7 +317,7 @@ impl Folder {
         Ok(())
     }
 
-    /// A new file under a hidden name.
+    /// Creates a file under a hidden name.
     fn hidden(&self, name: &str) -> Result<NamedTempFile, OutputError> {
         let path = self.path.join(name);
         let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
@@ -338,13 +338,13 @@ impl Folder {
     }
 }
 
-/// A picture in another format.
+/// Converts a picture to another format.
 fn converted(picture: &NamedTempFile, format: PictureFormat) -> io::Result<Vec<u8>> {
     let picture = fs::read_to_string(picture.path())?;
     format.of_picture(&picture).map_err(io::Error::other)
 }
 
-/// The folders of these files, each once.
+/// Returns the folders of these files, without duplicates.
 fn folders(files: &[PathBuf]) -> Vec<&Path> {
     let mut folders: Vec<&Path> = files.iter().filter_map(|file| file.parent()).collect();
     folders.sort_unstable();
@@ -352,7 +352,8 @@ fn folders(files: &[PathBuf]) -> Vec<&Path> {
     folders
 }
 
-/// Locks a folder, for one command alone or for several. The system unlocks it when the program ends, even if it is killed.
+/// Locks a folder, exclusively or shared; `None` if the folder cannot be locked. The system unlocks it when the program ends, even if it is
+/// killed.
 fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     let Ok(folder) = File::open(path) else {
         return Ok(None);
@@ -370,7 +371,7 @@ fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     }
 }
 
-/// Removes the hidden files of killed runs, as far as possible.
+/// Removes the hidden files of killed runs if possible.
 fn remove_abandoned(path: &Path) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
     for entry in entries {

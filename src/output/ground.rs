@@ -3,10 +3,10 @@
 use super::envelope::{COLUMNS, Envelope};
 use crate::dynamics::ground::GroundMotion;
 
-/// Number of parts into which a piece is cut if it is not a straight line.
+/// Number of parts into which a curved piece is divided.
 const POINTS: u32 = 24;
 
-/// Times in seconds up to an end, and the horizontal accelerations in g; a jump is two points at the same time.
+/// Returns times in seconds up to an end, and horizontal accelerations in g. A jump has two points at the same time.
 pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> Vec<(f64, f64)> {
     let mut points = Vec::new();
     let pieces = ground.pieces.iter();
@@ -28,7 +28,7 @@ pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> V
     if points.len() <= 2 * COLUMNS {
         return points;
     }
-    // Longer curves are those of records and of long wave trains; they are thinned.
+    // Thins longer curves: those of records and long wave trains.
     let mut envelope = Envelope::default();
     for (time_s, ground_g) in points {
         envelope.push(time_s, ground_g);

@@ -3,7 +3,7 @@
 /// Names of the hinges of an arch, from left to right.
 pub(crate) const HINGES: [&str; 4] = ["A", "B", "C", "D"];
 
-/// Names of the columns for each body: `rotation_left_rad`, or `rotation_rad` if there is only one body.
+/// Returns the names of the columns for each body: `rotation_left_rad`, or `rotation_rad` if there is only one body.
 pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<String> {
     let name = |body: &String| match &**body {
         "" => format!("{quantity}_{unit}"),
@@ -12,7 +12,7 @@ pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<Stri
     bodies.iter().map(name).collect()
 }
 
-/// Values of the bodies with their names, from left to right.
+/// Returns the values of the bodies with their names, from left to right.
 #[must_use]
 pub fn by_body(bodies: &[String], values: &[f64]) -> String {
     let named = bodies.iter().zip(values);
@@ -22,7 +22,7 @@ pub fn by_body(bodies: &[String], values: &[f64]) -> String {
     texts.join(", ")
 }
 
-/// Degrees, with rounding errors at the left springing removed.
+/// Converts an angle to degrees, without rounding errors at the left springing.
 pub(crate) fn degrees(angle_rad: f64) -> f64 {
     let angle_rad = if angle_rad < 1e-12 { 0.0 } else { angle_rad };
     angle_rad.to_degrees()

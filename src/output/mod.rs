@@ -1,4 +1,4 @@
-//! Results in files: tables as CSV, summaries as JSON, written completely or not at all.
+//! Files of results: tables as CSV, summaries as JSON. Files are written completely or not at all.
 //!
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
@@ -35,7 +35,7 @@ use thiserror::Error;
 
 use crate::scenario::shown_lines;
 
-/// Why results could not be written.
+/// Errors of writing results.
 #[derive(Debug, Error)]
 pub enum OutputError {
     /// The system reported an error.
@@ -49,7 +49,7 @@ pub enum OutputError {
     /// Another run is writing to the folder.
     #[error("the folder {} is being written to by another run", folder.display())]
     InUse {
-        /// Its path.
+        /// Path of the folder.
         folder: PathBuf,
     },
     /// A result is not a finite number. This is a bug in the program; nothing is written.
@@ -61,7 +61,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// Whether the reader of a pipe has closed it, which is not a failure.
+    /// Returns true if the reader of a pipe has closed it, which is not a failure.
     #[must_use]
     pub fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
@@ -84,15 +84,15 @@ impl OutputError {
     }
 }
 
-/// JSON that people can read too: invisible characters are escaped.
+/// Formats JSON for people: indented, with invisible characters escaped.
 #[must_use]
 pub fn pretty(value: &Value) -> String {
     shown_lines(&format!("{value:#}\n"))
 }
 
-/// The two ends of a range with this number of decimals, or with as many as it takes to distinguish them.
+/// Formats the two ends of a range with this number of decimals, or with as many as needed to distinguish them.
 pub(crate) fn range_ends([from, to]: [f64; 2], decimals: usize) -> [String; 2] {
-    // More decimals than any two different numbers of this program need.
+    // Enough decimals for any two different numbers of this program.
     const MOST: usize = 15;
     let with = |decimals: usize| [from, to].map(|end| format!("{end:.decimals$}"));
     (decimals..MOST)

@@ -5,12 +5,12 @@ use serde_json::Value;
 pub(crate) use super::text::escaped;
 use crate::scenario::shown_lines;
 
-/// Fills a template: each name between `%` signs is replaced by its text. The inserted texts are not scanned again.
+/// Fills a template: each name between `%` signs is replaced by its text. Inserted texts are not searched for names.
 pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     let (mut page, mut is_name) = (String::new(), true);
     for part in template.split('%') {
         let named = texts.iter().find(|(name, _)| *name == part);
-        // A sign between two parts of the page belongs to the page.
+        // A sign that does not enclose a name is part of the page.
         if !is_name && named.is_none() {
             page.push('%');
         }
@@ -20,7 +20,7 @@ pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
     page
 }
 
-/// JSON that is safe inside a script of a page: nothing in it ends the script.
+/// Formats JSON for a script of a page: nothing in the text ends the script.
 pub(crate) fn script_safe(data: &Value) -> String {
     shown_lines(&data.to_string()).replace('<', "\\u003c")
 }

@@ -1,4 +1,4 @@
-//! Panels over a shared time axis, as in all pictures of histories.
+//! Panels over a common time axis, for all pictures of histories.
 
 use super::axes::Scale;
 use super::chart::{Chart, Mark, PANEL_LEFT_PX, Shape};
@@ -10,7 +10,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::State;
 use crate::mechanics::sway::Sway;
 
-/// Bands narrower than this, in pixels, cannot be distinguished.
+/// Smallest width of a band, in pixels; narrower ones cannot be distinguished.
 const NARROWEST_PX: f64 = 1.0;
 
 /// Gap between panels.
@@ -19,13 +19,13 @@ const GAP_PX: f64 = 30.0;
 /// The subject of the picture of a history.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
-    /// Text above the picture.
+    /// Title of the picture.
     pub title: &'a str,
     /// The ground motion.
     pub ground: &'a GroundMotion,
-    /// Gravity.
+    /// Gravity, in m/s2.
     pub gravity_m_s2: f64,
-    /// Accelerations that start the structure to the right and to the left, in g, if they exist.
+    /// Accelerations that start the structure to the right and to the left, in g; `None` if no acceleration starts it.
     pub incipient_g: [Option<f64>; 2],
 }
 
@@ -44,19 +44,19 @@ pub(crate) struct States {
 pub(crate) struct Panels {
     figure: Figure,
     title: String,
-    /// The shared axis of time.
+    /// The common time axis.
     x: Scale,
     panels: Vec<Chart>,
-    /// Entries of the legend that only this picture has.
+    /// Entries of the legend that are specific to this picture.
     pub(crate) keys: Vec<Key>,
     /// True if there are hops too short to distinguish.
     hops: bool,
-    /// Whether the accelerations that start the structure are drawn.
+    /// True if the accelerations that start the structure are drawn.
     incipient: bool,
 }
 
 impl Panels {
-    /// Panels over this range of times.
+    /// Makes panels over this range of times.
     pub(crate) fn new(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
         let end_s = end_s.max(start_s + f64::MIN_POSITIVE);
         Self {
@@ -70,7 +70,7 @@ impl Panels {
         }
     }
 
-    /// Adds the next panel, of this height on the screen, shaded by the states of the structure.
+    /// Adds a panel below the others, with this height on the screen, shaded by the states of the structure.
     pub(crate) fn panel(
         &mut self,
         label: &str,
@@ -93,7 +93,7 @@ impl Panels {
         });
     }
 
-    /// Adds a panel with these curves, on a scale that holds them all; nothing if all are zero throughout.
+    /// Adds a panel with these curves, on a scale that contains all of them; nothing if all curves are zero.
     pub(crate) fn curves(
         &mut self,
         label: &str,
@@ -108,7 +108,7 @@ impl Panels {
         }
     }
 
-    /// Adds the panel of the ground, with the accelerations that start the structure; nothing if the ground stays still.
+    /// Adds the panel of the ground, with the accelerations that start the structure; nothing if the ground does not move.
     pub(crate) fn ground(
         &mut self,
         height_px: f64,
@@ -133,8 +133,7 @@ impl Panels {
         self.curves("Ground (g)", height_px, curves, states);
     }
 
-    /// The file, with the time axis below the panels and a legend: first its own entries, then those that all pictures
-    /// share.
+    /// Draws the picture, with the time axis below the panels and a legend: first the specific entries, then those common to all pictures.
     pub(crate) fn finish(self, shaded: bool) -> String {
         let (mut panels, mut keys) = (self.panels, self.keys);
         if shaded {
@@ -164,7 +163,7 @@ impl Panels {
     }
 }
 
-/// A scale that holds curves, more values and zero, with a little margin, so that no curve runs along the frame.
+/// Returns a scale that contains curves, further values and zero, with a small margin so that no curve coincides with the frame.
 pub(crate) fn around(curves: &[Mark], more: impl IntoIterator<Item = f64>, ticks: u32) -> Scale {
     let values = curves.iter().flat_map(Mark::points).map(|point| point.1);
     let values = values.chain(more).filter(|value| value.is_finite());
@@ -177,7 +176,7 @@ type Shade = (&'static str, &'static str);
 const SWAYS_RIGHT: Shade = ("right", color::SKY);
 const SWAYS_LEFT: Shade = ("left", color::ORANGE);
 const OVERTURNED: Shade = ("overturned", color::BLACK);
-/// Hops to both sides that are too short to be seen one by one.
+/// Shade of hops to both sides that are too short to be visible one by one.
 const HOPS: Shade = ("hops", color::GREY);
 
 /// Opacity of the bands.
@@ -192,8 +191,8 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
-/// The shades of the states of the structure; true if there are hops too short to distinguish.
-/// A sequence of such hops gets one common shade.
+/// Returns the shades of the states of the structure, and true if there are hops too short to distinguish. A sequence of such hops has one
+/// common shade.
 fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
     let (start_s, end_s) = (x.low, x.high);
     let width_px = figure.right_of(PANEL_LEFT_PX, Frame::default()).width;
@@ -227,12 +226,12 @@ fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
     (bands, hops)
 }
 
-/// The entry of a legend for the instant of overturning.
+/// Returns the legend entry for the time of overturning.
 pub(crate) fn overturns() -> Key {
     Key::line("overturns", OVERTURNING)
 }
 
-/// The mark of the instant of overturning.
+/// Returns the mark at the time of overturning.
 pub(crate) fn overturning(time_s: f64, y: Scale) -> Mark {
     Mark::upright("overturning", OVERTURNING, time_s, y)
 }

@@ -8,10 +8,10 @@ use super::scene::{Mark, Scene, link, sections_rad};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::parts::Outline;
 
-/// A point of a structure. The body that carries it may depend on which hinges are open.
+/// A point of a structure. The body that carries the point may depend on the open hinges.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Its position in the undeformed structure, in metres.
+    /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     part: Part,
 }
@@ -26,11 +26,11 @@ enum Part {
 }
 
 impl Scene {
-    /// The point of the structure at this place, undeformed, in metres. A place just outside counts as a point of the nearest
-    /// block, within the error of rounding and of drawing curves as straight lines.
+    /// Finds the point of the structure at this undeformed position, in metres. A position just outside belongs to the nearest block, within
+    /// rounding errors and the error of curves drawn as straight lines.
     ///
     /// # Errors
-    /// If the place is outside the structure; the error is the nearest place inside.
+    /// When the position is outside the structure; the error is the nearest position inside.
     pub fn point(&self, at_m: impl Into<Vector2<f64>>) -> Result<Point, Vector2<f64>> {
         let at_m = at_m.into();
         let pieces = self.pieces(&[]).into_iter().enumerate();
@@ -46,7 +46,7 @@ impl Scene {
             Outline::Ring { ring, .. } => {
                 let left = ring.radial(0.0);
                 let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
-                // Down to this angle a point lies just below the left springing; beyond, it has gone round the other way.
+                // Points just below the left springing have angles down to this one; smaller angles are beyond the right springing.
                 let before_rad = 0.5 * (ring.embrace_rad - TAU);
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
                 Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad))
@@ -56,7 +56,7 @@ impl Scene {
         Ok(Point { at_m, part })
     }
 
-    /// A point with the body that carries it while these hinges are open.
+    /// Returns a point with the body that carries it while these hinges are open.
     #[must_use]
     pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
         let body = match (point.part, &self.outline) {
@@ -70,16 +70,16 @@ impl Scene {
     }
 }
 
-/// A point this near to the structure, relative to its size, belongs to it.
+/// Largest distance of a position from the structure that still belongs to it, over the size of the structure.
 const BESIDE_RATIO: f64 = 5e-3;
 
-/// The point nearest to a place, on or inside an outline.
+/// Returns the point on or inside an outline that is nearest to a position.
 fn nearest(outline_m: &[Vector2<f64>], at_m: Vector2<f64>) -> Vector2<f64> {
     let sides = || {
         let next = outline_m.iter().cycle().skip(1);
         outline_m.iter().zip(next)
     };
-    // From a point inside, a line to the right crosses the outline an odd number of times.
+    // A line to the right of a point inside crosses the outline an odd number of times.
     let crossings = sides().filter(|(a, b)| {
         (a.y > at_m.y) != (b.y > at_m.y)
             && at_m.x < a.x + (b.x - a.x) * (at_m.y - a.y) / (b.y - a.y)

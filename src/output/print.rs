@@ -1,5 +1,4 @@
-//! Pictures as PDF and PNG, for journals and programs that do not take SVG. The feature `print` makes them; the program builds
-//! without it, in half the time.
+//! Pictures as PDF and PNG, for journals and programs without SVG. The feature `print` is needed; builds without it take half the time.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -7,21 +6,21 @@ use std::str::FromStr;
 use thiserror::Error;
 
 named! {
-    /// Format of a picture, by the extension of its files.
+    /// Format of a picture, named by the extension of its files.
     pub enum PictureFormat {
         /// Lines and texts, for browsers and drawing programs.
         Svg = "svg",
         /// Lines and texts for print, with fonts embedded.
         Pdf = "pdf",
-        /// Pixels: 600 to an inch of print, 2 to a pixel of the screen.
+        /// Pixels: 600 per inch of print, 2 per pixel of the screen.
         Png = "png",
     }
 }
 
-/// Why a picture is not written in a format.
+/// Errors of converting a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum PrintError {
-    /// The program was built without.
+    /// The program was built without the feature `print`.
     #[error(
         "this archrock was built without PDF and PNG: build it with `cargo install --path . --features print`, or choose SVG"
     )]
@@ -29,7 +28,7 @@ pub enum PrintError {
     /// There is no such format.
     #[error("pictures are written as svg, pdf and png, not as {0:?}")]
     Unknown(String),
-    /// The system has no font for its texts.
+    /// The system has no suitable font.
     #[error(
         "the system has no font like Helvetica: install one, such as Liberation Sans, or take the picture as SVG"
     )]
@@ -52,10 +51,10 @@ impl FromStr for PictureFormat {
 }
 
 impl PictureFormat {
-    /// The formats that pictures may have beside SVG.
+    /// The formats in addition to SVG.
     pub const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
 
-    /// The format of a file, by its extension; SVG without one.
+    /// Returns the format of a file from its extension; SVG without an extension.
     ///
     /// # Errors
     /// When there is no such format, or the program was built without it.
@@ -66,10 +65,10 @@ impl PictureFormat {
         }
     }
 
-    /// A picture in this format.
+    /// Converts an SVG picture to this format.
     ///
     /// # Errors
-    /// When the program was built without it, or the system lacks a font.
+    /// When the program was built without this format, or the system has no suitable font.
     pub fn of_picture(self, picture: &str) -> Result<Vec<u8>, PrintError> {
         match self {
             Self::Svg => Ok(picture.as_bytes().to_vec()),
@@ -96,10 +95,10 @@ mod converted {
     use super::PrintError;
     use crate::output::text::FONTS;
 
-    /// Dots to an inch of print, and to one of the screen.
+    /// Resolution of pictures for print and for the screen, in dots per inch.
     const PRINT_DPI: f32 = 600.0;
     const SCREEN_DPI: f32 = 192.0;
-    /// Pixels of CSS and points of print to an inch.
+    /// Pixels of CSS per inch, and points of print per inch.
     const CSS_DPI: f32 = 96.0;
     const POINTS_PER_INCH: f32 = 72.0;
 
@@ -136,7 +135,7 @@ mod converted {
             .to_int_size();
         let pixels = Pixmap::new(whole.width(), whole.height());
         let mut pixels = pixels.ok_or_else(|| failed("it is too large"))?;
-        // Stretched by the part of a pixel that rounding adds, so that the last row and column are as opaque as the others.
+        // Stretches the picture to whole pixels, so that the last row and column are as opaque as the others.
         let whole = whole.to_size();
         let scaled =
             Transform::from_scale(whole.width() / size.width(), whole.height() / size.height());
@@ -158,7 +157,7 @@ mod converted {
             families: &names.collect::<Vec<_>>(),
             ..Query::default()
         };
-        // Without a font texts would be left out, without a word.
+        // Without a font texts would be missing without an error.
         fonts.query(&query).ok_or(PrintError::NoFont)?;
         usvg::Tree::from_str(picture, &options)
             .map_err(|error| PrintError::Failed(error.to_string()))

@@ -9,8 +9,8 @@ use super::sheet::{Key, Sign};
 use super::svg::{Stroke, color};
 use crate::dynamics::ground::intensity::Intensity;
 
-/// Draws acceleration, velocity, displacement and the build-up of the Arias intensity. The significant duration is
-/// shaded. Samples are times in s and accelerations in m/s2.
+/// Draws acceleration, velocity, displacement and the build-up of the Arias intensity, with the significant duration shaded. `samples` are times
+/// in s and accelerations in m/s2.
 #[must_use]
 pub fn draw(
     figure: Figure,

@@ -1,5 +1,5 @@
-//! The drawable parts of a structure at an instant: outlines of its bodies, hinges and the line of thrust. All are
-//! points of bodies, so that poses move them.
+//! The drawable parts of a structure at an instant: outlines of its bodies, hinges and the thrust line. All are points of bodies, so poses move
+//! them.
 
 use nalgebra::Vector2;
 
@@ -18,18 +18,18 @@ use crate::scenario::{Dimension, Structure, metres};
 #[derive(Clone, Debug)]
 pub struct Scene {
     pub(super) outline: Outline,
-    /// True: the blocks between two hinges form one body, and those outside the hinges stand still.
+    /// True if the blocks between two hinges form one body and those outside the hinges do not move.
     linked: bool,
-    /// The sections at which the position of the line of thrust is known.
+    /// Sections at which the position of the thrust line is known.
     pub sections: Vec<Section>,
     /// Poses of the left and the right support of an arch.
     pub supports: [Pose; 2],
-    /// Poses and hinges of a picture at rest; empty if the structure is undeformed.
+    /// Poses and hinges of the structure at rest; empty if it is undeformed.
     pub stands: (Vec<Pose>, Vec<OpenHinge>),
     ties: Vec<Tie>,
-    /// The fill on blocks: blocks and outlines.
+    /// The fill on blocks: index of the block and outline.
     pub fill_m: Vec<FillColumn>,
-    /// The masses on blocks, each with its block and the place of its middle in the undeformed structure, in metres.
+    /// The loads, each with its block and the position of its middle in the undeformed structure, in metres.
     loads: Vec<((usize, Vector2<f64>), PlacedLoad)>,
     /// The dimensions of the structure.
     pub dimensions: Vec<Dimension>,
@@ -38,16 +38,16 @@ pub struct Scene {
 /// The compressed part of a joint, from the intrados to the extrados.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pressed {
-    /// Its ends.
+    /// Ends of the compressed part.
     pub ends: [Mark; 2],
-    /// Compressive stress there, in Pa.
+    /// Compressive stresses at the ends, in Pa.
     pub stresses_pa: [f64; 2],
-    /// Unit vector normal to the undeformed joint, pointing into the block after it.
+    /// Unit normal of the undeformed joint, towards the block after it.
     pub across: Vector2<f64>,
 }
 
 impl Pressed {
-    /// The stress as a wedge on the joint, with this height in metres per Pa.
+    /// Returns the stress as a wedge on the joint, with this height in metres per Pa.
     #[must_use]
     pub fn wedge(&self, metres_per_pa: f64) -> [Mark; 4] {
         let [first, last] = self.ends;
@@ -63,24 +63,24 @@ impl Pressed {
 /// A piece of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piece {
-    /// Index of the body; `None`: it stands still.
+    /// Index of the body; `None` for a part that does not move.
     pub body: Option<usize>,
-    /// Its corners in metres, undeformed, along the outline.
+    /// Undeformed corners along the outline, in metres.
     pub outline_m: Vec<Vector2<f64>>,
 }
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// Index of the body; `None`: it stands still.
+    /// Index of the body; `None` for a point that does not move.
     pub body: Option<usize>,
-    /// Its position in the undeformed structure, in metres.
+    /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
 }
 
 impl Mark {
-    /// The current position of the point, with its displacement multiplied by `exaggeration`. Points that coincide still coincide, and
-    /// shut joints stay shut, at any exaggeration. The price is that bodies grow with the square of their rotation.
+    /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
+    /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
         let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
@@ -89,7 +89,7 @@ impl Mark {
 }
 
 impl Piece {
-    /// The current positions of its corners, with their displacements multiplied by `exaggeration`.
+    /// Returns the current positions of the corners, with their displacements multiplied by `exaggeration`.
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
         let (body, corners) = (self.body, self.outline_m.iter());
@@ -99,14 +99,14 @@ impl Piece {
 }
 
 impl Scene {
-    /// A structure that rocks as mechanisms; the blocks of an arch are linked.
+    /// Makes the scene of a structure that rocks as mechanisms; the blocks of an arch are linked.
     #[must_use]
     pub fn new(structure: &Structure) -> Self {
         let (parts, ties) = (structure.as_parts(), structure.ties());
         Self::of(structure, parts, structure.thrusts(), ties)
     }
 
-    /// A structure that moves as the blocks of this row.
+    /// Makes the scene of a structure that moves as the blocks of this row.
     #[must_use]
     pub fn of_row(row: &Row, structure: &Structure) -> Self {
         Self::of(structure, row, false, &row.ties)
@@ -131,13 +131,13 @@ impl Scene {
         }
     }
 
-    /// Whether a support has moved.
+    /// Returns true if a support has moved.
     #[must_use]
     pub fn has_settled(&self) -> bool {
         self.supports != [Pose::UNDEFORMED; 2]
     }
 
-    /// The ends of the ties when these hinges are open.
+    /// Returns the ends of the ties while these hinges are open.
     #[must_use]
     pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
         let end = |anchor: Anchor| Mark {
@@ -147,8 +147,8 @@ impl Scene {
         self.ties.iter().map(|tie| tie.ends.map(end)).collect()
     }
 
-    /// The faces of the supports of an arch, in metres, from the intrados to the extrados, with their displacements multiplied by
-    /// `exaggeration`; empty for a column, which stands on the ground.
+    /// Returns the faces of the supports of an arch, in metres, from the intrados to the extrados, with their displacements multiplied by
+    /// `exaggeration`. Empty for a column, which stands on the ground.
     #[must_use]
     pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
         let is_arch = match &self.outline {
@@ -170,14 +170,14 @@ impl Scene {
             .collect()
     }
 
-    /// Lower left and upper right corner of the undeformed structure, in metres.
+    /// Returns the lower left and the upper right corner of the undeformed structure, in metres.
     #[must_use]
     pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
         let ends = self.ties.iter().flat_map(|tie| &tie.ends);
         widened(self.blocks_m(), ends.map(|end| end.at_m))
     }
 
-    /// Lower left and upper right corner of the undeformed blocks alone, in metres.
+    /// Returns the lower left and the upper right corner of the undeformed blocks, in metres.
     #[must_use]
     pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
         let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
@@ -185,7 +185,7 @@ impl Scene {
         widened(empty, pieces.flat_map(|piece| piece.outline_m))
     }
 
-    /// Lower left and upper right corner with fill and loads, as built and at rest, in metres.
+    /// Returns the lower left and the upper right corner of the structure with fill and loads, undeformed and at rest, in metres.
     #[must_use]
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
         let (fill, loads) = (self.fill(&[]), self.loads.iter());
@@ -196,7 +196,7 @@ impl Scene {
         widened(self.bounds_m(), built.chain(there))
     }
 
-    /// The fill in pieces when these hinges are open.
+    /// Returns the fill in pieces while these hinges are open.
     #[must_use]
     pub fn fill(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         let pieces = self.fill_m.iter().map(|(block, outline_m)| Piece {
@@ -206,7 +206,7 @@ impl Scene {
         pieces.collect()
     }
 
-    /// The masses on the bodies when these hinges are open, each with the place of its middle.
+    /// Returns the loads while these hinges are open, each with the position of its middle.
     #[must_use]
     pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, &PlacedLoad)> {
         let loads = self.loads.iter().map(|((block, at_m), load)| {
@@ -216,7 +216,7 @@ impl Scene {
         loads.collect()
     }
 
-    /// Dimensions and loads in words, for pictures without room to draw them; may be empty.
+    /// Returns dimensions and loads in words, for pictures without space to draw them; may be empty.
     #[must_use]
     pub fn sizes_in_words(&self) -> String {
         let lengths = self.dimensions.iter();
@@ -226,7 +226,8 @@ impl Scene {
         lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 
-    /// Joints from left to right, or from below, each from the intrados to the extrados, in metres; empty if hinges may open anywhere.
+    /// Returns the joints from left to right, or from bottom to top, each from the intrados to the extrados, in metres. Empty if hinges may open
+    /// anywhere.
     #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
         match &self.outline {
@@ -246,7 +247,7 @@ impl Scene {
         }
     }
 
-    /// The body that a block of a row is part of when these hinges are open.
+    /// Returns the body of a block while these hinges are open; `None` if the block does not move.
     pub(super) fn body_of(&self, block: usize, hinges: &[OpenHinge]) -> Option<usize> {
         match self.outline {
             Outline::Row { .. } if self.linked => linked_body(hinges, block),
@@ -254,7 +255,7 @@ impl Scene {
         }
     }
 
-    /// The bodies cut into pieces while these hinges are open. A ring is cut at its hinges and its joints.
+    /// Returns the bodies as pieces while these hinges are open. A ring is divided at its hinges and its joints.
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         match &self.outline {
@@ -295,14 +296,14 @@ impl Scene {
         }
     }
 
-    /// The positions of the open hinges, as points of the body to the right of each, or above it.
+    /// Returns the positions of the open hinges, as points of the body to the right of the hinge, or above it.
     #[must_use]
     pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
         let last = hinges.len().saturating_sub(1);
         let marks = hinges.iter().enumerate();
         let marks = marks.filter_map(|(index, open)| {
             let mark = self.hinge(open.hinge)?;
-            // The last hinge lies on the part that stands still.
+            // The last hinge is on the part that does not move.
             let link = (index < last).then_some(index);
             let body = if self.linked { link } else { mark.body };
             Some(Mark { body, ..mark })
@@ -331,7 +332,7 @@ impl Scene {
         Some(Mark { body, at_m })
     }
 
-    /// A point on an edge of a ring, in metres.
+    /// Returns a point on an edge of a ring, in metres; `None` for other structures.
     fn on_ring_m(&self, angle_rad: f64, edge: Edge) -> Option<Vector2<f64>> {
         match &self.outline {
             Outline::Ring {
@@ -343,8 +344,8 @@ impl Scene {
         }
     }
 
-    /// The corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several
-    /// blocks move as one body.
+    /// Returns the corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several blocks move as one
+    /// body.
     #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
         match &self.outline {
@@ -358,7 +359,7 @@ impl Scene {
             return None;
         };
         let section = self.sections.get(joint)?;
-        // The support follows the last block of an arch. If it has moved, the block on it gives its pose.
+        // The support comes after the last block of an arch. If the support has moved, that block has its pose.
         let last = self.has_settled().then(|| outlines_m.len() - 1);
         Some([-0.5, 0.5].map(|part| Mark {
             body: (joint < outlines_m.len()).then_some(joint).or(last),
@@ -366,7 +367,7 @@ impl Scene {
         }))
     }
 
-    /// The compressed parts of the elastic joints of a row; empty for rigid joints.
+    /// Returns the compressed parts of the elastic joints of a row; empty for rigid joints.
     #[must_use]
     pub fn pressed(&self, sample: &Sample) -> Vec<Pressed> {
         let pressures = sample.pressures.iter().enumerate();
@@ -395,7 +396,7 @@ impl Scene {
             .collect()
     }
 
-    /// Unit vector normal to an undeformed joint of a row, pointing into the block after it.
+    /// Returns the unit normal of an undeformed joint of a row, towards the block after it.
     #[must_use]
     pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
         let Outline::Row { outlines_m } = &self.outline else {
@@ -403,7 +404,7 @@ impl Scene {
         };
         let section = self.sections.get(joint)?;
         let across = Vector2::new(section.across_m.y, -section.across_m.x).normalize();
-        // The vector must point away from the block before the joint, or into the block after it.
+        // The normal must point away from the block before the joint, or into the block after it.
         let (block, into) = match joint.checked_sub(1) {
             Some(before) => (before, -1.0),
             None => (joint, 1.0),
@@ -414,7 +415,7 @@ impl Scene {
         Some(across * (into * towards.signum()))
     }
 
-    /// The body that carries each of [`Scene::sections`] while these hinges are open.
+    /// Returns the body that carries each of [`Scene::sections`] while these hinges are open.
     #[must_use]
     pub fn bodies_of_sections(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let hinges_rad = sections_rad(hinges);
@@ -433,7 +434,7 @@ impl Scene {
             .collect()
     }
 
-    /// The line of thrust of a sample, in stretches over consecutive compressed sections.
+    /// Returns the thrust line of a sample, as stretches of consecutive compressed sections.
     #[must_use]
     pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<Mark>> {
         let bodies = self.bodies_of_sections(&sample.hinges);
@@ -455,7 +456,7 @@ impl Scene {
     }
 }
 
-/// The link to which a block of a row belongs while hinges are open at these joints.
+/// Returns the link to which a block of a row belongs while hinges are open at these joints; `None` if the block does not move.
 fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
     let before = hinges
         .iter()
@@ -464,7 +465,7 @@ fn linked_body(hinges: &[OpenHinge], block: usize) -> Option<usize> {
     (link + 1 < hinges.len()).then_some(link)
 }
 
-/// The lower left and the upper right corner of a box that is widened to these points.
+/// Returns the corners of a box that is enlarged to contain these points.
 pub(crate) fn widened(
     corners: [Vector2<f64>; 2],
     points: impl IntoIterator<Item = Vector2<f64>>,
@@ -475,13 +476,13 @@ pub(crate) fn widened(
     })
 }
 
-/// Sections closer together than this count as one.
+/// Sections closer together than this are the same.
 const SAME_SECTION_RAD: f64 = 1e-9;
 
-/// Eccentricity, in thicknesses, at which a line of thrust is cut off.
+/// Eccentricity, in thicknesses, beyond which a thrust line is cut off.
 pub const FARTHEST: f64 = 1.5;
 
-/// Hinges at sections of a ring, in radians from the left springing.
+/// Returns the hinges at sections of a ring, in radians from the left springing.
 pub(super) fn sections_rad(hinges: &[OpenHinge]) -> Vec<f64> {
     let angles = hinges.iter().filter_map(|open| match open.hinge {
         Hinge::Section { angle_rad, .. } => Some(angle_rad),
@@ -490,7 +491,7 @@ pub(super) fn sections_rad(hinges: &[OpenHinge]) -> Vec<f64> {
     angles.collect()
 }
 
-/// The body to which a section belongs, of those into which the hinges cut a ring.
+/// Returns the body to which a section of a ring belongs; `None` if the section does not move.
 pub(super) fn link(hinges_rad: &[f64], angle_rad: f64) -> Option<usize> {
     let before = hinges_rad
         .iter()

@@ -1,4 +1,4 @@
-//! The layout of a picture: parts below one another, whose heights are known before anything is drawn.
+//! The layout of a picture: parts below one another, whose heights are known before drawing starts.
 
 use nalgebra::Vector2;
 
@@ -7,11 +7,11 @@ use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{LINE_PX, TEXT_PX, Text};
 use crate::bisection::{Width, bisect};
 
-/// Largest number of lines of a title; the rest is cut off.
+/// Largest number of lines of a title; the rest is omitted.
 const TITLE_LINES: usize = 3;
 /// Space below the baseline of the last line of a text.
 const BELOW_TEXT_PX: f64 = 8.0;
-/// Limits to how far plots are squeezed and stretched.
+/// Limits of the stretch of plots.
 const LEAST_STRETCH: f64 = 0.15;
 const MOST_STRETCH: f64 = 20.0;
 
@@ -21,7 +21,7 @@ pub(crate) struct Sheet<'a> {
     parts: Vec<(Height, Draw<'a>)>,
 }
 
-/// Draws a part into its frame, as wide as the sheet.
+/// Draws a part into its frame, which is as wide as the sheet.
 type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
 
 /// The height of a part in pixels.
@@ -29,9 +29,9 @@ type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
 pub(crate) enum Height {
     /// Texts and gaps.
     Fixed(f64),
-    /// A plot, which is stretched and squeezed so that the picture gets its own height.
+    /// A plot, which is stretched to give the picture its height.
     Plot(f64),
-    /// The drawing of a structure, which is stretched to the second height at most, where it fills the width.
+    /// The drawing of a structure, which is stretched up to the second height, at which it fills the width.
     Structure(f64, f64),
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct Drawn {
 }
 
 impl<'a> Sheet<'a> {
-    /// A sheet with a title, in a few lines; a very long one is cut off.
+    /// Makes a sheet with a title of at most a few lines.
     pub(crate) fn new(figure: Figure, title: &str) -> Self {
         let mut sheet = Self {
             figure,
@@ -72,7 +72,7 @@ impl<'a> Sheet<'a> {
         sheet
     }
 
-    /// Adds a part; returns its number.
+    /// Adds a part; returns its index.
     pub(crate) fn part(
         &mut self,
         height: Height,
@@ -87,7 +87,7 @@ impl<'a> Sheet<'a> {
         self.part(Height::Fixed(height_px), |_, _| ());
     }
 
-    /// Adds a centred text, in as many lines as it needs, whose first baseline is `above_px` below the last part.
+    /// Adds a centred text with as many lines as necessary. The first baseline is `above_px` below the last part.
     pub(crate) fn caption(&mut self, above_px: f64, text: &str) {
         self.captions(above_px, &[text]);
     }
@@ -103,7 +103,7 @@ impl<'a> Sheet<'a> {
         self.paragraphs(above_px, cells.collect());
     }
 
-    /// Adds lines around each of these middles.
+    /// Adds lines of text centred at each of these positions.
     fn paragraphs(&mut self, above_px: f64, paragraphs: Vec<(f64, Vec<Text>)>) {
         let most = paragraphs.iter().map(|(_, lines)| lines.len()).max();
         let below_first = LINE_PX * most.unwrap_or(0).saturating_sub(1) as f64;
@@ -116,7 +116,7 @@ impl<'a> Sheet<'a> {
         });
     }
 
-    /// Adds a legend from `left` on, in as many rows as it needs; nothing without entries.
+    /// Adds a legend from `left` on, with as many rows as necessary; nothing without entries.
     pub(crate) fn legend(&mut self, left: f64, keys: Vec<Key>) {
         if keys.is_empty() {
             return;
@@ -146,7 +146,7 @@ impl<'a> Sheet<'a> {
         });
     }
 
-    /// Draws the picture, as high as the figure wants it and its texts allow.
+    /// Draws the picture with the height of the figure, within the limits of stretch.
     pub(crate) fn drawn(self) -> Drawn {
         let Self { figure, parts } = self;
         let height = |stretch: f64| parts.iter().map(|(height, _)| height.at(stretch)).sum();
@@ -170,13 +170,13 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// The file of the picture.
+    /// Draws the picture and returns its SVG.
     pub(crate) fn finish(self) -> String {
         self.drawn().svg
     }
 }
 
-/// The stretch at which an ascending height gets near a wanted one.
+/// Finds the stretch at which the height is nearest to the wanted one. `height` increases with the stretch.
 fn stretch(height: &dyn Fn(f64) -> f64, wanted_px: f64) -> f64 {
     if height(1.0) == wanted_px {
         return 1.0;
@@ -185,7 +185,7 @@ fn stretch(height: &dyn Fn(f64) -> f64, wanted_px: f64) -> f64 {
     bisect(LEAST_STRETCH, MOST_STRETCH, Width::Rounding, is_enough).1
 }
 
-/// Draws lines of text below one another, the first at this place.
+/// Draws lines of text below one another, the first at this position.
 fn draw_lines(drawing: &mut Drawing, mut at: Vector2<f64>, anchor: Anchor, lines: Vec<Text>) {
     for line in lines {
         drawing.label(at, anchor, 0.0, line);
@@ -216,13 +216,13 @@ impl Key {
 pub(crate) enum Sign {
     /// A line.
     Line(Stroke),
-    /// A line on an area of this colour, with the name of its mark: on dark pages both keep their colours.
+    /// A line on an area of this colour, with the name of its mark. On dark pages both keep their colours.
     LineOn(&'static str, &'static str, Stroke),
     /// An area of this colour and opacity.
     Band(&'static str, f64),
     /// A circle of this radius in pixels.
     Circle(f64, Stroke),
-    /// A short upright line.
+    /// A short vertical line.
     Tick(Stroke),
 }
 
@@ -232,7 +232,7 @@ const SIGN_PX: f64 = 24.0;
 const LEGEND_ROW_PX: f64 = 24.0;
 
 impl Sign {
-    /// Draws it from the middle of its left side.
+    /// Draws the sign; `left` is the middle of its left side.
     fn draw(self, drawing: &mut Drawing, left: Vector2<f64>) {
         let ends = [left, left + Vector2::new(SIGN_PX, 0.0)];
         let middle = 0.5 * (ends[0] + ends[1]);
@@ -266,7 +266,7 @@ mod tests {
     use super::super::figure;
     use super::*;
 
-    /// The part of a picture between two texts.
+    /// Returns the part of a picture between two texts.
     fn between<'p>(picture: &'p str, before: &str, after: &str) -> &'p str {
         let (_, rest) = picture.split_once(before).unwrap();
         rest.split_once(after).unwrap().0

@@ -1,4 +1,4 @@
-//! Summaries as JSON: the type of a result is its form.
+//! Summaries as JSON, from the types of results.
 
 use rmpv::Value as Number;
 use rmpv::ext::to_value as numbers_of;
@@ -7,10 +7,10 @@ use serde_json::Value;
 
 use super::OutputError;
 
-/// The JSON of a result. Its keys are the fields of its type, in their order.
+/// Converts a result to JSON. The keys are the fields of its type, in their order.
 ///
 /// # Errors
-/// When a number is not finite: JSON would hold null in its place.
+/// When a number is not finite: JSON would contain null instead.
 pub(crate) fn summary_of(result: &impl Serialize) -> Result<Value, OutputError> {
     let failed = |what: String| OutputError::NotFinite { what };
     let json = serde_json::to_value(result).map_err(|error| failed(error.to_string()))?;
@@ -18,7 +18,7 @@ pub(crate) fn summary_of(result: &impl Serialize) -> Result<Value, OutputError> 
     not_finite(&numbers, &json).map_or(Ok(json), |path| Err(failed(path)))
 }
 
-/// Values with their names, which are the keys of an object.
+/// Values with names, which become the keys of an object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Named<V>(pub Vec<(String, V)>);
 
@@ -28,7 +28,7 @@ impl<V: Serialize> Serialize for Named<V> {
     }
 }
 
-/// The path to a number that is not finite. The names along it are those of the JSON.
+/// Returns the path to a number that is not finite, with the names of the JSON; `None` if all numbers are finite.
 fn not_finite(numbers: &Number, json: &Value) -> Option<String> {
     let items: Vec<&Number> = match numbers {
         Number::F64(number) => return (!number.is_finite()).then(String::new),

@@ -1,7 +1,7 @@
-//! Drawing in SVG: a few shapes, and colours for print and for the colour-blind.
+//! Drawing in SVG: a few shapes, and colours for print and for colour-blind readers.
 //!
-//! A plotting library would bring fonts and backends where a few strings are enough. Marks that
-//! stand for a result carry its name in `data-name`, for scripts and tests.
+//! Plotting libraries need fonts and backends, while a few strings are enough here. Marks of results have their name in `data-name`, for scripts
+//! and tests.
 
 use std::fmt::Write as _;
 
@@ -29,7 +29,7 @@ pub mod color {
     pub const GREY: &str = "#999999";
 }
 
-/// Colours and dashes of the curves of a chart; either is enough to distinguish them.
+/// Colours and dashes of the curves of a chart; either distinguishes the curves.
 pub const CURVES: [Stroke; 6] = [
     Stroke::new(color::BLUE, 1.6, ""),
     Stroke::new(color::VERMILION, 1.6, "7 3"),
@@ -46,12 +46,12 @@ pub struct Stroke {
     pub color: &'static str,
     /// Width in pixels.
     pub width: f64,
-    /// Lengths of dashes and gaps; empty: solid.
+    /// Lengths of dashes and gaps; empty for a solid line.
     pub dash: &'static str,
 }
 
 impl Stroke {
-    /// A line with these properties.
+    /// Makes a stroke with these properties.
     #[must_use]
     pub const fn new(color: &'static str, width: f64, dash: &'static str) -> Self {
         Self { color, width, dash }
@@ -61,11 +61,11 @@ impl Stroke {
 named! {
     /// Alignment of a text to its point.
     pub enum Anchor {
-        /// It begins at the point.
+        /// The text begins at the point.
         Start = "start",
-        /// Its middle is at the point.
+        /// The middle of the text is at the point.
         Middle = "middle",
-        /// It ends at the point.
+        /// The text ends at the point.
         End = "end",
     }
 }
@@ -84,7 +84,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Left, top, width and height.
+    /// Returns left, top, width and height.
     pub(super) const fn parts(&self) -> [f64; 4] {
         [self.left, self.top, self.width, self.height]
     }
@@ -95,7 +95,7 @@ impl Frame {
 pub struct Drawing(String);
 
 impl Drawing {
-    /// The complete file, with this width and height in pixels and this width in print.
+    /// Returns the complete file, with this width and height in pixels and this width in print.
     #[must_use]
     pub fn finish(self, size_px: [f64; 2], width_mm: Option<f64>) -> String {
         let [width_px, height_px] = size_px.map(|length| (length * 1e3).round() / 1e3);
@@ -115,7 +115,7 @@ impl Drawing {
         )
     }
 
-    /// A polyline, interrupted at points that are not finite; nothing if no two points follow each other.
+    /// Adds a polyline, interrupted at points that are not finite; nothing without two consecutive finite points.
     pub fn curve(
         &mut self,
         name: &str,
@@ -137,7 +137,7 @@ impl Drawing {
         }
     }
 
-    /// A closed polygon.
+    /// Adds a closed polygon.
     pub fn polygon(
         &mut self,
         name: &str,
@@ -154,7 +154,7 @@ impl Drawing {
         self.path(name, &path, fill, stroke);
     }
 
-    /// Boxes between opposite corners, as one path; nothing without boxes.
+    /// Adds boxes between opposite corners, as one path; nothing without boxes.
     pub fn boxes(
         &mut self,
         name: &str,
@@ -174,7 +174,7 @@ impl Drawing {
         }
     }
 
-    /// A path in SVG's own notation.
+    /// Adds a path in the notation of SVG.
     pub fn path(&mut self, name: &str, path: &str, fill: &str, stroke: Stroke) {
         let name = attribute("data-name", name);
         let dash = attribute("stroke-dasharray", stroke.dash);
@@ -186,12 +186,12 @@ impl Drawing {
         );
     }
 
-    /// A straight line.
+    /// Adds a straight line.
     pub fn line(&mut self, from: Vector2<f64>, to: Vector2<f64>, stroke: Stroke) {
         self.curve("", [from, to], stroke);
     }
 
-    /// A circle, filled white so that it can be seen on lines.
+    /// Adds a circle, filled white so that lines below it are hidden.
     pub fn circle(&mut self, name: &str, center: Vector2<f64>, radius: f64, stroke: Stroke) {
         let _ = writeln!(
             self.0,
@@ -205,7 +205,7 @@ impl Drawing {
         );
     }
 
-    /// A shaded rectangle.
+    /// Adds a shaded rectangle.
     pub fn band(&mut self, name: &str, frame: &Frame, fill: &str, opacity: f64) {
         let _ = writeln!(
             self.0,
@@ -231,7 +231,7 @@ impl Drawing {
         self.0 += "</svg>\n";
     }
 
-    /// A line of text whose baseline is at `at`, turned anticlockwise by `turn_deg`.
+    /// Adds a line of text with its baseline at `at`, rotated anticlockwise by `turn_deg`.
     pub fn label(
         &mut self,
         at: Vector2<f64>,
@@ -245,7 +245,7 @@ impl Drawing {
             turn = format!("rotate({} {:.2} {:.2})", -turn_deg, at.x, at.y);
         }
         let turn = attribute("transform", &turn);
-        // A font that is not as wide as Helvetica is fitted to the measured width.
+        // Fits other fonts than Helvetica to the computed width.
         let mut long = String::new();
         if text.is_measured() {
             let px = text.px();
@@ -260,7 +260,7 @@ impl Drawing {
         );
     }
 
-    /// An unfilled rectangle.
+    /// Adds an unfilled rectangle.
     pub fn outline(&mut self, frame: &Frame, stroke: Stroke) {
         let (wide, high) = (frame.width, frame.height);
         let path = format!(
@@ -271,7 +271,7 @@ impl Drawing {
     }
 }
 
-/// An attribute; nothing without value.
+/// Returns an attribute; empty without a value.
 fn attribute(name: &str, value: &str) -> String {
     match value {
         "" => String::new(),

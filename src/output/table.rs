@@ -1,4 +1,4 @@
-//! Tables: lists of columns, written as CSV with only finite numbers.
+//! Tables as lists of columns, written as CSV; all numbers must be finite.
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -7,16 +7,16 @@ use serde::Serialize;
 
 use super::OutputError;
 
-/// A column of a table, or several side by side: their names, and the cells for a row.
+/// One or several columns of a table: their names, and the cells of a row.
 pub(crate) struct Column<'a, R> {
     names: Vec<Cow<'a, str>>,
     cells: Cells<'a, R>,
 }
 
-/// Adds the cells for a row; the number is that of the row, from 1.
+/// Adds the cells of a row. The number is that of the row, from 1.
 type Cells<'a, R> = Box<dyn for<'r> Fn(&'r R, usize, &mut Vec<Cell<'r>>) + 'a>;
 
-/// One cell, or numbers in several cells; numbers have the fewest digits that read back as the same value.
+/// One cell, or numbers in several cells. Numbers have the fewest digits that read back as the same value.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum Cell<'r> {
@@ -27,7 +27,7 @@ pub(crate) enum Cell<'r> {
     Numbers(Cow<'r, [f64]>),
 }
 
-/// A column whose cells are computed from the row.
+/// Makes a column whose cells are computed from the row.
 pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     name: impl Into<Cow<'a, str>>,
     cell: impl Fn(&R) -> C + 'a,
@@ -38,7 +38,7 @@ pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     }
 }
 
-/// Columns that have the names of fields, such as `fields!(|point: &Point| point => time_s, force_n)`.
+/// Makes columns with the names of fields, such as `fields!(|point: &Point| point => time_s, force_n)`.
 macro_rules! fields {
     (|$row:ident: $type:ty| $of:expr => $($field:ident),+ $(,)?) => {
         [$($crate::output::table::column(stringify!($field), |$row: $type| $of.$field)),+]
@@ -46,7 +46,7 @@ macro_rules! fields {
 }
 pub(crate) use fields;
 
-/// A column with the row numbers, from 1.
+/// Makes a column with the row numbers, from 1.
 pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
     Column {
         names: vec![name.into()],
@@ -54,7 +54,7 @@ pub(crate) fn row_number<'a, R>(name: &'a str) -> Column<'a, R> {
     }
 }
 
-/// Several columns whose cells are computed together, one for each name.
+/// Makes several columns whose cells are computed together, one for each name.
 pub(crate) fn several<'a, R>(
     names: impl IntoIterator<Item = String>,
     add: impl for<'r> Fn(&'r R, &mut Vec<Cell<'r>>) + 'a,
@@ -65,7 +65,7 @@ pub(crate) fn several<'a, R>(
     }
 }
 
-/// Several columns of a list, one for each name.
+/// Makes several columns of a list, one for each name.
 pub(crate) fn list<'a, R, N: Into<Cow<'a, str>>, C: Into<Cell<'static>>, L>(
     names: impl IntoIterator<Item = N>,
     list: impl Fn(&R) -> L + 'a,
@@ -83,12 +83,12 @@ where
     }
 }
 
-/// Numbers side by side that a row may lack.
+/// Returns the cells of several numbers that a row may lack.
 pub(crate) fn each<const N: usize>(numbers: Option<[f64; N]>) -> [Option<f64>; N] {
     numbers.map_or([None; N], |numbers| numbers.map(Some))
 }
 
-/// Columns for numbers that a row holds side by side.
+/// Makes columns of a slice of numbers in the row.
 pub(crate) fn numbers<'a, R>(
     names: impl IntoIterator<Item = String>,
     numbers: impl Fn(&R) -> &[f64] + 'a,
@@ -134,7 +134,7 @@ impl<C: Into<Self>> From<Option<C>> for Cell<'_> {
     }
 }
 
-/// The bytes of a table.
+/// Returns the bytes of a table.
 ///
 /// # Errors
 /// When a number is not finite.
@@ -160,7 +160,7 @@ pub(crate) struct TableWriter<'a, R, W: Write> {
 }
 
 impl<'a, R, W: Write> TableWriter<'a, R, W> {
-    /// Begins with the header; `what` is the error message if writing fails.
+    /// Writes the header. `what` is the error message if writing fails.
     pub(crate) fn new(
         writer: W,
         what: impl Into<String>,
@@ -203,7 +203,7 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
         written.map_err(OutputError::csv(&*self.what))
     }
 
-    /// Ends the table and returns the number of its rows.
+    /// Ends the table. Returns the number of its rows.
     pub(crate) fn finish(mut self) -> Result<usize, OutputError> {
         self.csv.flush().map_err(OutputError::io(self.what))?;
         Ok(self.rows)

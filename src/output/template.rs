@@ -1,18 +1,18 @@
-//! Words and pages from templates, and how numbers are printed in them.
+//! Texts and pages from templates, and the format of numbers in them.
 
 use askama::Template;
 
-/// The text of a template, which ends with one line break.
+/// Fills a template. The text ends with one line break.
 pub(crate) fn render(template: &impl Template) -> String {
     let text = template.render();
-    // Writing to a string cannot fail, and neither do the filters.
+    // Writing to a string cannot fail, and the filters do not fail.
     let text = text.expect("templates are written to memory");
     format!("{}\n", text.trim())
 }
 
-/// A number of a template: absent ones are printed as "-".
+/// A number of a template; absent ones are printed as "-".
 pub(crate) trait Number {
-    /// The value, if there is one.
+    /// Returns the value; `None` if it is absent.
     fn value(&self) -> Option<f64>;
 }
 
@@ -45,21 +45,21 @@ pub(crate) mod filters {
     use super::Number;
     use crate::argument;
 
-    /// With this many decimals; zero has no sign.
+    /// Formats a number with this many decimals; zero has no sign.
     #[filter_fn]
     pub fn fixed(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
         let fixed = |number| argument::fixed(number, decimals);
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
-    /// With this many decimals and a power of ten.
+    /// Formats a number with this many decimals and a power of ten.
     #[filter_fn]
     pub fn scientific(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
         let text = |number: f64| format!("{number:.decimals$e}");
         Ok(number.value().map_or_else(|| "-".to_owned(), text))
     }
 
-    /// With this many decimals on a page, in an element that holds the full value.
+    /// Formats a number for a page, with this many decimals, in an element that holds the full value.
     #[filter_fn]
     pub fn data(number: impl Number, _: &dyn Values, decimals: usize) -> Result<Safe<String>> {
         let element = |number: f64| {
@@ -73,13 +73,13 @@ pub(crate) mod filters {
         Ok(Safe(text))
     }
 
-    /// On a page, with signs of HTML and invisible characters made harmless.
+    /// Escapes text for a page: special characters of HTML and invisible characters.
     #[filter_fn]
     pub fn text(text: impl Display, _: &dyn Values) -> Result<Safe<String>> {
         Ok(Safe(escaped(&text.to_string())))
     }
 
-    /// On a page, with symbols set as in formulas: `a_g,SLD` gets an index, `alpha_0` becomes a letter with one.
+    /// Formats symbols as in formulas for a page: `a_g,SLD` gets a subscript, `alpha_0` becomes a Greek letter with a subscript.
     #[filter_fn]
     pub fn typeset(text: impl Display, _: &dyn Values) -> Result<Safe<String>> {
         let words = escaped(&text.to_string()).replace("alpha_", "\u{3b1}_");
@@ -87,7 +87,7 @@ pub(crate) mod filters {
         let mut parts = words.split('_');
         let mut set = parts.next().unwrap_or_default().to_owned();
         for after in parts {
-            // Only a single letter has an index.
+            // Only a single letter has a subscript.
             let mut letters = set.chars().rev();
             let letter = letters.next().is_some_and(char::is_alphabetic);
             let alone = letter && !letters.next().is_some_and(char::is_alphanumeric);
@@ -102,7 +102,7 @@ pub(crate) mod filters {
         Ok(Safe(set))
     }
 
-    /// A fraction in percent, rounded down, so that a limit that was not reached does not read as reached.
+    /// Formats a fraction in percent, rounded down, so that a limit that was not reached is not printed as reached.
     #[filter_fn]
     pub fn percent(part: &f64, _: &dyn Values, decimals: i32) -> Result<String> {
         let percent = (10_f64.powi(2 + decimals) * part).floor() / 10_f64.powi(decimals);
@@ -113,13 +113,13 @@ pub(crate) mod filters {
         })
     }
 
-    /// With the fewest digits that read back as the same number.
+    /// Formats a number with the fewest digits that read back as the same number.
     #[filter_fn]
     pub fn exact(number: &f64, _: &dyn Values) -> Result<String> {
         Ok(format!("{number:?}"))
     }
 
-    /// Forces in N as a list in kN.
+    /// Formats forces in N as a list in kN.
     #[filter_fn]
     pub fn kilonewtons(forces_n: &[f64], _: &dyn Values) -> Result<String> {
         let forces = forces_n.iter().map(|force_n| 1e-3 * force_n);
@@ -127,13 +127,13 @@ pub(crate) mod filters {
         Ok(forces.collect::<Vec<_>>().join(", "))
     }
 
-    /// Padded with blanks on the right to a column of this width.
+    /// Pads text with blanks on the right to this width.
     #[filter_fn]
     pub fn left(text: impl Display, _: &dyn Values, width: usize) -> Result<String> {
         Ok(format!("{:<width$}", text.to_string()))
     }
 
-    /// Padded with blanks on the left, so that it ends at the right of a column of this width.
+    /// Pads text with blanks on the left to this width.
     #[filter_fn]
     pub fn right(text: impl Display, _: &dyn Values, width: usize) -> Result<String> {
         Ok(format!("{:>width$}", text.to_string()))

@@ -1,22 +1,22 @@
-//! Text on pictures: the characters that are drawn, and their width.
+//! Text on pictures: drawn characters and their width.
 
 use crate::scenario::shown_lines;
 
-/// Fonts with the widths by which texts are laid out.
+/// Fonts whose widths the layout uses.
 pub(crate) const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";
 /// Size of text in pixels.
 pub(crate) const TEXT_PX: f64 = 13.0;
-/// From the baseline of a line of text to that of the next.
+/// Distance between the baselines of two lines of text, in pixels.
 pub(crate) const LINE_PX: f64 = 17.0;
-/// Longer words are cut.
+/// Largest number of characters of a word; the rest is omitted.
 const LONGEST_WORD: usize = 130;
 
 /// A line of text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Text {
-    /// Its characters; those that would be invisible are escaped.
+    /// Characters of the line; invisible ones are escaped.
     pub(crate) shown: String,
-    /// Its width in thousandths of the size of the text.
+    /// Width in thousandths of the size of the text.
     thousandths: u32,
 }
 
@@ -29,7 +29,7 @@ impl<T: AsRef<str>> From<T> for Text {
 }
 
 impl Text {
-    /// Breaks a text into lines of at most this width, in pixels. A very long word is cut.
+    /// Divides a text into lines of at most this width, in pixels. Very long words are cut.
     pub(crate) fn lines(text: &str, width_px: f64) -> Vec<Self> {
         let mut lines: Vec<Self> = Vec::new();
         for word in text.split_whitespace() {
@@ -47,24 +47,24 @@ impl Text {
         lines
     }
 
-    /// Its width in pixels.
+    /// Returns the width in pixels.
     pub(crate) fn px(&self) -> f64 {
         TEXT_PX * f64::from(self.thousandths) / 1000.0
     }
 
-    /// Whether the width is known: for other scripts it is a guess.
+    /// Returns true if the width is exact; for other scripts than Latin it is an estimate.
     pub(crate) fn is_measured(&self) -> bool {
         !self.shown.is_empty() && self.shown.chars().all(|character| character <= '\u{24f}')
     }
 }
 
-/// Width of a text in pixels, in Helvetica or a font with its widths, such as Arial and Liberation Sans.
+/// Returns the width of a text in pixels, in Helvetica or a font with equal widths, such as Arial and Liberation Sans.
 #[must_use]
 pub fn text_px(text: &str) -> f64 {
     Text::from(text).px()
 }
 
-/// Text made safe to show, with its line ends and tabs, and with the special characters of XML escaped.
+/// Escapes hidden characters and the special characters of XML; keeps line ends and tabs.
 pub(crate) fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in shown_lines(text).chars() {
@@ -79,7 +79,7 @@ pub(crate) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// Width of a character in thousandths of the size of the text.
+/// Returns the width of a character in thousandths of the size of the text.
 const fn advance(character: char) -> u32 {
     match character {
         'i' | 'j' | 'l' | '\'' => 222,
@@ -99,7 +99,7 @@ const fn advance(character: char) -> u32 {
         '%' => 889,
         'W' => 944,
         '@' => 1015,
-        // Digits and most small letters; of others about as much.
+        // Exact for digits and most lower-case letters, an estimate for the others.
         '\0'..='\u{24f}' => 556,
         _ => 1000,
     }

@@ -1,6 +1,6 @@
 //! The ASC files of the Engineering Strong Motion database and of ITACA (DYNA format).
 //!
-//! A header of lines `KEY: value`, followed by the accelerations or velocities, one per line.
+//! A header of lines `KEY: value`, followed by accelerations or velocities, one per line.
 
 use std::collections::HashMap;
 
@@ -8,7 +8,7 @@ use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number};
 use super::unit::{Recorded, Unit};
 use crate::scenario::prelude::*;
 
-/// Number of lines that may make up the header.
+/// Largest number of lines of the header.
 const MAX_HEADER_LINES: usize = 200;
 
 /// Reads the samples; the first is at time zero.

@@ -1,8 +1,8 @@
 //! The AT2 and VT2 files of the PEER ground motion databases.
 //!
-//! A header of a few lines comes first; its last line gives the number of samples and their spacing, in one of
-//! many wordings. Accelerations follow, in units of gravity unless a line says otherwise, or velocities. Fortran wrote
-//! them several to a line, in fixed width, so that a minus sign may be all that separates two of them.
+//! The last line of a short header gives the number of samples and their spacing, in one of many wordings. Accelerations follow, in units of
+//! gravity unless a line of the header names a unit, or velocities. Fortran wrote several numbers per line with a fixed width, so sometimes only
+//! a minus sign separates two numbers.
 
 use super::samples::{
     Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
@@ -10,9 +10,9 @@ use super::samples::{
 use super::unit::{Recorded, Unit};
 use crate::scenario::prelude::*;
 
-/// The header is searched up to this line.
+/// Largest number of lines in which the end of the header is searched for.
 const MAX_HEADER_LINES: usize = 64;
-/// Number of characters of a line that are searched.
+/// Largest number of characters of a line that are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
@@ -27,7 +27,7 @@ pub(super) fn parse(text: &str, unit: Option<Unit>, quantity: Recorded) -> Parse
     Ok(Contents::new(values.evenly(step_s, line, "DT")?, unit))
 }
 
-/// The numbers of a line as written, even where only a sign separates them.
+/// Returns the numbers of a line as words, even if only a sign separates them.
 fn words(line: &str) -> impl Iterator<Item = &str> {
     // Some files end with the end-of-file character of DOS.
     let blank = |c: char| c.is_whitespace() || c == ',' || c == '\u{1a}';
@@ -49,7 +49,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 const COUNT: &str = "NPTS";
 const STEP: &str = "DT";
 
-/// The last line of the header, from 1, the number of samples and their step in s, and the unit that it names.
+/// Reads the header. Returns the number of its last line, from 1, the number of samples and their step in s, and the unit that it names.
 fn header(
     text: &str,
     known: Option<Unit>,
@@ -86,7 +86,7 @@ fn header(
             })?;
             return Ok((line, [count, step_s], unit));
         }
-        // The number of samples and their spacing may be on two consecutive lines.
+        // Number of samples and spacing may be on two consecutive lines.
         if !items.is_empty() && !begins {
             break;
         }
@@ -98,7 +98,7 @@ fn header(
     Err(LineFault::on(last)(message))
 }
 
-/// Whether a word of the header is a label or a number.
+/// Returns true if a word of the header is a label or a number.
 fn is_item(word: &str) -> bool {
     position(&[word], COUNT).is_some()
         || position(&[word], STEP).is_some()
@@ -111,8 +111,8 @@ fn position(items: &[&str], label: &str) -> Option<usize> {
         .position(|item| item.eq_ignore_ascii_case(label))
 }
 
-/// Number of samples and time step: the number after each label, or else the first two numbers in
-/// the order of the labels, as in `4096 0.01 NPTS, DT`.
+/// Returns number of samples and time step: the number after each label, or otherwise the first two numbers in the order of the labels, as in
+/// `4096 0.01 NPTS, DT`.
 fn values(items: &[&str]) -> Option<(f64, f64)> {
     let (count, step) = (position(items, COUNT)?, position(items, STEP)?);
     let after = |at: usize| leading_number(items.get(at + 1)?);
@@ -128,18 +128,18 @@ fn values(items: &[&str]) -> Option<(f64, f64)> {
     })
 }
 
-/// The number at the beginning of a word, as in `.0050SEC`.
+/// Returns the number at the beginning of a word, as in `.0050SEC`.
 fn leading_number(word: &str) -> Option<f64> {
     let end = word
         .find(|c: char| !(c.is_ascii_digit() || "+-.eEdD".contains(c)))
         .unwrap_or(word.len());
-    // An E after the number may belong to it or to the next word.
+    // An E after the number may belong to the number or to the next word.
     (1..=end.min(40))
         .rev()
         .find_map(|end| number(&word[..end]).ok())
 }
 
-/// Refuses a file if a line of its header shows that it holds something other than the wanted quantity.
+/// Returns an error if a line of the header shows that the file contains another quantity.
 fn check_quantity(line: &str, wanted: Recorded) -> Result<(), String> {
     let line = line.to_ascii_uppercase();
     let holds = |name: &str| line.contains(&format!("{name} TIME"));
@@ -159,10 +159,10 @@ fn check_quantity(line: &str, wanted: Recorded) -> Result<(), String> {
     .to_owned())
 }
 
-/// The unit that a line of the header names.
+/// Returns the unit that a line of the header names.
 fn unit_named(line: &str) -> Option<&str> {
     const WORDS: &str = "UNITS OF ";
-    // Upper case does not move the places of characters: only ASCII letters change.
+    // Upper case does not move characters: only ASCII letters change.
     let at = line.to_ascii_uppercase().find(WORDS)? + WORDS.len();
     let unit = line[at..].split_whitespace().next()?;
     Some(unit.trim_end_matches(|c: char| !c.is_alphanumeric()))

@@ -1,4 +1,4 @@
-//! Tables of samples, with times or at even steps; commas, semicolons, tabs or blanks separate the columns.
+//! Tables of samples with a column of times or a constant step; commas, semicolons, tabs or blanks separate the columns.
 
 mod wrapped;
 
@@ -13,8 +13,8 @@ use crate::scenario::prelude::*;
 
 /// Reads the samples, in the unit of the file.
 ///
-/// Blank lines and lines that begin with `#` are skipped. The first of the other lines may hold the names of
-/// the columns; it must if a column is chosen by name.
+/// Blank lines and lines that begin with `#` are skipped. The first of the other lines may contain the names of the columns; names are required
+/// if a column is chosen by name.
 pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let table = without_first(text, layout.skip_rows);
     let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
@@ -72,14 +72,14 @@ fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Parsed<Samples> 
     }
 }
 
-/// Reports that a table has no rows.
+/// Returns the error that a table has no rows.
 fn nothing(text: &str, last_line: usize) -> LineFault {
     let blank = text.lines().take_while(|line| line.is_empty()).count();
     let line = if last_line > 0 { last_line } else { blank };
     LineFault::on(line.max(1))("there are no samples")
 }
 
-/// The text with its first lines blanked out, so that the others keep their numbers.
+/// Replaces the first lines of a text by blank lines, so that the others keep their line numbers.
 fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
     if lines == 0 {
         return Cow::Borrowed(text);
@@ -91,7 +91,7 @@ fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
     }
 }
 
-/// Refuses a time that is out of range, or not later than the time before it.
+/// Returns an error if a time is out of range, or not later than the previous time.
 fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     ensure(time_s.abs() <= MAX_TIME_S, || {
         let (time, most) = (plain(time_s), short(MAX_TIME_S));
@@ -106,15 +106,15 @@ fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     })
 }
 
-/// The columns of times and accelerations in a row, counted from 0.
+/// The indices of the columns of times and accelerations, counted from 0.
 struct Columns<'a> {
     layout: &'a Layout,
-    /// `None` if times are at even steps.
+    /// Index of the column of times; `None` with a constant step.
     time: Option<usize>,
     acceleration: usize,
-    /// Whether a column is chosen by its name.
+    /// True if a column is chosen by its name.
     by_name: bool,
-    /// Whether the first row has names instead of numbers.
+    /// True if the first row contains names instead of numbers.
     has_names: bool,
 }
 
@@ -143,7 +143,7 @@ impl<'a> Columns<'a> {
         })
     }
 
-    /// The unit of the times, which their name may give as in `time_ms` or `t [ms]`.
+    /// Returns the unit of the times in s, which their name may contain, as `time_ms` or `t [ms]`.
     fn time_unit_s(&self, first: &Row<'_>) -> f64 {
         let name = self.time.and_then(|index| first.cells().nth(index));
         let name = name.filter(|_| self.has_names).unwrap_or_default();
@@ -156,7 +156,7 @@ impl<'a> Columns<'a> {
         units.next_back().unwrap_or(1.0)
     }
 
-    /// Time, or zero if the table has none, and acceleration.
+    /// Returns time, or zero without a column of times, and acceleration.
     fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
         let value = |index: usize| match row.cells().nth(index) {
             Some(cell) => self.layout.decimal.number(cell),
@@ -166,7 +166,7 @@ impl<'a> Columns<'a> {
         Ok([time_s, in_range(value(self.acceleration)?)?])
     }
 
-    /// Refuses a row with several columns if none was chosen.
+    /// Returns an error for a row with several columns if none was chosen.
     fn check_count(&self, row: &Row<'_>) -> Result<(), String> {
         let count = row.count();
         let is_chosen = self.layout.acceleration_column.is_some();
@@ -194,7 +194,7 @@ impl<'a> Columns<'a> {
 }
 
 impl Decimal {
-    /// The number in a cell.
+    /// Parses the number in a cell.
     fn number(self, cell: &str) -> Result<f64, String> {
         let commas = cell.matches(',').count();
         match self {
@@ -209,23 +209,23 @@ impl Decimal {
     }
 }
 
-/// Whether a cell of the first row names its column. A damaged number is no name: more than half of its characters are those of numbers, or
-/// half of them and the first one.
+/// Returns true if a cell of the first row is the name of a column. A damaged number is not a name: more than half of its characters are those
+/// of numbers, or half of them including the first.
 fn names_column(cell: &str, decimal: Decimal) -> bool {
     let is_of_numbers = |c: char| c.is_ascii_digit() || ".,+-".contains(c);
     let of_numbers = cell.chars().filter(|c| is_of_numbers(*c)).count();
     let is_damaged =
         2 * of_numbers + usize::from(cell.starts_with(is_of_numbers)) > cell.chars().count();
     let is_number = cell.parse::<f64>().is_ok() || decimal.number(cell).is_ok();
-    // A unit or a number of samples may stand by itself, as in `acceleration (600)`.
+    // A unit or a number of samples may stand alone, as in `acceleration (600)`.
     let is_word = cell.contains(char::is_alphabetic) || cell.starts_with(['(', '[']);
     cell.is_empty() || is_word && !is_number && !is_damaged
 }
 
-/// Largest magnitude of a number of a table that is no record.
+/// Largest magnitude of a number in a table that is not a record.
 const MAX_NUMBER: f64 = 1e6;
 
-/// Rows of exactly this many numbers, each with its line. A first row without any number holds the names.
+/// Reads rows of exactly `N` numbers. Returns each with its line. A first row without any number contains names.
 pub(super) fn numbers<const N: usize>(text: &str) -> Parsed<Vec<(usize, [f64; N])>> {
     let mut found = Vec::new();
     for row in Rows::new(text, Decimal::Point) {
@@ -258,9 +258,9 @@ struct Rows<'a> {
 }
 
 struct Row<'a> {
-    /// Line on which it ends, from 1.
+    /// Line on which the row ends, from 1.
     line: usize,
-    /// That line.
+    /// Text of that line.
     text: &'a str,
     by_blanks: bool,
     record: StringRecord,
@@ -269,7 +269,7 @@ struct Row<'a> {
 impl<'a> Rows<'a> {
     fn new(text: &'a str, decimal: Decimal) -> Self {
         let is_row = |line: &&str| !line.trim().is_empty() && !line.trim().starts_with('#');
-        // The first row may hold names, which may contain blanks and commas.
+        // The first row may contain names with blanks and commas.
         let mut rows = text.lines().filter(is_row);
         let first = rows.next().unwrap_or_default();
         let second = rows.next().unwrap_or(first);
@@ -287,7 +287,7 @@ impl<'a> Rows<'a> {
         } else {
             b' '
         };
-        // If the last line ends with a line break, the line number after a row is that of the next line.
+        // If the text ends with a line break, the line number after a row is that of the next line.
         let end: &[u8] = if text.ends_with('\n') { b"" } else { b"\n" };
         let reader = ReaderBuilder::new()
             .has_headers(false)
@@ -309,7 +309,7 @@ impl<'a> Iterator for Rows<'a> {
 
     fn next(&mut self) -> Option<Row<'a>> {
         let mut record = StringRecord::new();
-        // Rows of a text in memory may have any number of cells, so reading does not fail.
+        // Rows of a text in memory may have any number of cells, so reading cannot fail.
         while self.reader.read_record(&mut record).unwrap_or(false) {
             let end = self.reader.position();
             let [line, end] = [end.line() - 1, end.byte()].map(|at| at as usize);
@@ -328,7 +328,7 @@ impl<'a> Iterator for Rows<'a> {
     }
 }
 
-/// Names the row below the first one that begins the table, if one does; continues the message about a row that is the first without values.
+/// Returns a hint for the error of the first row without values: the next row that begins the table; empty if there is none.
 fn begin_below(
     first: &Row<'_>,
     mut rows: Rows<'_>,
@@ -344,27 +344,27 @@ fn begin_below(
 }
 
 impl Row<'_> {
-    /// The cells, without blanks around them. A quotation mark after a blank does not quote, though it was surely meant
-    /// to.
+    /// Returns the cells, without surrounding blanks. A quotation mark after a blank is not a quotation for the CSV reader, so it is removed
+    /// here.
     fn cells(&self) -> impl Iterator<Item = &str> {
         let cells = self.record.iter();
-        // Several blanks in a row separate no more cells than one does.
+        // Consecutive blanks count as one separator.
         let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
         cells.map(|cell| cell.trim().trim_matches('"').trim())
     }
 
-    /// The number of cells up to the last one that is not empty.
+    /// Returns the number of cells up to the last one that is not empty.
     fn count(&self) -> usize {
         let filled = self.cells().zip(1..).filter(|(cell, _)| !cell.is_empty());
         filled.last().map_or(0, |(_, count)| count)
     }
 
-    /// Whether all cells are names.
+    /// Returns true if all cells are names.
     fn has_no_number(&self, decimal: Decimal) -> bool {
         self.cells().all(|cell| names_column(cell, decimal))
     }
 
-    /// Refuses names separated by blanks if they are more or fewer than the columns of a row below, because one of them contains a blank.
+    /// Returns an error if the number of names separated by blanks differs from the number of columns, because a name contains a blank.
     fn check_names(&self, below: Option<&Self>) -> Parsed<()> {
         let names = self.cells().count();
         let columns = below.map_or(names, |row| row.cells().count());
@@ -381,7 +381,7 @@ impl Row<'_> {
 }
 
 impl TableColumn {
-    /// The index from 0.
+    /// Returns the index of the column, from 0.
     fn index(&self, names: &[&str]) -> Result<usize, String> {
         let wanted = match self {
             Self::Number(number) => return Ok(number - 1),

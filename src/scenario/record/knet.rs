@@ -1,14 +1,13 @@
 //! The files of K-NET and KiK-net (NIED, Japan).
 //!
-//! A header comes first, of lines with a name of up to 18 characters and a value; the last line begins with `Memo.`.
-//! Whole numbers follow, several to a line. Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are
-//! accelerations in gal, including the offset of the instrument.
+//! The header has lines with a name of up to 18 characters and a value; its last line begins with `Memo.`. Integers follow, several per line.
+//! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument.
 
 use super::samples::{Contents, LineFault, MIN_STEP_S, Parsed, Values, number};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
-/// Number of lines that may make up the header.
+/// Largest number of lines of the header.
 const MAX_HEADER_LINES: usize = 64;
 
 const FREQUENCY: &str = "Sampling Freq(Hz)";
@@ -66,7 +65,7 @@ fn read_step(frequency: &str) -> Result<f64, String> {
     Ok(step_s)
 }
 
-/// The factor that converts the whole numbers to gal.
+/// Returns the factor that converts the integers to gal.
 fn read_scale(scale: &str) -> Result<f64, String> {
     let parts = scale.split_once("(gal)/");
     let factor =

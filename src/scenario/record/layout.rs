@@ -1,4 +1,4 @@
-//! How the file of a record is read: its format, and for tables the places of times and accelerations.
+//! Layout of a record file: its format, and, for tables, the columns of times and accelerations.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -8,16 +8,16 @@ use super::unit::{Recorded, Unit, any_unit};
 use crate::scenario::prelude::*;
 
 named! {
-    /// Format of a record's file.
+    /// Format of a record file.
     #[derive(Default)]
     pub enum Format {
-        /// PEER strong motion database.
+        /// PEER strong motion database (AT2, VT2).
         At2 = "at2",
-        /// Engineering Strong Motion database.
+        /// Engineering Strong Motion database (ASC).
         Asc = "asc",
         /// K-NET and KiK-net.
         Knet = "knet",
-        /// A table with a column of samples and one of times, or with samples at even steps.
+        /// A table with a column of samples and one of times, or with samples at a constant step.
         #[default]
         Csv = "csv",
     }
@@ -39,19 +39,19 @@ named! {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum TableColumn {
-    /// By its number, from 1.
+    /// Number of the column, from 1.
     Number(usize),
-    /// By its name in the first row.
+    /// Name of the column in the first row.
     Name(String),
 }
 
-/// Where the times of a table come from.
+/// The times of the samples of a table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Times {
     /// A column of times in s.
     #[serde(rename = "time_column")]
     Column(TableColumn),
-    /// Seconds from one row to the next; the first is at zero.
+    /// Step between rows, in s; the first row is at time zero.
     #[serde(rename = "dt_s")]
     Step(f64),
 }
@@ -64,25 +64,25 @@ pub struct Layout {
     /// Times of a table; `None` for other formats.
     #[serde(flatten)]
     pub times: Option<Times>,
-    /// The column of accelerations or velocities of a table. `None`: there is only one such column, or a row holds several
-    /// samples and the table shows that.
+    /// Column of accelerations or velocities of a table. `None` if there is only one such column, or if a row contains several samples and the
+    /// table shows this.
     pub acceleration_column: Option<TableColumn>,
-    /// Whether a row of a table holds several consecutive samples, even if the table does not show it. Used only with even steps
-    /// and if no column is chosen.
+    /// True if a row of a table contains several consecutive samples, even if the table does not show this. Used only with a constant step, and
+    /// if no column is chosen.
     #[serde(skip_serializing_if = "is_default")]
     pub wrapped: bool,
-    /// Unit of the samples. `None`: the unit that the header names; of an AT2 file that names none, gravity.
+    /// Unit of the samples; `None` for the unit in the header. An AT2 file of accelerations without a unit is in units of gravity.
     pub unit: Option<Unit>,
-    /// Lines before a table.
+    /// Number of lines before a table.
     #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
-    /// Notation of the numbers of a table.
+    /// Decimal mark of the numbers of a table.
     #[serde(skip_serializing_if = "is_default")]
     pub decimal: Decimal,
     /// The quantity that the samples measure.
     #[serde(skip_serializing_if = "is_default")]
     pub quantity: Recorded,
-    /// Whether the mean over the time of the record is subtracted from the accelerations.
+    /// True to subtract the mean over time from the accelerations.
     #[serde(skip_serializing_if = "is_default")]
     pub remove_mean: bool,
 }
@@ -92,7 +92,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 impl Layout {
-    /// Accelerations as a file of this format holds them; tables need their times and unit.
+    /// Makes the layout of a file of accelerations in this format; tables also need times and unit.
     #[must_use]
     pub fn new(format: Format) -> Self {
         Self {
@@ -101,7 +101,7 @@ impl Layout {
         }
     }
 
-    /// A table that begins on the first line, with decimal points, whose acceleration column need not be chosen.
+    /// Makes the layout of a table that begins on the first line, with decimal points and a single column of accelerations.
     #[must_use]
     pub fn table(times: Times, unit: Unit) -> Self {
         Self {
@@ -115,7 +115,7 @@ impl Layout {
 pub(super) const COLUMN_NUMBER: Count = Count(1..=10_000, "the first column");
 const SKIPPED: Count = Count(0..=10_000, "none");
 
-/// The keys that only tables have.
+/// Keys for tables only.
 const TABLE_KEYS: [&str; 6] = [
     "time_column",
     "dt_s",
@@ -126,7 +126,7 @@ const TABLE_KEYS: [&str; 6] = [
 ];
 
 impl Format {
-    /// The format that the extension of a file name indicates; the error continues the name.
+    /// Returns the format of a file name from its extension. The error is a phrase that follows the name.
     pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, &'static str> {
         let ending = Path::new(file).extension().and_then(OsStr::to_str);
         match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
@@ -141,7 +141,7 @@ impl Format {
         }
     }
 
-    /// The format that the extension of a file name indicates; `None`: the extension is not that of a record.
+    /// Returns the format of a file name from its extension; `None` if the extension is not that of a record.
     #[must_use]
     pub fn of_file(file: &Path) -> Option<Self> {
         Self::of_ending(file.to_str()?).ok()
@@ -151,7 +151,7 @@ impl Format {
         table.optional("format", &one_of(Self::ALL, Self::name))
     }
 
-    /// Reads the format, or finds it from the name of the file, if one is given.
+    /// Reads the format, or determines it from the file name if there is one.
     pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Self> {
         let (format, is_key) = (Self::read(table), table.gives("file"));
         if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
@@ -167,7 +167,7 @@ impl Format {
 }
 
 impl Layout {
-    /// Reads the keys that describe files of this format; `None`: the format is unknown, which is a fault elsewhere.
+    /// Reads the keys that describe files of this format. `None` is an unknown format, whose fault is recorded elsewhere.
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
@@ -224,14 +224,14 @@ impl Layout {
         layout
     }
 
-    /// Whether a key of `[ground.record]` describes tables: the keys that only tables have, and `unit`.
+    /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
     #[must_use]
     pub fn is_of_tables(key: &str) -> bool {
         TABLE_KEYS.contains(&key) || key == "unit"
     }
 }
 
-/// Name or number of a column.
+/// Returns the rule for the name or number of a column.
 fn any_column() -> Custom<'static, TableColumn> {
     let allowed = format!("the name of a column, or {}", COLUMN_NUMBER.allowed());
     let read = |value: &Value| match value {

@@ -18,9 +18,8 @@
 //! unit = "cm/s2"                # of tables, and required there: "g", "m/s2" or "cm/s2"; "m/s" or "cm/s" of velocities
 //! ```
 //!
-//! [`Layout`] describes how files are read. Straight lines join the samples, so the acceleration of a record of
-//! velocities is constant between samples. Before the first sample and after the last the acceleration is zero. Units
-//! of gravity are those of the simulation, `gravity_m_s2`.
+//! [`Layout`] describes the files. Straight lines join the samples, so the acceleration of a record of velocities is constant between samples.
+//! Before the first sample and after the last one the acceleration is zero. Units of gravity are those of the simulation, `gravity_m_s2`.
 
 mod asc;
 mod at2;
@@ -48,7 +47,7 @@ use super::source::{not_plain, read_at_most};
 use super::table;
 use crate::dynamics::ground::GroundMotion;
 
-/// Largest acceleration of the ground: beyond it the unit must be wrong.
+/// Largest acceleration of the ground, in g; beyond it the unit is probably wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const SCALE: Number = within(&(-1e6..=1e6));
 pub(super) const PEAK_G: Number = above(0.0, MAX_ACCELERATION_G);
@@ -67,32 +66,32 @@ named! {
 /// The factor by which the accelerations of a file are multiplied.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Scaling {
-    /// This factor.
+    /// A given factor.
     #[serde(rename = "scale")]
     Factor(f64),
-    /// The factor, of the same sign, that scales the peak to this magnitude, in units of gravity.
+    /// The positive factor that scales the peak to this value, in units of gravity.
     #[serde(rename = "peak_g")]
     PeakG(f64),
 }
 
-/// A motion along one direction, from a file.
+/// A motion in one direction, from a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// The file, relative to that of the scenario.
+    /// Name of the file, relative to the scenario file.
     pub file: String,
-    /// Its layout.
+    /// Layout of the file.
     #[serde(flatten)]
     pub layout: Layout,
-    /// Its scaling.
+    /// Scaling of the samples.
     #[serde(flatten)]
     pub scaling: Scaling,
     /// Unit of the samples in the file.
     #[serde(skip)]
     pub unit: Unit,
-    /// Whether a row of the table holds several samples.
+    /// True if a row of the table contains several samples.
     #[serde(skip)]
     pub wrapped: bool,
-    /// Times in s, increasing, and accelerations or velocities as in the file, perhaps without their mean.
+    /// Ascending times in s, and accelerations or velocities in the unit of the file, without their mean if the layout removes it.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
 }
@@ -102,11 +101,11 @@ pub struct Series {
 pub struct Sampling {
     /// Number of samples.
     pub count: usize,
-    /// Time between samples, if it is constant.
+    /// Time between samples in s; `None` if it is not constant.
     pub step_s: Option<f64>,
-    /// Shortest time between samples.
+    /// Shortest time between samples, in s.
     pub least_step_s: f64,
-    /// Time from the first to the last.
+    /// Time from the first to the last sample, in s.
     pub duration_s: f64,
 }
 
@@ -135,19 +134,19 @@ pub struct Record {
     pub main: Series,
     /// The direction of the accelerations of `main`.
     pub component: Component,
-    /// Time in the simulation at time zero of the files, in 0 to 1e6.
+    /// Time of the simulation at time zero of the files in s, from 0 to 1e6.
     pub start_s: f64,
-    /// The record of the vertical component, if `main` is the horizontal one.
+    /// The record of the vertical component; `None` without one, or if `main` is vertical.
     pub vertical: Option<Series>,
 }
 
 impl Record {
-    /// The records, the horizontal one first.
+    /// Returns the records, the horizontal one first.
     pub fn series(&self) -> impl Iterator<Item = &Series> {
         [&self.main].into_iter().chain(&self.vertical)
     }
 
-    /// The ground motion with another scaling of the horizontal record, or of the only one; the vertical one is unchanged.
+    /// Returns the ground motion with another scaling of the main record; the vertical record is unchanged.
     pub(crate) fn rescaled(
         &self,
         scaling: Scaling,
@@ -162,13 +161,13 @@ impl Record {
         Ok(rescaled.motion(gravity_m_s2))
     }
 
-    /// The time at which the last of its records ends.
+    /// Returns the time at which the last record ends, in s.
     pub(super) fn end_s(&self) -> f64 {
         let ends = self.series().map(Series::last_s);
         self.start_s + ends.fold(0.0, f64::max)
     }
 
-    /// The ground motion under the given gravity.
+    /// Returns the ground motion under a gravity in m/s2.
     pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let [main, vertical] = [Some(&self.main), self.vertical.as_ref()]
             .map(|series| series.map_or_else(Vec::new, |it| it.accelerations_m_s2(gravity_m_s2)));
@@ -178,7 +177,7 @@ impl Record {
         }
     }
 
-    /// Reads `[ground.record]` and builds its motion.
+    /// Reads `[ground.record]` and makes the motion.
     pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
         let components = one_of(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
@@ -206,11 +205,11 @@ impl Record {
     }
 }
 
-/// Input of the reading of records: records already in memory, and gravity if `[simulation]` gives a valid value.
+/// Input for reading records: records already in memory, and gravity if `[simulation]` gives a valid value.
 pub(super) type Known<'a> = (&'a [Series], Option<f64>);
 
 impl Series {
-    /// The unscaled samples of a file; the error continues the name of the file.
+    /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
     pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
         let path = folder.join(&file);
         let contents = layout.parse(&read_bytes(&path)?);
@@ -230,10 +229,10 @@ impl Series {
         }
     }
 
-    /// Reads a file on its own, with keys of `[ground.record]` that describe it.
+    /// Reads a file without a scenario, with the keys of `[ground.record]` that describe it.
     ///
     /// # Errors
-    /// All faults of the keys, or the fault of the file. Each names its assignment or the file, without a line.
+    /// All faults of the keys, or the fault of the file. Each has the assignment or the file, without a line.
     pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
         let layout = table::read_text(("", Path::new("")), keys, |table| {
@@ -249,13 +248,13 @@ impl Series {
         Ok(Self::new(name, layout, contents))
     }
 
-    /// The name of its file, made safe to show.
+    /// Returns the name of the file, with hidden characters escaped.
     #[must_use]
     pub fn name(&self) -> String {
         shown(&self.file)
     }
 
-    /// This record with another scaling.
+    /// Returns this record with another scaling.
     #[must_use]
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
         Self {
@@ -264,7 +263,7 @@ impl Series {
         }
     }
 
-    /// Checksum of the samples: the same for files that hold the same samples in different formats.
+    /// Computes a checksum of the samples. Files with the same samples in different formats have the same checksum.
     #[must_use]
     pub fn checksum(&self) -> u32 {
         let mut hasher = crc32fast::Hasher::new();
@@ -275,10 +274,10 @@ impl Series {
         hasher.finalize()
     }
 
-    /// The number and spacing of its samples.
+    /// Returns number and spacing of the samples.
     #[must_use]
     pub fn sampling(&self) -> Sampling {
-        /// Relative difference up to which steps count as even, because times in files are rounded.
+        /// Relative tolerance for a constant step, because times in files are rounded.
         const EVEN: f64 = 1e-3;
         let steps = || self.samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let duration_s = self.last_s() - self.first_s();
@@ -293,19 +292,19 @@ impl Series {
         }
     }
 
-    /// Largest magnitude after scaling, in units of gravity.
+    /// Returns the largest magnitude after scaling, in units of gravity.
     #[must_use]
     pub fn peak_g(&self, gravity_m_s2: f64) -> f64 {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
     }
 
-    /// Refuses a record without accelerations.
+    /// Returns an error for a record without accelerations.
     pub(super) fn check_not_zero(&self, gravity_m_s2: f64) -> Result<(), String> {
         let is_zero = self.peak_g(gravity_m_s2) == 0.0;
         ensure(!is_zero, || "is zero throughout".to_owned())
     }
 
-    /// Refuses accelerations that are too large for any ground.
+    /// Returns an error for accelerations that are too large for any ground.
     pub(super) fn check_strength(&self, gravity_m_s2: f64) -> Result<(), String> {
         let peak_g = self.peak_g(gravity_m_s2);
         ensure(peak_g <= MAX_ACCELERATION_G, || {
@@ -314,18 +313,18 @@ impl Series {
         })
     }
 
-    /// Time of the first sample in s, on the clock of the file.
+    /// Returns the time of the first sample in s, on the clock of the file.
     pub(super) fn first_s(&self) -> f64 {
         self.samples.first().map_or(0.0, |sample| sample.0)
     }
 
-    /// Time of the last sample in s, on the clock of the file.
+    /// Returns the time of the last sample in s, on the clock of the file.
     pub(super) fn last_s(&self) -> f64 {
         self.samples.last().map_or(0.0, |sample| sample.0)
     }
 
-    /// Times in s, on the clock of the file, and scaled accelerations in m/s2, joined by straight lines. A jump has two
-    /// points at the same time.
+    /// Returns times in s, on the clock of the file, and scaled accelerations in m/s2, joined by straight lines. A jump has two points at the
+    /// same time.
     #[must_use]
     pub fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Vec<(f64, f64)> {
         let factor = self.factor(gravity_m_s2);
@@ -333,7 +332,7 @@ impl Series {
         self.accelerations().iter().map(scaled).collect()
     }
 
-    /// Unscaled accelerations in the unit of the file; for velocities, in that unit per second.
+    /// Returns the unscaled accelerations in the unit of the file; for velocities, in that unit per second.
     fn accelerations(&self) -> Cow<'_, [(f64, f64)]> {
         match self.unit.quantity() {
             Recorded::Acceleration => Cow::Borrowed(&*self.samples),
@@ -348,7 +347,7 @@ impl Series {
         }
     }
 
-    /// Converts an acceleration in the unit of the file to a scaled one in m/s2.
+    /// Returns the factor that converts an acceleration in the unit of the file to a scaled one in m/s2.
     fn factor(&self, gravity_m_s2: f64) -> f64 {
         match self.scaling {
             Scaling::Factor(factor) => factor * self.unit.in_si(gravity_m_s2),
@@ -356,13 +355,13 @@ impl Series {
         }
     }
 
-    /// Largest magnitude of the acceleration in the unit of the file.
+    /// Returns the largest magnitude of the acceleration, in the unit of the file.
     fn peak(&self) -> f64 {
         let accelerations = self.accelerations();
         accelerations.iter().map(|s| s.1.abs()).fold(0.0, f64::max)
     }
 
-    /// Mean of the scaled accelerations over the time of the record, in units of gravity.
+    /// Returns the mean of the scaled accelerations over the time of the record, in units of gravity.
     #[must_use]
     pub fn mean_g(&self, gravity_m_s2: f64) -> f64 {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
@@ -390,7 +389,7 @@ impl Series {
         Ok(series)
     }
 
-    /// Checks that the ground can move as the record says.
+    /// Checks that the record is a possible motion of the ground.
     fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> Reading<()> {
         let is_zero = matches!(self.scaling, Scaling::PeakG(_)) && self.peak() == 0.0;
         let wrong = "cannot be reached: the record is zero throughout";
@@ -407,7 +406,7 @@ impl Series {
 }
 
 impl Layout {
-    /// The contents of a file, from its bytes.
+    /// Parses the bytes of a file.
     ///
     /// # Errors
     ///
@@ -433,14 +432,14 @@ impl Layout {
     }
 }
 
-/// The text of a file. Headers may be in any encoding that has its digits where ASCII has them.
+/// Returns the text of a file. Headers may have any encoding with the digits of ASCII.
 fn legible(bytes: &[u8]) -> Result<String, LineFault> {
     not_plain(bytes).map_or(Ok(()), |wrong| Err(LineFault::on(1)(wrong)))?;
     let text = String::from_utf8_lossy(bytes);
     Ok(text.trim_start_matches('\u{feff}').to_owned())
 }
 
-/// The mean over time of samples joined by straight lines.
+/// Computes the mean over time of samples joined by straight lines.
 fn mean(samples: &[(f64, f64)]) -> f64 {
     let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
         return 0.0;
@@ -452,20 +451,20 @@ fn mean(samples: &[(f64, f64)]) -> f64 {
     areas.sum::<f64>() / (last.0 - first.0)
 }
 
-/// Rows of this many numbers in a file, each with its line; or the first fault. The first row may hold names.
+/// Reads rows of `N` numbers from a file, each with its line. The first row may contain names.
 pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
     let numbers = legible(&bytes).and_then(|text| csv::numbers(&text));
     numbers.map_err(|fault| faulty(path, &fault))
 }
 
-/// Reports that a line of a file is wrong.
+/// Returns the message about a wrong line of a file.
 pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
     let path = shown(&path.display().to_string());
     format!("is faulty: {path}:{fault}")
 }
 
-/// The contents of a file of at most 64 MiB.
+/// Reads the contents of a file of at most 64 MiB.
 fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let unreadable = |error| format!("cannot be read: {error}");
     let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
@@ -473,7 +472,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
 }
 
-/// Says that a vertical acceleration is impossible for a structure that rests on the ground.
+/// Returns the message that the ground falls freely at this time, which is impossible for a structure that rests on it.
 pub(super) fn free_fall(time_s: f64) -> String {
     format!(
         "makes the ground fall as fast as a free body at {} s, where it no longer carries the \

@@ -1,11 +1,11 @@
-//! Samples as files hold them: numbers on lines, at times or at even steps.
+//! Samples of record files: numbers on lines, at given times or at a constant step.
 
 use thiserror::Error;
 
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
-/// Result of a reader of a file.
+/// Result of parsing a file.
 pub(super) type Parsed<T> = Result<T, LineFault>;
 
 /// Times in s, and accelerations or velocities.
@@ -13,22 +13,21 @@ pub(super) type Samples = Vec<(f64, f64)>;
 
 /// Largest number of samples: an hour at 500 Hz.
 pub(super) const MAX_SAMPLES: usize = 1_800_000;
-/// Times of a record are at most this far from zero.
+/// Largest magnitude of the times of a record, in s.
 pub(super) const MAX_TIME_S: f64 = 1e6;
-/// Smallest spacing of samples: a jump may take a microsecond.
+/// Smallest step between samples, in s: a jump may take a microsecond.
 pub(super) const MIN_STEP_S: f64 = 1e-6;
-/// Largest sample in any unit: no product or square derived from it leaves the range of an `f64`.
+/// Largest magnitude of a sample in any unit: products and squares of samples stay in the range of an `f64`.
 pub(super) const MAX_SAMPLE: f64 = 1e12;
 
 /// The contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
-    /// Times in s, at least a microsecond apart, and accelerations or velocities. There are from 2 to 1 800 000 samples,
-    /// with magnitudes up to 1e12.
+    /// Times in s, at least a microsecond apart, and accelerations or velocities: 2 to 1 800 000 samples, with magnitudes up to 1e12.
     pub samples: Vec<(f64, f64)>,
     /// The unit of the samples.
     pub unit: Unit,
-    /// Whether a row of a table holds several samples.
+    /// True if a row of a table contains several samples.
     pub wrapped: bool,
 }
 
@@ -42,20 +41,20 @@ impl Contents {
     }
 }
 
-/// A fault on a line of a record's file.
+/// A fault on a line of a record file.
 ///
-/// Displayed as `line: message`, which follows the name of the file and a colon.
+/// Displayed as `line: message`, after the name of the file and a colon.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{line}: {message}")]
 pub struct LineFault {
     /// Line, from 1.
     pub line: usize,
-    /// The wrong value and the allowed ones.
+    /// The wrong value and the allowed values.
     pub message: String,
 }
 
 impl LineFault {
-    /// Makes faults of this line.
+    /// Returns a function that makes faults of this line from messages.
     pub(in crate::scenario) fn on<M: Into<String>>(line: usize) -> impl Fn(M) -> Self + Copy {
         move |message| Self {
             line,
@@ -64,16 +63,16 @@ impl LineFault {
     }
 }
 
-/// Numbers of a file, one after another.
+/// Numbers of a file, in order.
 #[derive(Default)]
 pub(super) struct Values {
     pub(super) values: Vec<f64>,
-    /// The line of the last one, from 1.
+    /// Line of the last number, from 1.
     pub(super) line: usize,
 }
 
 impl Values {
-    /// The samples below a header of so many lines, as `words` finds them in a line.
+    /// Reads the samples below a header of `header_lines` lines. `words` divides a line into numbers.
     pub(super) fn below<'t, W: Iterator<Item = &'t str>>(
         text: &'t str,
         header_lines: usize,
@@ -103,12 +102,12 @@ impl Values {
         Ok(())
     }
 
-    /// A fault on the line of the last number.
+    /// Returns a fault on the line of the last number.
     pub(super) fn fault(&self, message: impl Into<String>) -> LineFault {
         LineFault::on(self.line)(message)
     }
 
-    /// Refuses a number of samples that is not the one announced by a line of the header.
+    /// Returns an error if the number of samples is not the one that a line of the header announces.
     pub(super) fn check_count(&self, (line, count): (usize, f64), key: &str) -> Parsed<()> {
         let found = self.values.len();
         ensure(count == found as f64, || {
@@ -119,14 +118,14 @@ impl Values {
         })
     }
 
-    /// Refuses fewer samples than make a record.
+    /// Returns an error if there are too few samples for a record.
     pub(super) fn check_enough(&self) -> Parsed<()> {
         let found = self.values.len();
         let wrong = format!("the number of samples is {found}; must be at least 2");
         ensure(found >= 2, || self.fault(wrong))
     }
 
-    /// The samples at even steps, the first at time zero, if they make a record; the key on this line sets the step.
+    /// Returns the samples at a constant step, the first at time zero. `key` on this line gives the step.
     pub(super) fn evenly(self, step_s: f64, line: usize, key: &str) -> Parsed<Samples> {
         self.check_enough()?;
         // Counts below 2^53 are exact.
@@ -142,12 +141,12 @@ impl Values {
     }
 }
 
-/// The words of a line of a header.
+/// Returns the words of a line of a header.
 pub(super) fn header_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c))
 }
 
-/// Refuses a step that is too short.
+/// Returns an error for a step that is too short.
 pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
     ensure(step_s >= MIN_STEP_S, || {
         let (step, least) = (plain(step_s), short(MIN_STEP_S));
@@ -156,9 +155,9 @@ pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
     Ok(step_s)
 }
 
-/// A finite number as programs write it; Fortran's `D` may begin the exponent.
+/// Parses a finite number as programs write it; Fortran's `D` may begin the exponent.
 pub(super) fn number(given: &str) -> Result<f64, String> {
-    // The library would also take "inf" and "nan".
+    // The standard parser also accepts "inf" and "nan".
     let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
     let word = Some(given).filter(|word| word.len() <= 60 && word.chars().all(numeric));
     let value = word.and_then(|word| word.replace(['d', 'D'], "e").parse::<f64>().ok());
@@ -166,7 +165,7 @@ pub(super) fn number(given: &str) -> Result<f64, String> {
     value.ok_or_else(|| format!("`{}` is not a finite number", excerpt(given)))
 }
 
-/// Refuses a sample that is out of range.
+/// Returns an error for a sample that is out of range.
 pub(super) fn in_range(value: f64) -> Result<f64, String> {
     ensure(value.abs() <= MAX_SAMPLE, || {
         let (value, most) = (plain(value), short(MAX_SAMPLE));

@@ -33,7 +33,7 @@ named! {
 }
 
 impl Unit {
-    /// The quantity that it measures.
+    /// Returns the quantity that the unit measures.
     #[must_use]
     pub const fn quantity(self) -> Recorded {
         match self {
@@ -42,7 +42,7 @@ impl Unit {
         }
     }
 
-    /// The unit in m/s2, or m/s.
+    /// Returns the unit in m/s2, or m/s.
     pub(super) const fn in_si(self, gravity_m_s2: f64) -> f64 {
         match self {
             Self::Gravity => gravity_m_s2,
@@ -51,7 +51,7 @@ impl Unit {
         }
     }
 
-    /// Reports that the unit belongs to the other quantity, and what to change.
+    /// Returns the message that the unit belongs to the other quantity, with the remedy.
     pub(super) const fn other_quantity(self) -> &'static str {
         match self.quantity() {
             Recorded::Velocity => {
@@ -63,7 +63,7 @@ impl Unit {
         }
     }
 
-    /// The unit that a header names, which must be one of this quantity; the remedy is for units that are unknown.
+    /// Returns the unit in a header, which must be a unit of this quantity. `remedy` is for unknown units.
     pub(super) fn of_header(text: &str, quantity: Recorded, remedy: &str) -> Result<Self, String> {
         let wrong = match Self::written(text) {
             Some(unit) if unit.quantity() == quantity => return Ok(unit),
@@ -73,7 +73,7 @@ impl Unit {
         Err(format!("the unit is {}{wrong}", excerpt(text)))
     }
 
-    /// The unit in one of the spellings that files have: `cm/s^2`, `CM/SEC/SEC`, `gal`.
+    /// Parses one of the spellings in files: `cm/s^2`, `CM/SEC/SEC`, `gal`.
     pub(super) fn written(text: &str) -> Option<Self> {
         let plain = text.replace(|c: char| c.is_whitespace() || "^*()[]".contains(c), "");
         match plain.to_ascii_lowercase().replace("sec", "s").as_str() {
@@ -87,7 +87,7 @@ impl Unit {
     }
 }
 
-/// A unit, by its name or in a spelling that files have.
+/// Returns the rule for a unit, by its name or a spelling in files.
 pub(super) fn any_unit() -> Custom<'static, Unit> {
     let names = one_of(Unit::ALL, Unit::name);
     let allowed = format!("{} or \"gal\"", names.allowed());

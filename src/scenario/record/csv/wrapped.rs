@@ -2,9 +2,8 @@
 
 use super::*;
 
-/// Whether the table shows that its rows hold several samples. Either all rows but the last are equally long and the last is
-/// shorter; or the total number of samples is given before the table (`text` includes the skipped lines), in a comment or in
-/// the row of names.
+/// Returns true if the table shows that its rows contain several samples: all rows but the last have the same length and the last is shorter. Or
+/// the total number of samples is given before the table, in a comment or in the row of names; `text` includes the skipped lines.
 pub(super) fn is_shown(text: &str, table: &str, layout: &Layout) -> bool {
     let Some((names, lengths)) = lengths(table, layout.decimal) else {
         return false;
@@ -29,11 +28,11 @@ pub(super) fn is_shown(text: &str, table: &str, layout: &Layout) -> bool {
         .flat_map(header_words)
         .filter_map(|word| word.parse::<usize>().ok())
         .collect();
-    // A number that equals the number of rows announces rows, not samples.
+    // A number equal to the number of rows announces rows, not samples.
     announced.contains(&lengths.iter().sum()) && !announced.contains(&lengths.len())
 }
 
-/// The first row if it holds names, and the count of numbers in each other row; `None` if a cell is not a number.
+/// Returns the first row if it contains names, and the number of cells of each other row; `None` if a cell is not a number.
 fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)> {
     let mut rows = Rows::new(table, decimal).peekable();
     let names = rows.next_if(|row| row.has_no_number(decimal));
@@ -42,7 +41,7 @@ fn lengths(table: &str, decimal: Decimal) -> Option<(Option<String>, Vec<usize>)
     Some((names, lengths.collect::<Option<_>>()?))
 }
 
-/// Reads the samples of all rows. A first row without any number holds the names.
+/// Reads the samples of all rows. A first row without any number contains names.
 pub(super) fn parse(table: &str, step_s: f64, decimal: Decimal) -> Parsed<Samples> {
     let mut values = Values::default();
     for row in Rows::new(table, decimal) {
