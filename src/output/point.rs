@@ -51,7 +51,7 @@ impl Scene {
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
                 Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad))
             }
-            Outline::Block { .. } | Outline::Row { .. } => Part::Block(index),
+            Outline::Block(_) | Outline::Row(_) => Part::Block(index),
         };
         Ok(Point { at_m, part })
     }

@@ -153,8 +153,8 @@ impl Scene {
     pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
         let is_arch = match &self.outline {
             Outline::Ring { .. } => true,
-            Outline::Block { .. } => false,
-            Outline::Row { outlines_m } => self.sections.len() > outlines_m.len(),
+            Outline::Block(_) => false,
+            Outline::Row(outlines_m) => self.sections.len() > outlines_m.len(),
         };
         let ends = [self.sections.first(), self.sections.last()];
         let faces = ends.into_iter().zip(&self.supports);
@@ -239,8 +239,8 @@ impl Scene {
                 };
                 joints_rad.iter().filter_map(ends).collect()
             }
-            Outline::Block { .. } => Vec::new(),
-            Outline::Row { .. } => (0..)
+            Outline::Block(_) => Vec::new(),
+            Outline::Row(_) => (0..)
                 .map_while(|joint| self.corners(joint))
                 .map(|corners| corners.map(|corner| corner.moved(&self.stands.0, 1.0)))
                 .collect(),
@@ -250,7 +250,7 @@ impl Scene {
     /// Returns the body of a block while these hinges are open; `None` if the block does not move.
     pub(super) fn body_of(&self, block: usize, hinges: &[OpenHinge]) -> Option<usize> {
         match self.outline {
-            Outline::Row { .. } if self.linked => linked_body(hinges, block),
+            Outline::Row(_) if self.linked => linked_body(hinges, block),
             _ => Some(block),
         }
     }
@@ -259,11 +259,11 @@ impl Scene {
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         match &self.outline {
-            Outline::Block { outline_m } => vec![Piece {
+            Outline::Block(outline_m) => vec![Piece {
                 body: Some(0),
                 outline_m: outline_m.clone(),
             }],
-            Outline::Row { outlines_m } => {
+            Outline::Row(outlines_m) => {
                 let outlines = outlines_m.iter().enumerate();
                 outlines
                     .map(|(block, outline_m)| Piece {
@@ -316,11 +316,11 @@ impl Scene {
             (Hinge::Section { angle_rad, edge }, Outline::Ring { .. }) => {
                 (None, self.on_ring_m(angle_rad, edge)?)
             }
-            (Hinge::Toe(Sway::Left), Outline::Block { outline_m }) => (Some(0), outline_m[0]),
-            (Hinge::Toe(Sway::Right), Outline::Block { outline_m }) => {
+            (Hinge::Toe(Sway::Left), Outline::Block(outline_m)) => (Some(0), outline_m[0]),
+            (Hinge::Toe(Sway::Right), Outline::Block(outline_m)) => {
                 (Some(0), outline_m[outline_m.len() - 1])
             }
-            (Hinge::Joint { joint, edge }, Outline::Row { .. }) => {
+            (Hinge::Joint { joint, edge }, Outline::Row(_)) => {
                 let [intrados, extrados] = self.corners(joint)?;
                 return Some(match edge? {
                     Edge::Intrados => intrados,
@@ -349,13 +349,13 @@ impl Scene {
     #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
         match &self.outline {
-            Outline::Row { .. } if !self.linked => self.corners(joint),
+            Outline::Row(_) if !self.linked => self.corners(joint),
             _ => None,
         }
     }
 
     fn corners(&self, joint: usize) -> Option<[Mark; 2]> {
-        let Outline::Row { outlines_m } = &self.outline else {
+        let Outline::Row(outlines_m) = &self.outline else {
             return None;
         };
         let section = self.sections.get(joint)?;
@@ -399,7 +399,7 @@ impl Scene {
     /// Returns the unit normal of an undeformed joint of a row, towards the block after it.
     #[must_use]
     pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
-        let Outline::Row { outlines_m } = &self.outline else {
+        let Outline::Row(outlines_m) = &self.outline else {
             return None;
         };
         let section = self.sections.get(joint)?;
@@ -424,9 +424,9 @@ impl Scene {
             .map(|(index, section)| match section.angle_rad {
                 Some(angle_rad) => link(&hinges_rad, angle_rad),
                 None => match self.outline {
-                    Outline::Block { .. } => Some(0),
-                    Outline::Row { .. } if self.linked => linked_body(hinges, index),
-                    Outline::Row { .. } | Outline::Ring { .. } => {
+                    Outline::Block(_) => Some(0),
+                    Outline::Row(_) if self.linked => linked_body(hinges, index),
+                    Outline::Row(_) | Outline::Ring { .. } => {
                         self.joint(index).and_then(|[corner, _]| corner.body)
                     }
                 },

@@ -35,16 +35,10 @@ pub enum Outline {
         /// Joints of the ring, in radians from the left springing; empty if hinges open anywhere.
         joints_rad: Vec<f64>,
     },
-    /// One body.
-    Block {
-        /// Corners of the body, in metres.
-        outline_m: Vec<Vector2<f64>>,
-    },
-    /// One body per block.
-    Row {
-        /// The corners of each block.
-        outlines_m: Vec<Vec<Vector2<f64>>>,
-    },
+    /// One body, with its corners, in metres.
+    Block(Vec<Vector2<f64>>),
+    /// One body per block, with the corners of each, in metres.
+    Row(Vec<Vec<Vector2<f64>>>),
 }
 
 /// Undeformed section at which the position of the thrust line is known, in metres.
@@ -160,9 +154,7 @@ impl Parts for Column {
             (top_m, height_m),
             (base_m, 0.0),
         ];
-        Outline::Block {
-            outline_m: corners.map(|(x, y)| Vector2::new(x, y)).to_vec(),
-        }
+        Outline::Block(corners.map(|(x, y)| Vector2::new(x, y)).to_vec())
     }
 
     fn sections(&self) -> Vec<Section> {
@@ -211,9 +203,7 @@ impl Parts for Row {
     }
 
     fn outline(&self) -> Outline {
-        Outline::Row {
-            outlines_m: self.outlines_m.to_vec(),
-        }
+        Outline::Row(self.outlines_m.to_vec())
     }
 
     fn sections(&self) -> Vec<Section> {
