@@ -212,13 +212,13 @@ pub type Rows<R> = BTreeMap<usize, R>;
 #[derive(Debug, Error)]
 #[error("{message}")]
 pub struct PartError {
-    /// Its kind.
+    /// Kind of the error.
     pub kind: PartErrorKind,
     /// The file and the problem.
     pub message: String,
 }
 
-/// The kind of a [`PartError`], on which the remedy depends.
+/// The kind of a [`PartError`], which determines the remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartErrorKind {
     /// The system reported an error.

@@ -21,16 +21,16 @@ pub enum StudyError {
     /// The scenario or an option does not fit the study.
     #[error("{0}")]
     Scenario(String),
-    /// It could not be computed.
+    /// The computation failed.
     #[error("{0}")]
     Failed(String),
-    /// Its rows could not be completed.
+    /// The rows are incomplete.
     #[error(transparent)]
     Runner(#[from] RunnerError),
-    /// Its parts cannot be joined.
+    /// The parts cannot be joined.
     #[error(transparent)]
     Part(#[from] PartError),
-    /// The scenario of its parts cannot be read.
+    /// The scenario in the parts cannot be read.
     #[error(transparent)]
     Read(#[from] ScenarioErrors),
     /// A result is not a number.

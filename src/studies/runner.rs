@@ -132,10 +132,10 @@ pub struct Progress {
     pub all: usize,
 }
 
-/// Receives the progress of a study; the work stops when it returns a break.
+/// Function that receives the progress of a study. The work stops when the function returns `Break`.
 pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
 
-/// Why the rows of a study are not complete.
+/// Reasons why the rows of a study are incomplete.
 #[derive(Debug, Error)]
 pub enum RunnerError {
     /// The caller cancelled.
@@ -156,7 +156,7 @@ pub struct Task<'p> {
     pub folder: &'p Path,
     /// The cases to compute.
     pub shard: Shard,
-    /// Whether to continue an interrupted run, if there is one.
+    /// True to continue an interrupted run, if there is one.
     pub resume: bool,
 }
 

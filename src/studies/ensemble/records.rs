@@ -382,7 +382,7 @@ mod tests {
     /// Lognormal intensities from their quantiles: the fractiles give median and dispersion back, within the spacing of the 2000 values.
     #[test]
     fn fractiles_are_those_of_lognormal_intensities() {
-        // Phi(1) = 0.8413: the fractile of 84 % is at 0.9945 deviations, and interpolation adds nothing to so many values.
+        // Phi(1) = 0.8413: the fractile of 84 % is at 0.9945 deviations, and the interpolation error is negligible with this number of values.
         let intensities: Vec<f64> = (0..2000)
             .map(|index| {
                 let part = (f64::from(index) + 0.5) / 2000.0;

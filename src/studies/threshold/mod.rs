@@ -93,7 +93,7 @@ named! {
     pub enum RangeEnd {
         /// The verdict changes.
         Edge = "edge",
-        /// It is the first or the last sampled factor.
+        /// The first or the last sampled factor is reached.
         Sampled = "sampled",
         /// There is no history beyond.
         Unknown = "unknown",

@@ -292,9 +292,9 @@ pub struct StateCheck {
 /// A decision where the text of the Circolare leaves a choice.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Decision {
-    /// Its name on the page.
+    /// Name of the decision on the page.
     pub name: String,
-    /// The decision.
+    /// Text of the decision.
     pub text: String,
 }
 
