@@ -68,7 +68,7 @@ pub enum IntegratorError {
 }
 
 /// Maximum number of steps of one call of the solver, far more than any part of a motion needs.
-const MAX_STEPS: u32 = 1_000_000;
+const MAX_STEPS: u32 = 100_000;
 
 /// Integrates `slope(time_s, state)` for a task, and passes every accepted step to `watch`, which may end the integration. Returns the last state.
 ///
