@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     let (mut roots, mut tasks, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for path in &arguments.scenarios {
-        if let Some((root, own)) = noted(arguments.read(path, &options.run), &mut wrong)? {
+        if let Some((root, own)) = noted(arguments.read(path, &options.run, &roots), &mut wrong)? {
             roots.extend(root);
             tasks.extend(own);
         }
@@ -118,6 +118,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             false => heading(scenarios) + &results.words,
         };
         match arguments.format {
+            Format::Json if results.summary.is_null() => {}
             Format::Json => summaries.push(results.summary),
             Format::Text if quiet => {}
             // Standard output carries the rotations and nothing else.
@@ -128,7 +129,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             Format::Text => print(&words)?,
         }
     }
-    if let Format::Json = arguments.format {
+    if !summaries.is_empty() {
         print_all(summaries)?;
     }
     match failures.is_empty() {
@@ -180,20 +181,21 @@ impl Arguments {
         })
     }
 
-    /// The scenarios of a file, and the folder around their results, if files are written.
+    /// The scenarios of a file, and the folder around their results, if files are written. Files of one name share a folder, and its lock.
     fn read(
         &self,
         path: &Path,
         options: &RunOptions,
+        others: &[Root],
     ) -> Result<(Option<Root>, Vec<Task>), Failure> {
         let input = self.set.open(path)?;
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
-            return Err("--rotations - is for one model: choose one by --hinges".into());
+            return Err(input.wrong("--rotations - is for one model: choose one by --hinges"));
         }
         if self.no_repeat && !models.iter().any(|one| one.motion.hinges().has_joints()) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
-            return Err(message.into());
+            return Err(input.wrong(message));
         }
         let origin = Origin::of(&models[0]);
         let root = match &self.out {
@@ -201,6 +203,8 @@ impl Arguments {
             out => input.results(out.as_deref())?,
         };
         let root = self.has_folder().then(|| self.figure.printed(root));
+        let known = || others.iter().map(|(other, _)| other);
+        let root = root.map(|root| root.with_lock_of(known()));
         let check = |scenario: &Scenario| {
             scenario.check_for_run()?;
             check(scenario, options)

@@ -224,10 +224,24 @@ impl Destination {
         }
     }
 
-    /// Locks the folder and everything below it for a command, before anything is written. Results of the last run are removed when those of
+    /// Shares the lock of a destination with the same folder, if one is among these.
+    pub fn with_lock_of<'d>(self, mut known: impl Iterator<Item = &'d Self>) -> Self {
+        match known.find(|known| known.path == self.path) {
+            Some(known) => Self {
+                locked: Rc::clone(&known.locked),
+                ..self
+            },
+            None => self,
+        }
+    }
+
+    /// Locks the folder and everything below it for a command, unless it is locked, before anything is written. Results of the last run are removed when those of
     /// this run are published. Prints warnings about results of other commands from another scenario. Several parts of a study may be computed
     /// in one folder at the same time.
     pub fn lock(&self, writer: Writer, origin: &Origin, is_part: bool) -> Result<(), Failure> {
+        if self.locked.get().is_some() {
+            return Ok(());
+        }
         let batch = Batch::lock(&self.path, !is_part).map_err(elsewhere)?;
         if !is_part {
             batch.replace(writer.last_run(&self.path));
@@ -353,7 +367,7 @@ impl Destination {
         let (batch, writer) = self.locked();
         let folder = batch.folder(&self.path, &all);
         let mut folder = folder.map_err(elsewhere)?;
-        // A killed run may have left other files.
+        // `last_run` misses the folder of a record whose seal was not written.
         let others = writer.files.iter().filter(|name| !names.contains(name));
         others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {

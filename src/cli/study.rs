@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Done, Options, RUN, Rows, StudyKind, THRESHOLD};
+use archrock::studies::catalogue::{Done, Options, RUN, Rows, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
@@ -161,11 +161,17 @@ impl<'s> Session<'s> {
         });
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
-        let mut shown = None;
+        let (mut shown, mut last) = (None, 0);
+        let samples_are_kept = !self.pending.is_empty();
         let mut watch = |progress: Progress| {
             let Progress { done, all } = progress;
+            // The history of the next model begins.
+            if done < last {
+                shown = None;
+            }
+            last = done;
             let (display, before) = shown.get_or_insert_with(|| {
-                // The system ends a history at once.
+                // Without this, Ctrl-C ends a history at once. Samples before it may have called this.
                 if kind != RUN {
                     listen_to_interrupts();
                 }
@@ -176,10 +182,10 @@ impl<'s> Session<'s> {
                 };
                 (Display::new(patience), done)
             });
-            // All finished rows are in the file and none is being written, so it is safe to exit.
+            // No row is being written, and a study with a file has all finished rows in it, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.abandon();
-                say_always(&interrupted(kind, task, progress));
+                say_always(&interrupted(kind, task, progress, samples_are_kept));
                 process::exit(INTERRUPTED_CODE);
             }
             let new = done.saturating_sub(*before);
@@ -252,7 +258,10 @@ impl<'s> Session<'s> {
     ) -> Result<Option<Results>, Failure> {
         let several = scenarios.len() > 1;
         let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
-        if self.work.is_part() && !has_samples && WITHOUT_PARTS.contains(&own) {
+        if self.work.is_part() && place.is_none() {
+            return Err("--shard writes a file: name a folder for it with --out".into());
+        }
+        if self.work.is_part() && !has_samples && !own.has_parts {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
@@ -331,18 +340,20 @@ impl<'s> Session<'s> {
 
 /// A shorter history shows no progress.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Studies whose rows are not kept in a file.
-const WITHOUT_PARTS: [StudyKind; 2] = [RUN, THRESHOLD];
 
 /// The message when Ctrl-C ends a computation.
 fn interrupted(
     kind: StudyKind,
     task: Option<Task<'_>>,
     Progress { done, all }: Progress,
+    samples_are_kept: bool,
 ) -> String {
     let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
     match file {
-        _ if WITHOUT_PARTS.contains(&kind) => "interrupted".to_owned(),
+        _ if !kind.has_parts && samples_are_kept => {
+            "interrupted: the samples are kept; continue with --resume".to_owned()
+        }
+        _ if !kind.has_parts => "interrupted".to_owned(),
         Some(file) if !file.exists() => {
             format!("interrupted; {} was removed meanwhile", file.display())
         }

@@ -7,17 +7,26 @@ use crate::scenario::shown_lines;
 
 /// Fills a template: each name between `%` signs is replaced by its text. Inserted texts are not searched for names.
 pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
-    let (mut page, mut is_name) = (String::new(), true);
-    for part in template.split('%') {
-        let named = texts.iter().find(|(name, _)| *name == part);
-        // A sign that does not enclose a name is part of the page.
-        if !is_name && named.is_none() {
-            page.push('%');
-        }
-        page += named.map_or(part, |(_, text)| text);
-        is_name = named.is_some();
+    let mut page = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('%') {
+        page += before;
+        let place = after.split_once('%').and_then(|(name, after)| {
+            let (_, text) = texts.iter().find(|(known, _)| *known == name)?;
+            Some((text, after))
+        });
+        rest = match place {
+            Some((text, after)) => {
+                page += text;
+                after
+            }
+            None => {
+                page.push('%');
+                after
+            }
+        };
     }
-    page
+    page + rest
 }
 
 /// Formats JSON for a script of a page: nothing in the text ends the script.
@@ -33,6 +42,9 @@ mod tests {
     fn places_are_filled_once() {
         let page = filled("100 % of %A%, %B% and %C%", &[("A", "%B%"), ("B", "b")]);
         assert_eq!(page, "100 % of %B%, b and %C%");
+        let texts = [("A", "1"), ("B", "2")];
+        assert_eq!(filled("half of %A", &texts), "half of %A");
+        assert_eq!(filled("%A%B%C", &texts), "1B%C");
     }
 
     #[test]

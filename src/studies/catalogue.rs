@@ -80,6 +80,8 @@ pub struct StudyKind {
     pub name: &'static str,
     /// The names of all files that its results may have, the seal last.
     pub files: &'static [&'static str],
+    /// True if its rows are kept in a file, so the work can be divided and resumed.
+    pub has_parts: bool,
     run: Compute,
 }
 
@@ -95,6 +97,7 @@ impl Eq for StudyKind {}
 pub const RUN: StudyKind = StudyKind {
     name: "run",
     files: &run::FILES,
+    has_parts: false,
     run: |scenarios, options, style, rows| {
         let Rows::Stream(open, rotations, watch) = rows else {
             return Err(StudyError::scenario("a run has no parts"));
@@ -115,6 +118,7 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
 pub const THRESHOLD: StudyKind = StudyKind {
     name: "threshold",
     files: &threshold::FILES,
+    has_parts: false,
     run: |scenarios, options, style, rows| {
         let Rows::Compute(runner, _, watch) = rows else {
             return Err(StudyError::scenario("a threshold has no parts"));
@@ -135,6 +139,7 @@ pub const THRESHOLD_ALONG: StudyKind =
 pub const CAPACITY: StudyKind = StudyKind {
     name: "capacity",
     files: &capacity::FILES,
+    has_parts: false,
     run: |scenarios, options, style, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
@@ -146,6 +151,7 @@ pub const CAPACITY: StudyKind = StudyKind {
 pub const SPREAD: StudyKind = StudyKind {
     name: "spread",
     files: &spread::FILES,
+    has_parts: false,
     run: |scenarios, options, style, _| {
         let found = spread::spread(&scenarios[0], &options.ways).map_err(StudyError::scenario)?;
         Ok(whole(spread::report(&scenarios[0], &found, style.figure)?))
@@ -155,6 +161,7 @@ pub const SPREAD: StudyKind = StudyKind {
 pub const VERIFY: StudyKind = StudyKind {
     name: "verify",
     files: &verify::FILES,
+    has_parts: false,
     run: |scenarios, _, _, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
@@ -222,11 +229,12 @@ impl StudyKind {
         Self {
             name: S::NAME,
             files: S::FILES,
+            has_parts: true,
             run,
         }
     }
 
-    /// Computes the study of scenarios that differ only in their models of motion. Only a threshold takes several.
+    /// Computes the study of scenarios that differ only in their models of motion. A run and a threshold take several; the others use the first.
     ///
     /// # Errors
     /// When the scenario does not describe the study, or its rows could not be completed.

@@ -225,8 +225,8 @@ impl Runner {
         Ok(rows.into_values().collect())
     }
 
-    /// Computes the rows of a shard and saves them in a part file as they are computed (see [`super::part`]). The file can be resumed after the
-    /// program was killed. Returns the file, and the rows if the shard is the whole study.
+    /// Computes the rows of a shard. Each is saved in a part file (see [`super::part`]), so a killed program can resume the work. Returns the
+    /// file, and the rows if the shard is the whole study.
     ///
     /// `watch` is as in [`Runner::rows`]. All rows that its progress counts are already in the file.
     ///

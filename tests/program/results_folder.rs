@@ -187,6 +187,41 @@ fn records_of_the_last_suite_go_with_it() {
     }
 }
 
+/// Two scenario files of one name have their records in one folder, which the command locks once.
+#[test]
+fn scenario_files_of_one_name_share_a_folder() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    for name in ["a", "b"] {
+        fs::create_dir(at.join(name)).unwrap();
+        let record = at.join(name).join(format!("{name}.csv"));
+        fs::write(record, "0.0,0.0\n0.2,1.0\n0.4,-1.0\n0.6,0.0\n").unwrap();
+        let text = format!(
+            "[column]\nheight_m = 4\nwidth_m = 0.8\n[simulation]\nduration_s = 1\n\
+             [suite]\nrecords = ['{name}.csv']\nunit = 'm/s2'\npeaks_g = [0.1]\n"
+        );
+        fs::write(at.join(name).join("x.toml"), text).unwrap();
+    }
+    let files = ["a/x.toml", "b/x.toml"];
+    succeeds(
+        at,
+        &[
+            "run", files[0], files[1], "--suite", "--out", "o", "--quiet",
+        ],
+    );
+    assert_eq!(names(&at.join("o/x")), ["a.csv", "b.csv"]);
+}
+
+#[test]
+fn a_part_without_a_folder_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("s.toml"), column(0.4, 64)).unwrap();
+    let part = ["run", "s.toml", "--shard", "1/2", "--format", "json"];
+    let output = archrock(root.path(), &part);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(output.stdout.is_empty() && stderr(&output).contains("--out"));
+}
+
 /// Runs of two scenarios are killed at many instants. A folder then has the results of one of them, or none that are sealed.
 #[test]
 fn after_a_kill_a_folder_holds_one_scenario() {

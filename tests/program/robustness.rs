@@ -439,6 +439,7 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
         return;
     };
     assert!(said.contains(" of 5 s simulated, "), "{said}");
+    assert!(!said.contains("repeating the history"), "{said}");
     for more in ["long.toml --quiet", "short.toml"] {
         let said = on_a_terminal(root.path(), &run(more)).unwrap();
         assert!(!said.contains(" s simulated"), "{said}");

@@ -412,7 +412,7 @@ fn blocks_too_unlike_in_weight_are_named() {
     let output = run("0.001");
     assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
     let said = stderr(&output);
-    assert!(said.contains("make their weights more alike"), "{said}");
+    assert!(said.contains("use more similar weights"), "{said}");
     stdout(&run("200"));
 }
 

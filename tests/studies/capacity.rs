@@ -363,7 +363,9 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
     let text = format!("{arch}[[tie]]\nheight_m = 2.0\n{rigid}");
     let error = capacity(&parsed(&text), None).unwrap_err();
     assert!(
-        error.to_string().contains("give them a `yield_force_n`"),
+        error
+            .to_string()
+            .contains("give the ties a `yield_force_n`"),
         "{error}"
     );
 }

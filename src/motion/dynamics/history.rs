@@ -328,7 +328,7 @@ pub struct Event {
     pub time_s: f64,
     /// Kind of the event.
     pub kind: EventKind,
-    /// State from here on: rest, rocking or overturned.
+    /// State from here on: in files `rest`, `right`, `left` or `overturned`.
     pub state: State,
     /// Number of impacts since uplift, which is the index of the mechanism; `None` at rest, and for a row of blocks.
     pub mechanism: Option<usize>,
@@ -343,7 +343,7 @@ pub struct Event {
     pub hinges: Vec<Hinge>,
     /// Impact; `None` for other events. An impact may lead to rest.
     pub impact: Option<Impact>,
-    /// Index of the tie, from 0; `None` for events without a tie.
+    /// Index of the tie, from 0 (tables of a run count from 1); `None` for events without a tie.
     pub tie: Option<usize>,
 }
 

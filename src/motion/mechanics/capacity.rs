@@ -215,7 +215,7 @@ pub enum CapacityError {
     Control(Vector2<f64>, Sway),
     /// There is no unstable equilibrium to this side.
     #[error(
-        "the linkage that sways to the {side} comes to the end of its way before it loses its strength: it has no ultimate \
+        "the linkage that sways to the {side} reaches its limit position before its strength is zero: it has no ultimate \
          displacement", side = .0.name()
     )]
     Locks(Sway),

@@ -100,7 +100,7 @@ pub struct Link<M> {
 pub enum Hinge {
     /// Hinge at an edge of a section of an arch.
     Section {
-        /// Section, in radians from the left springing; in degrees as `angle_deg` in files.
+        /// Angle of the section from the left springing, in radians; in files `angle_deg`, in degrees.
         #[serde(rename = "angle_deg", serialize_with = "in_degrees")]
         angle_rad: f64,
         /// The edge.

@@ -45,8 +45,8 @@ const DEPENDENCE: f64 = 1e-10;
 pub enum ContactError {
     /// The active set was not found within this number of iterations, at the loosest tolerance.
     #[error(
-        "the velocities of the blocks were not found in {0} iterations: where the heaviest block is more than some \
-         1e5 times as heavy as the lightest, numbers are not exact enough; make their weights more alike"
+        "the velocities of the blocks were not found in {0} iterations. A likely reason is a heaviest block of more than some 1e5 times \
+         the weight of the lightest: use more similar weights"
     )]
     Unsolved(usize),
     /// No velocities are admissible: the corner of this joint, from 0 on the left support, closes further under any motion of the blocks. An

@@ -167,7 +167,7 @@ pub enum SettlingError {
     Contact(#[from] ContactError),
     /// The forces of the ties were not found.
     #[error(
-        "what the ties pull with was not found where the row gives way: give them less stiffness, or other places"
+        "the forces of the ties were not found at a change of hinges: give the ties less stiffness, or other positions"
     )]
     Ties,
     /// No other hinges were found on which the row is in equilibrium, at this position along the path.

@@ -37,7 +37,7 @@ impl Ending {
     }
 }
 
-/// Returns the ending of a row, or the outcome to report if the row has none.
+/// Function that returns the ending of a row, or the outcome to report if the row has none.
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
 /// Returns the columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an

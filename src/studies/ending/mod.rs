@@ -36,7 +36,7 @@ pub struct Ending {
     /// Number of impacts; of an overturned structure, those before overturning. `None` for elastic joints, which have no impacts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts: Option<usize>,
-    /// Largest error of the energy balance. Reference of a mechanism: its energy barrier. Reference of free hinges: weight times size.
+    /// Largest error of the energy balance, over the energy barrier of a mechanism, or over weight times size of a row of blocks.
     pub energy_defect_ratio: f64,
     /// The largest rotation.
     pub peak: PeakRotation,
@@ -57,7 +57,7 @@ pub struct Ending {
 pub enum PeakRotation {
     /// Models with one mechanism at a time: relative to the rotation at the unstable equilibrium; `None` if that is unknown.
     OverCritical(Option<f64>),
-    /// Free hinges: the largest rotation of a block, in radians.
+    /// Rows of blocks, with free hinges or elastic joints: the largest rotation of a block, in radians.
     Rad(f64),
 }
 
@@ -69,7 +69,7 @@ impl PeakRotation {
         }
     }
 
-    /// Returns the rotation relative to that at the unstable equilibrium; `None` if that is unknown, or for free hinges.
+    /// Returns the rotation relative to that at the unstable equilibrium; `None` if that is unknown, or for a row of blocks.
     #[must_use]
     pub const fn over_critical(self) -> Option<f64> {
         match self {
@@ -78,7 +78,7 @@ impl PeakRotation {
         }
     }
 
-    /// Returns the rotation in radians for free hinges; `None` for other models.
+    /// Returns the rotation of a row of blocks, in radians; `None` for mechanisms.
     #[must_use]
     pub const fn rad(self) -> Option<f64> {
         match self {
@@ -105,7 +105,7 @@ impl Ending {
         self.impacts.filter(|_| self.safe_from_s.is_none())
     }
 
-    /// Returns the number of impacts at which all hinges close together; `None` for free hinges, which close one by one.
+    /// Returns the number of impacts at which all hinges close together; `None` for a row of blocks, whose hinges close one by one.
     #[must_use]
     pub fn impacts_of_all_hinges(&self) -> Option<usize> {
         let is_of_all = matches!(self.peak, PeakRotation::OverCritical(_));

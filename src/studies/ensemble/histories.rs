@@ -265,7 +265,7 @@ struct BandAt {
     own_rad: Option<f64>,
     /// The 5 % quantile, the median and the 95 % quantile of the samples, in radians; infinite in the range of overturned samples.
     band_rad: [f64; 3],
-    /// Number of samples that have overturned before this time.
+    /// Number of samples that have overturned by this time.
     overturned: usize,
 }
 

@@ -2,8 +2,6 @@
 
 mod report;
 
-use std::error::Error;
-
 use self::report::open_joints;
 pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, Summary, TieLimits,
@@ -14,7 +12,7 @@ use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
-use crate::mechanics::settling::{Follower, Movements, SettlingError};
+use crate::mechanics::settling::{Follower, Movements};
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::{
     RowOnset, StabilityError, limit_with_yielding_ties, onset, onset_at,
@@ -28,25 +26,33 @@ use crate::scenario::Scenario;
 /// # Errors
 /// When the structure cannot stand, or the analysis does not apply or fails.
 pub fn limit(scenario: &Scenario) -> Result<Answer, StudyError> {
-    let summary = summary(scenario).map_err(|error| match error.downcast_ref() {
-        Some(FrictionError::NotSolved(_)) => StudyError::failed(error),
-        _ => StudyError::scenario(error),
-    });
-    Ok(Answer::of(&summary?)?)
+    Ok(Answer::of(&summary(scenario)?)?)
 }
 
-/// Summaries for errors of any kind.
-type Found = Result<Summary, Box<dyn Error>>;
+impl From<FrictionError> for StudyError {
+    fn from(error: FrictionError) -> Self {
+        match error {
+            FrictionError::NotSolved(_) => Self::failed(error),
+            _ => Self::scenario(error),
+        }
+    }
+}
 
-fn summary(scenario: &Scenario) -> Found {
-    let row = || scenario.structure.row().map_err(RowModelError::from);
+fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
+    let row = || {
+        let row = scenario.structure.row().map_err(RowModelError::from);
+        row.map_err(StudyError::scenario)
+    };
     let coefficient = scenario.motion.friction_coefficient();
     if let Some(movements) = scenario.motion.supports() {
         return of_moved_row(scenario, &row()?, &movements, coefficient);
     }
-    let mut summary = match scenario.row()? {
-        Some(row) => of_row(scenario, &row)?,
-        None => Summary::of_mechanism(&*scenario.mechanisms()?, scenario.gravity_m_s2()),
+    let mut summary = match scenario.row().map_err(StudyError::scenario)? {
+        Some(row) => of_row(scenario, &row).map_err(StudyError::scenario)?,
+        None => {
+            let model = scenario.mechanisms().map_err(StudyError::scenario)?;
+            Summary::of_mechanism(&*model, scenario.gravity_m_s2())
+        }
     };
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient)?);
@@ -55,7 +61,7 @@ fn summary(scenario: &Scenario) -> Found {
 }
 
 /// Computes the onset of an undeformed row by the static theorem of limit analysis.
-fn of_row(scenario: &Scenario, row: &Row) -> Found {
+fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let onsets = Sides::try_of(|sway| onset(row, sway))?;
     let starts_g = onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
@@ -149,13 +155,14 @@ fn of_moved_row(
     row: &Row,
     movements: &Movements,
     coefficient: Option<f64>,
-) -> Found {
-    let mut follower = Follower::new(row)?;
+) -> Result<Summary, StudyError> {
+    let mut follower = Follower::new(row).map_err(StudyError::scenario)?;
     // The reader of the scenario has checked that the row can follow these movements.
-    follower.move_supports(|part| *movements * part, 0.0, 1.0)?;
+    let moved = follower.move_supports(|part| *movements * part, 0.0, 1.0);
+    moved.map_err(StudyError::scenario)?;
     let stance = &follower.stance;
-    let starts_g =
-        Sides::try_of(|sway| follower.first_motion_g(sway)).map_err(SettlingError::from)?;
+    let starts_g = Sides::try_of(|sway| follower.first_motion_g(sway));
+    let starts_g = starts_g.map_err(StudyError::scenario)?;
     let mechanism = Sides::of(|sway| open_joints(row, mechanism(row, &follower, sway).as_ref()));
     let capacity = Sides::of(|sway| match *starts_g.to(sway) {
         Some(start_g) => follower.capacity_g(sway, start_g),

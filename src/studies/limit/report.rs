@@ -103,11 +103,11 @@ pub struct TieLimits {
     pub stands_without: bool,
     /// The push that starts the structure without its ties, in units of gravity; null if no push starts it, or the structure cannot stand.
     pub without: Sides<Option<f64>>,
-    /// Plastic limit: the largest push for all tie forces up to yield.
+    /// Plastic limit: the largest push if each tie has its best force, at most its yield force.
     pub yielding: Sides<YieldingTies>,
 }
 
-/// Plastic limit to one side: the largest push for all tie forces up to yield.
+/// Plastic limit to one side: the largest push if each tie has its best force, at most its yield force.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct YieldingTies {
     /// The push, in units of gravity; null if there is no limit while ties hold.

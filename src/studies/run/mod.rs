@@ -158,7 +158,7 @@ pub fn results(
     let runs: Result<Vec<Run<'_>>, String> = runs.collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
-        // Opened before the work starts, so that a folder that cannot be written costs no time.
+        // Opened before the history starts, so a folder that cannot be written costs no simulation.
         let folder = open(run.scenario, &run.files()).map_err(StudyError::Scenario)?;
         let samples = options.samples.get(number).map_or("", String::as_str);
         all.push(run.compute(folder, rotations.take(), samples, &mut *watch)?);
@@ -259,7 +259,7 @@ impl<'a> Run<'a> {
             false => scenario.variations().map_err(StudyError::failed)?,
         };
         let variations = Variations::start(variations, ground, &request);
-        let all = (request.end_s * MILLISECONDS) as usize;
+        let all = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
             let mut recording = Recording {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
@@ -567,7 +567,9 @@ impl Recording<'_, '_> {
 
 impl Recorder for Recording<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        // All is done only while the history is repeated.
         let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.all);
+        let done = done.min(all.saturating_sub(1));
         let progress = Progress { done, all };
         self.collected.sample(sample);
         self.broken = match (self.watch)(progress) {

@@ -99,7 +99,8 @@ pub struct Stage {
     /// The horizontal ground acceleration at which the arch first moves, in units of gravity; `None` if no acceleration moves it. With three
     /// open hinges it is small, and is not a safety margin.
     pub first_motion_g: Sides<Option<f64>>,
-    /// The horizontal ground acceleration at which the arch collapses, in units of gravity; `None` if no acceleration moves the arch.
+    /// The horizontal ground acceleration at which the arch collapses, in units of gravity; `None` if the arch does not collapse below 100 g, or
+    /// the push was not found.
     pub capacity_g: Sides<Option<f64>>,
     /// Pushes that were not found; their values are `None`.
     pub not_found: Vec<NotFound>,

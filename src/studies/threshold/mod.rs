@@ -27,10 +27,9 @@ use super::ending::columns::FAILED;
 use super::ending::{Ending, Verdict, answered};
 use super::kind::GROUND_FALLS;
 use super::results::{Results, StudyError};
-use super::runner::{Progress, Runner};
+use super::runner::{Progress, Runner, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
-
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::repeatability::{Checked, checked};
 use crate::dynamics::until::Until;
@@ -122,7 +121,8 @@ pub struct Threshold {
     pub samples: Vec<FactorSample>,
     /// The ranges of equal verdicts, ascending.
     pub ranges: Vec<(Verdict, FactorRange)>,
-    /// The lowest factors of structures with other stiffness and contact; empty unless requested.
+    /// The lowest factors of structures with other stiffness and contact, and with rigid joints; empty unless joints are elastic and a factor
+    /// overturns the structure.
     pub varied: Vec<VariedThreshold>,
 }
 
@@ -259,7 +259,7 @@ pub fn results(
     factors: &Factors,
     figure: Figure,
     runner: &Runner,
-    watch: &mut dyn FnMut(Progress) -> ControlFlow<()>,
+    watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
     let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
@@ -272,8 +272,8 @@ pub fn results(
     let mut found = thresholds(&models, ground, &request, factors, runner, &mut *watch)?;
     for (threshold, scenario) in found.iter_mut().zip(scenarios) {
         threshold.check_known()?;
-        let variations = scenario.variations().map_err(StudyError::failed)?;
         if threshold.lowest_factor().is_some() {
+            let variations = scenario.variations().map_err(StudyError::failed)?;
             let case = (ground, &request);
             threshold.varied = vary(&variations, factors, case, runner, &mut *watch)?;
         }

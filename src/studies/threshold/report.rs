@@ -55,7 +55,7 @@ struct ModelSummary<'a> {
     incomplete: Vec<RangeSummary>,
     #[serde(flatten)]
     remarks: Remarks,
-    /// The lowest factors of structures with other stiffness and contact; absent unless requested.
+    /// The lowest factors of structures with other stiffness and contact, and with rigid joints; absent unless joints are elastic.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     variations: Vec<VariedSummary<'a>>,
     /// All histories, in order of ascending factors.

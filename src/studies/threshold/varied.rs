@@ -1,4 +1,4 @@
-//! Thresholds of a structure with other stiffness and contact.
+//! Thresholds of a structure with other stiffness and contact, and with rigid joints.
 
 use std::cell::Cell;
 use std::ops::ControlFlow;

@@ -110,7 +110,7 @@ pub struct LandingStepper<'a> {
     ties: Ties<'a>,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
-    /// Corner about which each joint turned in the last drift; `None` for closed joints.
+    /// Corner about which each joint turned in the last drift, the intrados for a parted joint; `None` for closed joints.
     turning: Vec<Option<Edge>>,
     load: Load,
     /// Rates of the gaps in the solution before the last one.

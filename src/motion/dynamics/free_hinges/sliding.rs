@@ -76,7 +76,7 @@ pub struct SlidingStepper<'a> {
     /// Copy for solutions that must not change the modes.
     auxiliary: Program,
     modes_before: Vec<Mode>,
-    /// True while no joint is open.
+    /// True while the contacts are those of the initial position.
     stands: bool,
     /// Energy dissipated by friction outside impacts.
     held_back: f64,

@@ -56,7 +56,8 @@ pub trait HybridSystem<const N: usize> {
     /// Returns the rate of change of the state, per second. Times are in the piece, its ends included.
     fn slope(&self, now: &Moment<Self::Mode, N>) -> State<N>;
 
-    /// Returns the state within a step, at least as accurate as at the step's ends.
+    /// Returns the state within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
+    /// events.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.

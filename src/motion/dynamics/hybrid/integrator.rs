@@ -67,8 +67,9 @@ pub enum IntegratorError {
     ToleranceNotMet(f64),
 }
 
-/// Maximum number of steps of one call of the solver, far more than any part of a motion needs.
-const MAX_STEPS: u32 = 100_000;
+/// Maximum number of steps of one call of the solver. The first hop limits the steps of a call, and may be 1e-5 s or less. A push that grows in
+/// this hop may hold the structure up for seconds, so a call may need some 1e5 steps.
+const MAX_STEPS: u32 = 1_000_000;
 
 /// Integrates `slope(time_s, state)` for a task, and passes every accepted step to `watch`, which may end the integration. Returns the last state.
 ///

@@ -138,7 +138,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
-    /// Returns the kinetic and potential energy of a mechanism.
+    /// Returns the sum of kinetic and potential energy of a mechanism.
     #[must_use]
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];

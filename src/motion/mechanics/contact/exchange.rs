@@ -2,7 +2,7 @@
 
 use super::{Corners, DEPENDENCE, Program, exceeds, higher};
 
-/// Number of exchanges without progress before the dual method takes over.
+/// Number of exchanges without progress before only the worst corners are exchanged; after as many again the dual method takes over.
 const EXCHANGE_PATIENCE: usize = 30;
 /// Tolerance for tensile corner impulses, relative to the largest impulse.
 const FORCE_TOLERANCE: f64 = 1e-9;

@@ -41,9 +41,9 @@ struct Pairs {
 struct Eliminated {
     /// Changes of friction in both directions and of the speed, for constant rate and normal impulses.
     constant: [f64; 3],
-    /// Derivatives of friction in both directions by the slip.
+    /// Magnitudes of the derivatives of friction in both directions by the slip; the first derivative is negative.
     yielding: [f64; 2],
-    /// Derivative of the speed by the friction bound.
+    /// Minus the derivative of the speed by the friction bound.
     following: f64,
 }
 

@@ -147,7 +147,7 @@ impl ElasticStructure {
     }
 
     /// Finds the equilibrium after a slow movement of the supports, from the equilibrium `built` before it. The movement is divided into steps; each
-    /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. Ties that yield stay longer.
+    /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. The plastic elongation of ties remains.
     fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
         let bent = built.bent.clone();
         let length_m = Search::new(self, load_m_s2).length_m;

@@ -10,7 +10,7 @@ use super::mechanism::{EDGES, FourLink, HingeSites, openings};
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 
-/// Lattice intervals where hinges sit anywhere. From 12 to 60 intervals give the same A_L and the same
+/// Number of lattice intervals if hinges may be anywhere. From 12 to 60 intervals give the same A_L and the same
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.
 const LATTICE_INTERVALS: usize = 20;
 

@@ -629,7 +629,7 @@ mod tests {
         }
         let error = pulls_kg(&[(2, 3e10)], f64::NAN).unwrap_err().to_string();
         assert!(
-            error.contains("what the ties pull with was not found"),
+            error.contains("the forces of the ties were not found"),
             "{error}"
         );
     }

@@ -79,8 +79,8 @@ impl<'a> Held<'a> {
         Err(HeldError(match row.ties.is_empty() {
             true => CapacityError::Locks(sway).to_string(),
             false => format!(
-                "the mechanism that sways to the {side} comes to the end of its way before it loses its strength, which its ties keep: it \
-                 has no ultimate displacement; give them a `yield_force_n` or `breaks_at_strain`"
+                "the mechanism that sways to the {side} reaches its limit position before its strength is zero, because the ties still \
+                 hold: it has no ultimate displacement; give the ties a `yield_force_n` or `breaks_at_strain`"
             ),
         }))
     }

@@ -9,7 +9,6 @@ use serde::Serialize;
 use super::Condition;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::LEAST_LOAD;
-use crate::mechanics::contact::lower;
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
@@ -81,7 +80,11 @@ impl State {
     pub fn margin(&self) -> f64 {
         let forces = self.pressing().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
-        // `lower` keeps NaN, so that a margin with NaN is never admissible.
+        // NaN stays, so that a margin with NaN is never admissible.
+        let lower = |least: f64, next: f64| match next < least || next.is_nan() {
+            true => next,
+            false => least,
+        };
         openings.chain(forces).fold(f64::INFINITY, lower)
     }
 
