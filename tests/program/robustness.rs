@@ -431,14 +431,14 @@ fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
              [ground.one_sine]\namplitude_g = 0.35\nduration_s = 1\n[simulation]\nduration_s = {duration_s}\n"
         )
     };
-    fs::write(root.path().join("long.toml"), scenario(5.0)).unwrap();
+    fs::write(root.path().join("long.toml"), scenario(8.0)).unwrap();
     fs::write(root.path().join("short.toml"), scenario(1e-2)).unwrap();
     let run = |more: &str| format!("{PROGRAM} run --no-repeat --no-report --out out {more}");
     let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
         eprintln!("script is missing: progress is not tested");
         return;
     };
-    assert!(said.contains(" of 5 s simulated, "), "{said}");
+    assert!(said.contains(" of 8 s simulated, "), "{said}");
     assert!(!said.contains("repeating the history"), "{said}");
     for more in ["long.toml --quiet", "short.toml"] {
         let said = on_a_terminal(root.path(), &run(more)).unwrap();
