@@ -171,16 +171,14 @@ impl<'s> Session<'s> {
             }
             last = done;
             let (display, before) = shown.get_or_insert_with(|| {
-                // Without this, Ctrl-C ends a history at once. Samples before it may have called this.
-                if kind != RUN {
-                    listen_to_interrupts();
-                }
-                let patience = if kind == RUN {
-                    PATIENCE
+                // Ctrl-C ends a history at once, unless samples before it listen already.
+                let display = if kind == RUN {
+                    Display::new(PATIENCE)
                 } else {
-                    Duration::ZERO
+                    listen_to_interrupts();
+                    Display::new(Duration::ZERO)
                 };
-                (Display::new(patience), done)
+                (display, done)
             });
             // No row is being written, and a study with a file has all finished rows in it, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
