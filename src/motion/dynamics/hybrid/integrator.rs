@@ -181,3 +181,30 @@ where
         (self.watch)(&step).is_break()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // A million steps are slow without the optimisation of this package.
+    #[test]
+    fn a_slope_that_jumps_without_end_cannot_meet_a_tolerance() {
+        let noise = |time_s: f64, _: &State<1>| {
+            let up = (time_s.to_bits() >> 3).is_multiple_of(2);
+            State::<1>::new(if up { 1e9 } else { -1e9 })
+        };
+        let task = Task {
+            start_s: 0.0,
+            end_s: 1.0,
+            start: State::<1>::new(1.0),
+            start_slope: State::<1>::new(1e9),
+            scale: State::<1>::new(1.0),
+            relative_tolerance: 1e-9,
+            first_step_s: 0.01,
+            longest_step_s: f64::INFINITY,
+        };
+        let watch = |_: &Step<1>| ControlFlow::Continue(());
+        let end = integrate(&task, noise, watch, &mut Cost::default());
+        assert!(matches!(end, Err(IntegratorError::ToleranceNotMet(_))));
+    }
+}
