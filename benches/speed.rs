@@ -6,7 +6,7 @@
 use std::sync::LazyLock;
 
 use archrock::internals::hybrid::engine::HybridSystem;
-use archrock::internals::hybrid::rocking::{Moment, Rocking, RockingState};
+use archrock::internals::hybrid::rocking::{Rocking, RockingState, SystemState};
 use archrock::{
     Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
 };
@@ -54,7 +54,7 @@ fn right_hand_side(bencher: Bencher) {
     let ground = pulse(-0.3, 0.2);
     let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, 1e-8);
     let mode = rocking.released(Sway::Right);
-    let now = Moment {
+    let now = SystemState {
         time_s: 0.1,
         piece: 0,
         mode,

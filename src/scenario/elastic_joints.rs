@@ -148,7 +148,7 @@ impl ElasticTable {
             RestError::Tie(index) => {
                 return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
             }
-            RestError::TieOnTheWay(tie, part) => {
+            RestError::TieDuringMovement(tie, part) => {
                 let wrong = format!(
                     "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
                      `breaks_at_strain`, or less movement",

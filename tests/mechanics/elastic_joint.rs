@@ -15,20 +15,24 @@ const LENGTH_M: f64 = 0.7;
 const CENTRES_M: [[f64; 2]; 2] = [[0.5, -0.2], [-0.3, 0.6]];
 const MIDDLE_M: [f64; 2] = [0.12, 0.2];
 
-fn structure(contact: Contact, strength_m: Option<f64>, damping_time_s: f64) -> ElasticStructure {
+fn structure(
+    contact: Contact,
+    crushing_penetration_m: Option<f64>,
+    damping_time_s: f64,
+) -> ElasticStructure {
     let arm = |centre: [f64; 2]| [MIDDLE_M[0] - centre[0], MIDDLE_M[1] - centre[1]];
     let joint = ElasticJoint {
         link: Link::new([0, 1], CENTRES_M.map(arm), ALONG, 1.0, LENGTH_M),
         normal_n_m: NORMAL_N_M,
         shear_n_m: 0.4 * NORMAL_N_M,
-        strength_m: strength_m.unwrap_or(f64::INFINITY),
+        crushing_penetration_m: crushing_penetration_m.unwrap_or(f64::INFINITY),
         area_m2: LENGTH_M,
     };
     let properties = ElasticProperties {
         friction_coefficient: None,
         contact,
         damping_time_s,
-        compressive_strength_pa: strength_m.map(|_| 1e9),
+        compressive_strength_pa: crushing_penetration_m.map(|_| 1e9),
         ..ElasticProperties::of_stiffness(1e9)
     };
     let body = Block {
@@ -96,12 +100,12 @@ fn positions() -> Vec<[f64; 6]> {
 /// momentum nor angular momentum, up to rounding.
 #[test]
 fn a_joint_acts_by_its_energy_and_keeps_momenta() {
-    for (contact, strength_m) in [
+    for (contact, crushing_penetration_m) in [
         (Contact::Continuous, None),
         (Contact::Continuous, Some(1.0)),
         (Contact::Points(5), None),
     ] {
-        let structure = structure(contact, strength_m, 0.0);
+        let structure = structure(contact, crushing_penetration_m, 0.0);
         let joint = &structure.joints[0];
         for q in positions() {
             let (mut memory, mut fibres) = virgin(&structure);
@@ -137,8 +141,8 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
 #[test]
 fn the_stress_of_a_joint_is_that_of_its_parts() {
     let damping = 0.5;
-    let edges = |contact, strength_m, before: [f64; 6], after: [f64; 6]| {
-        let structure = structure(contact, strength_m, 1.0);
+    let edges = |contact, crushing_penetration_m, before: [f64; 6], after: [f64; 6]| {
+        let structure = structure(contact, crushing_penetration_m, 1.0);
         let joint = &structure.joints[0];
         let (mut memory, mut fibres) = virgin(&structure);
         let [one, other] = places(before);
@@ -200,8 +204,8 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
 #[test]
 fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
-        let strength_m = 1e-3;
-        let structure = structure(contact, Some(strength_m), 0.0);
+        let crushing_penetration_m = 1e-3;
+        let structure = structure(contact, Some(crushing_penetration_m), 0.0);
         let joint = &structure.joints[0];
         let (mut memory, mut fibres) = virgin(&structure);
         let normal = [-ALONG[1], ALONG[0]];
@@ -227,7 +231,7 @@ fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
         }
         // The force vanishes once the joint has sprung back by the elastic part.
         assert!(press(2e-3 + 1e-6) > 0.0 && press(2e-3 - 1e-6) == 0.0);
-        let strength_n = NORMAL_N_M * strength_m;
+        let strength_n = NORMAL_N_M * crushing_penetration_m;
         assert!((largest_n / strength_n - 1.0).abs() < 1e-9, "{largest_n}");
         let due_j = strength_n * 2e-3;
         assert!((taken_j / due_j - 1.0).abs() < 1e-9, "{taken_j} {due_j}");

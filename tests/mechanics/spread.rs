@@ -867,7 +867,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     };
     let joints = ElasticStructure::of_row(&row, &properties).unwrap();
     let joints = joints.on_supports(right(OUT)(0.1).displacements());
-    let Err(RestError::TieOnTheWay(0, part)) = joints.rest([0.0, -9.81]) else {
+    let Err(RestError::TieDuringMovement(0, part)) = joints.rest([0.0, -9.81]) else {
         panic!("it holds");
     };
     // In steps of 3 % of the way.

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
 use archrock::internals::hybrid::engine::{
-    EngineError, Finish, HybridSystem, Moment, Observer, Settings, Transition, simulate,
+    EngineError, Finish, HybridSystem, Observer, Settings, SystemState, Transition, simulate,
 };
 use archrock::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
 
@@ -203,7 +203,7 @@ impl HybridSystem<2> for Ball {
         lies
     }
 
-    fn slope(&self, now: &Moment<bool, 2>) -> State<2> {
+    fn slope(&self, now: &SystemState<bool, 2>) -> State<2> {
         let wind = if now.piece == 1 { self.wind } else { 0.0 };
         State::<2>::new(now.state[1], wind - self.gravity)
     }
@@ -217,11 +217,11 @@ impl HybridSystem<2> for Ball {
         )
     }
 
-    fn scale(&self, _: &Moment<bool, 2>) -> State<2> {
+    fn scale(&self, _: &SystemState<bool, 2>) -> State<2> {
         State::<2>::repeat(1.0)
     }
 
-    fn step_sizes_s(&self, _: &Moment<bool, 2>, _: f64) -> (f64, f64) {
+    fn step_sizes_s(&self, _: &SystemState<bool, 2>, _: f64) -> (f64, f64) {
         // So long that a whole hop fits into one step.
         (self.longest_step_s.min(10.0), self.longest_step_s)
     }
@@ -230,15 +230,15 @@ impl HybridSystem<2> for Ball {
         if lies { &[] } else { &[()] }
     }
 
-    fn guard_value(&self, (): (), now: &Moment<bool, 2>) -> (f64, f64) {
+    fn guard_value(&self, (): (), now: &SystemState<bool, 2>) -> (f64, f64) {
         (now.state[0], now.state[1])
     }
 
-    fn fired_at_once(&self, _: &Moment<bool, 2>) -> Option<()> {
+    fn fired_at_once(&self, _: &SystemState<bool, 2>) -> Option<()> {
         None
     }
 
-    fn reset(&self, (): (), now: &Moment<bool, 2>) -> (bool, State<2>) {
+    fn reset(&self, (): (), now: &SystemState<bool, 2>) -> (bool, State<2>) {
         let rate = -self.restitution * now.state[1];
         if rate < self.stop_rate {
             (true, State::<2>::zeros())
@@ -266,7 +266,7 @@ fn until(count: usize, most: Option<usize>) -> ControlFlow<()> {
 }
 
 impl Observer<Ball, 2> for Log {
-    fn step(&mut self, _: &Moment<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
+    fn step(&mut self, _: &SystemState<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
         self.steps.push(*step);
         until(self.steps.len(), self.most_steps)
     }

@@ -11,7 +11,7 @@ use crate::common::{parsed, pulse, run_sampled, sampled};
 use archrock::dynamics::history::EventKind;
 use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row};
-use archrock::mechanics::capacity::TieOnTheWay;
+use archrock::mechanics::capacity::TieEventDisplacements;
 use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
 use archrock::studies::capacity::capacity;
 use archrock::{
@@ -715,7 +715,7 @@ fn a_run_tells_of_its_ties() {
     let told = json(&folder.path().join("curve/capacity.json"));
     let [right, left] = capacity(&parsed(text), None).unwrap().into();
     for side in [&right, &left] {
-        let TieOnTheWay {
+        let TieEventDisplacements {
             yields_at_m,
             breaks_at_m,
         } = side.ties[0];

@@ -10,7 +10,7 @@ use archrock::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Top
 use archrock::dynamics::demand::oscillator::peak_displacement;
 use archrock::dynamics::demand::points::PointSpectrum;
 use archrock::dynamics::demand::{damping_factor, displacement_m};
-use archrock::mechanics::capacity::{Capacity, CapacityError, Carried, Control, Displaced};
+use archrock::mechanics::capacity::{BodyPoint, Capacity, CapacityError, Control, Displaced};
 use archrock::mechanics::virtual_work::{MovingBody, Participation, load_multiplier};
 use archrock::scenario::Structure;
 use archrock::{MechanismModel, Pose, Scenario, Sway};
@@ -448,10 +448,10 @@ fn model(scenario: &Scenario) -> Box<dyn MechanismModel> {
 /// Capacity of the rigid bodies, with their common centre as control point.
 fn of_bodies(model: &dyn MechanismModel, sway: Sway) -> Capacity {
     let bodies = model.moving_bodies(sway).unwrap();
-    let masses: Vec<(f64, Carried)> = (0..)
+    let masses: Vec<(f64, BodyPoint)> = (0..)
         .zip(&bodies)
         .map(|(index, body)| {
-            let body_of = Carried {
+            let body_of = BodyPoint {
                 at_m: body.centre_m,
                 body: Some(index),
             };
@@ -605,7 +605,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
         hinges_m: Vec::new(),
         friction: 0.0,
     };
-    let body = Carried {
+    let body = BodyPoint {
         at_m: Vector2::new(0.0, 1.0),
         body: Some(0),
     };
@@ -625,7 +625,7 @@ fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
         hinges_m: Vec::new(),
         friction: 0.0,
     };
-    let body = Carried {
+    let body = BodyPoint {
         at_m: Vector2::new(0.0, 1.0),
         body: Some(0),
     };

@@ -95,14 +95,14 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
 
 /// Point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
+pub struct BodyPoint {
     /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// Index of the body; `None` for a fixed point.
     pub body: Option<usize>,
 }
 
-impl Carried {
+impl BodyPoint {
     /// Returns the horizontal displacement of the point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
@@ -116,13 +116,13 @@ pub struct Control {
     /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
     /// Points with their weights; the weights sum to one.
-    points: Vec<(f64, Carried)>,
+    points: Vec<(f64, BodyPoint)>,
 }
 
 impl Control {
     /// Returns a control point at a point of the structure.
     #[must_use]
-    pub fn point(point: Carried) -> Self {
+    pub fn point(point: BodyPoint) -> Self {
         Self {
             at_m: point.at_m,
             points: vec![(1.0, point)],
@@ -131,11 +131,11 @@ impl Control {
 
     /// Returns the common centre of the moving masses, given in kg, as control point.
     #[must_use]
-    pub fn centre_of(masses: &[(f64, Carried)]) -> Self {
+    pub fn centre_of(masses: &[(f64, BodyPoint)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
         let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
         let points = moving().map(|(mass_kg, point)| (mass_kg / whole_kg, *point));
-        let points: Vec<(f64, Carried)> = points.collect();
+        let points: Vec<(f64, BodyPoint)> = points.collect();
         let at_m = points.iter().map(|(part, point)| point.at_m * *part).sum();
         Self { at_m, points }
     }
@@ -183,12 +183,12 @@ pub struct Capacity {
     /// Capacity curve from rest to the unstable equilibrium, at equal steps of the coordinate and at yield or break of ties.
     pub curve: Vec<CurvePoint>,
     /// Displacements at which each tie yields or breaks; empty without ties.
-    pub ties: Vec<TieOnTheWay>,
+    pub ties: Vec<TieEventDisplacements>,
 }
 
 /// Fractions of the rotation at the unstable equilibrium at which a tie yields or breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GivesWay {
+pub struct TieEventFractions {
     /// Fraction at which the tie first yields; `None` if it does not.
     pub yields: Option<f64>,
     /// Last fraction at which the tie is intact and first one at which it is broken; `None` if it does not break.
@@ -197,7 +197,7 @@ pub struct GivesWay {
 
 /// Displacements of the control point at which a tie yields or breaks, in metres.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct TieOnTheWay {
+pub struct TieEventDisplacements {
     /// Displacement at which the tie yields; `None` if it does not.
     pub yields_at_m: Option<f64>,
     /// Displacement at which the tie breaks; `None` if it does not.
@@ -237,7 +237,7 @@ impl Capacity {
     pub fn new(
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
-        masses: &[(f64, Carried)],
+        masses: &[(f64, BodyPoint)],
         control: Control,
         gravity_m_s2: f64,
     ) -> Result<Self, CapacityError> {
@@ -284,15 +284,15 @@ impl Capacity {
     #[must_use]
     pub fn with_ties(
         mut self,
-        give_way: &[GivesWay],
+        fractions: &[TieEventFractions],
         displaced: impl Fn(f64) -> Displaced,
         gravity_m_s2: f64,
     ) -> Self {
-        for GivesWay { yields, breaks } in give_way {
+        for TieEventFractions { yields, breaks } in fractions {
             let point = |part: f64| self.point(part, &displaced(part), gravity_m_s2);
             let yields = yields.map(point);
             let breaks = breaks.map(|around| around.map(point));
-            self.ties.push(TieOnTheWay {
+            self.ties.push(TieEventDisplacements {
                 yields_at_m: yields.map(|point| point.displacement_m),
                 breaks_at_m: breaks.map(|[_, broken]| broken.displacement_m),
             });

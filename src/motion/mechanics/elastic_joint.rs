@@ -14,7 +14,7 @@ mod statics;
 mod structure;
 mod tie;
 
-pub use contact::{Contact, ElasticJoint, Fibre, Memory, Pressing, Rubbing};
+pub use contact::{Contact, ElasticJoint, Fibre, Memory, NormalForces, ShearForce};
 pub use kinematics::{Action, Gap, Link, Place};
 pub use statics::{Rest, RestError};
 pub use structure::{ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness};

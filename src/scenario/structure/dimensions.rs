@@ -158,7 +158,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
         let pier = pier.map(|pier| of_pier(&pier, joint.intrados_m, side));
         dimensions.extend(pier.into_iter().flatten());
     }
-    let fill = masonry.carried.fill_m.iter();
+    let fill = masonry.load_outlines.fill_m.iter();
     let corners = fill.flat_map(|(_, outline)| outline);
     if let Some(level_m) = corners.map(|corner| corner.y).reduce(f64::max) {
         let from = end.extrados_m;

@@ -25,7 +25,7 @@ use crate::mechanics::column::{Column, RockingColumn};
 use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
 use crate::mechanics::four_links::{FourLinkError, FourLinks};
-use crate::mechanics::masonry::{Carried, CircularArch, Masonry, PlacedLoad, Shape};
+use crate::mechanics::masonry::{CircularArch, LoadOutlines, Masonry, PlacedLoad, Shape};
 use crate::mechanics::parts::Parts;
 use crate::mechanics::sway::Sway;
 use crate::mechanics::tie::Tie;
@@ -146,10 +146,10 @@ impl Structure {
 
     /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
     #[must_use]
-    pub fn carries(&self) -> Option<(&Carried, &[PlacedLoad])> {
+    pub fn carries(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
         match self {
             Self::Arch(_) | Self::Column(_) => None,
-            Self::Masonry(masonry) => Some((&masonry.carried, &masonry.loads)),
+            Self::Masonry(masonry) => Some((&masonry.load_outlines, &masonry.loads)),
         }
     }
 

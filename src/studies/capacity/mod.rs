@@ -9,7 +9,7 @@ use thiserror::Error;
 pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
-use crate::mechanics::capacity::{Capacity, CapacityError, Carried, Control};
+use crate::mechanics::capacity::{BodyPoint, Capacity, CapacityError, Control};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::parts::Parts;
@@ -60,7 +60,7 @@ pub fn capacity(
             displaced.expect("a structure has its first mechanism")
         };
         let gravity_m_s2 = scenario.gravity_m_s2();
-        let control = Control::point(bodies.carry(control));
+        let control = Control::point(bodies.body_point(control));
         let masses = bodies.masses(structure);
         Capacity::new(sway, displaced, &masses, control, gravity_m_s2).map_err(NoCapacity::from)
     };
@@ -86,10 +86,13 @@ fn of_row(
     let side = |sway| -> Result<Capacity, NoCapacity> {
         let held = Held::new(row, sway)?;
         let bodies = Bodies::of_row(&held);
-        let (masses, control) = (bodies.masses(row), Control::point(bodies.carry(control)));
+        let (masses, control) = (
+            bodies.masses(row),
+            Control::point(bodies.body_point(control)),
+        );
         let displaced = |part| held.displaced(part);
         let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
-        Ok(capacity.with_ties(&held.ties_give_way(), displaced, gravity_m_s2))
+        Ok(capacity.with_ties(&held.tie_event_fractions(), displaced, gravity_m_s2))
     };
     Sides::try_of(side)
 }
@@ -139,18 +142,18 @@ impl Bodies {
     }
 
     /// Attaches a point, given with its place along the structure, to the body that carries it.
-    pub(super) fn carry(&self, (place, at_m): (f64, Vector2<f64>)) -> Carried {
+    pub(super) fn body_point(&self, (place, at_m): (f64, Vector2<f64>)) -> BodyPoint {
         let before = self.hinges.iter().filter(|hinge| **hinge < place).count();
         let body = before.checked_sub(1).filter(|body| *body < self.count);
-        Carried { at_m, body }
+        BodyPoint { at_m, body }
     }
 
     /// Returns the parts of a structure as points with masses.
-    fn masses(&self, structure: &dyn Parts) -> Vec<(f64, Carried)> {
+    fn masses(&self, structure: &dyn Parts) -> Vec<(f64, BodyPoint)> {
         let parts = structure.parts().into_iter();
         let points = parts.map(|part| (part.mass_kg, (part.place, part.centre_m)));
         points
-            .map(|(mass_kg, at)| (mass_kg, self.carry(at)))
+            .map(|(mass_kg, at)| (mass_kg, self.body_point(at)))
             .collect()
     }
 }

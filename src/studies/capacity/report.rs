@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::held_row;
 use super::picture::draw;
-use crate::mechanics::capacity::{Capacity, CurvePoint, TieOnTheWay};
+use crate::mechanics::capacity::{Capacity, CurvePoint, TieEventDisplacements};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
@@ -46,7 +46,7 @@ pub struct CapacitySide {
     pub oscillator: Oscillator,
     /// Displacements at which ties yield or break; absent without ties.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub ties: Vec<TieOnTheWay>,
+    pub ties: Vec<TieEventDisplacements>,
 }
 
 /// The equivalent oscillator of a capacity curve.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::{Basis, NoCheck};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
-use crate::mechanics::capacity::{Capacity, Carried, Control, Displaced};
+use crate::mechanics::capacity::{BodyPoint, Capacity, Control, Displaced};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::friction::{self, FrictionError};
@@ -147,14 +147,14 @@ impl Way {
         sway: Sway,
         displaced: impl Fn(f64) -> Displaced,
         bodies: &[MovingBody],
-        crown: Carried,
+        crown: BodyPoint,
         gravity_m_s2: f64,
     ) -> Result<Self, String> {
         let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
             let at_m = own.centre_m;
-            (own.mass_kg, Carried { at_m, body })
+            (own.mass_kg, BodyPoint { at_m, body })
         });
-        let masses: Vec<(f64, Carried)> = masses.collect();
+        let masses: Vec<(f64, BodyPoint)> = masses.collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
         let centre = curve(Control::centre_of(&masses));
         Ok(Self {
@@ -268,7 +268,7 @@ impl Found {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
-        let crown = Bodies::of_model(model, sway).carry(structure.as_parts().crown());
+        let crown = Bodies::of_model(model, sway).body_point(structure.as_parts().crown());
         let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
@@ -337,7 +337,7 @@ impl Found {
                     .to_owned());
             }
             let held = Held::new(row, sway).map_err(|error| error.to_string())?;
-            let crown = Bodies::of_row(&held).carry(row.crown());
+            let crown = Bodies::of_row(&held).body_point(row.crown());
             let displaced = |part| held.displaced(part);
             Way::new(sway, displaced, &bodies, crown, gravity_m_s2)
         };

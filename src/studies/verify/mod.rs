@@ -20,7 +20,7 @@ use thiserror::Error;
 
 use crate::bisection::{Width, bisect};
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site};
-use crate::dynamics::demand::points::Beyond;
+use crate::dynamics::demand::points::PeriodOutOfRange;
 use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sway::Sway;
 use crate::output::template::filters;
@@ -84,7 +84,7 @@ pub enum NoCheck {
         /// The limit state.
         state: LimitState,
         /// The period that is needed.
-        beyond: Beyond,
+        beyond: PeriodOutOfRange,
     },
 }
 
@@ -486,7 +486,7 @@ impl Basis<'_> {
             side.zeta_e = side.governing().map(|(_, margin)| margin.zeta_e);
             Ok((*sway, side))
         });
-        let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, Beyond>>();
+        let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
         let sides = sides.map_err(|beyond| NoCheck::Beyond { state, beyond })?;
         let histories = match &rule {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
@@ -510,7 +510,11 @@ impl Basis<'_> {
     }
 
     /// Checks the onset of motion by C8.7.1.2.1.5: with [C8.7.1.8] if walls hold the structure, with [C8.7.1.9] if it is free to vibrate.
-    fn activation(&self, mechanism: &Mechanism, spectrum: &Spectrum) -> Result<Activation, Beyond> {
+    fn activation(
+        &self,
+        mechanism: &Mechanism,
+        spectrum: &Spectrum,
+    ) -> Result<Activation, PeriodOutOfRange> {
         let capacity_g = mechanism.a0_over_fc_g;
         let demand_g = match self.t0_s {
             None => spectrum.peak_g()?,
@@ -540,7 +544,7 @@ impl Basis<'_> {
         start_ag_g: Option<f64>,
         spectrum: &Spectrum,
         rule: &StateRule,
-    ) -> Result<ByDisplacement, Beyond> {
+    ) -> Result<ByDisplacement, PeriodOutOfRange> {
         let reached = |curve: &Capacity| self.reached(curve, spectrum, rule);
         let (capacity_m, acceleration_g, period_s, demand_m) = reached(&way.centre)?;
         let by_displacement = Margin::new(capacity_m / demand_m, spectrum.ag_g());
@@ -588,7 +592,7 @@ impl Basis<'_> {
         curve: &Capacity,
         spectrum: &Spectrum,
         rule: &StateRule,
-    ) -> Result<(f64, f64, f64, f64), Beyond> {
+    ) -> Result<(f64, f64, f64, f64), PeriodOutOfRange> {
         let displacement_m = rule.part_of_d0 * curve.end().oscillator_displacement_m;
         let part = displacement_m / curve.end().oscillator_displacement_m;
         let rigid_g = curve.oscillator_acceleration_g(part) / rule.divide_acceleration;

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::dynamics::demand::floor::{FloorSpectrum, Mode};
 use crate::dynamics::demand::ground::{GroundSpectrum, Site};
-use crate::dynamics::demand::points::{Beyond, PointSpectrum};
+use crate::dynamics::demand::points::{PeriodOutOfRange, PointSpectrum};
 use crate::scenario::{Demand, LimitState, StateRule};
 
 /// The spectrum of a limit state at the place of the mechanism.
@@ -133,7 +133,7 @@ impl Spectrum {
     ///
     /// # Errors
     /// When the points do not begin at period zero.
-    pub fn peak_g(&self) -> Result<f64, Beyond> {
+    pub fn peak_g(&self) -> Result<f64, PeriodOutOfRange> {
         match self {
             Self::Ground(ground) => Ok(ground.spectrum.peak_g),
             Self::Floor { a_z_g, .. } => Ok(*a_z_g),
@@ -145,7 +145,11 @@ impl Spectrum {
     ///
     /// # Errors
     /// When the period is outside the points.
-    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
+    pub fn acceleration_g(
+        &self,
+        period_s: f64,
+        damping_percent: f64,
+    ) -> Result<f64, PeriodOutOfRange> {
         match self {
             Self::Ground(ground) => Ok(ground.spectrum.acceleration_g(period_s, damping_percent)),
             Self::Floor { floor, .. } => Ok(floor.acceleration_g(period_s, damping_percent)),
@@ -164,7 +168,7 @@ impl Spectrum {
         from_s: Option<f64>,
         damping_percent: f64,
         gravity_m_s2: f64,
-    ) -> Result<f64, Beyond> {
+    ) -> Result<f64, PeriodOutOfRange> {
         Ok(match self {
             Self::Ground(Ground { spectrum, .. }) => {
                 spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2)

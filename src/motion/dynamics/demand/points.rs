@@ -28,7 +28,7 @@ pub struct PointError {
 /// Error for a period outside the given ones.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("the spectrum is given from {:?} to {:?} s, and is needed at {period_s:?} s: add rows", .given_s[0], .given_s[1])]
-pub struct Beyond {
+pub struct PeriodOutOfRange {
     /// The period that is needed, in seconds.
     pub period_s: f64,
     /// First and last period that are given, in seconds.
@@ -72,7 +72,7 @@ impl PointSpectrum {
     ///
     /// # Errors
     /// When there is no row for it.
-    pub fn peak_g(&self) -> Result<f64, Beyond> {
+    pub fn peak_g(&self) -> Result<f64, PeriodOutOfRange> {
         // The peak acceleration does not depend on the damping.
         self.acceleration_g(0.0, self.damping_percent)
     }
@@ -81,10 +81,14 @@ impl PointSpectrum {
     ///
     /// # Errors
     /// When the period is not within the rows.
-    pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> Result<f64, Beyond> {
+    pub fn acceleration_g(
+        &self,
+        period_s: f64,
+        damping_percent: f64,
+    ) -> Result<f64, PeriodOutOfRange> {
         let [from_s, to_s] = self.range_s();
         if !(from_s..=to_s).contains(&period_s) {
-            return Err(Beyond {
+            return Err(PeriodOutOfRange {
                 period_s,
                 given_s: [from_s, to_s],
             });
@@ -106,7 +110,7 @@ impl PointSpectrum {
         periods_s: [f64; 2],
         damping_percent: f64,
         gravity_m_s2: f64,
-    ) -> Result<(f64, f64), Beyond> {
+    ) -> Result<(f64, f64), PeriodOutOfRange> {
         let [from_s, to_s] = periods_s;
         let within = |period_s: &f64| (from_s..=to_s).contains(period_s);
         let rows = self.points.iter().map(|point| point.0);

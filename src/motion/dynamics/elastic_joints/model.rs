@@ -283,7 +283,7 @@ impl ElasticJoints {
         let start = (&self.structure, &rest);
         let mut group = Group::<1>::new(task.row, start, gravity_m_s2, &barrier_j);
         group.begin(0, task, until, recorder);
-        self.judged(stepper::run(group)?, &rest, gravity_m_s2)
+        self.checked_summary(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
     /// Computes jobs on cases under one gravity, several in parallel.
@@ -298,11 +298,12 @@ impl ElasticJoints {
             let may_begin = group.may_begin();
             for (lane, running) in running.iter_mut().enumerate() {
                 if let Some(job) = *running
-                    && let Some(ended) = group.go_on(lane)
+                    && let Some(ended) = group.continue_lane(lane)
                 {
                     let ended = ended.map_err(SimulationError::from);
-                    let judged = |summary| model_of(job).judged(summary, rest, gravity_m_s2);
-                    jobs.ended(job, ended.and_then(judged));
+                    let checked_summary =
+                        |summary| model_of(job).checked_summary(summary, rest, gravity_m_s2);
+                    jobs.ended(job, ended.and_then(checked_summary));
                     *running = None;
                 }
                 while may_begin
@@ -314,7 +315,7 @@ impl ElasticJoints {
                         Ok(task) => {
                             group.begin(lane, task, job.until, None);
                             *running = Some(job);
-                            group.go_on(lane);
+                            group.continue_lane(lane);
                         }
                         Err(error) => jobs.ended(job, Err(error)),
                     }
@@ -332,7 +333,7 @@ impl ElasticJoints {
     ///
     /// # Errors
     /// If the energy balance is wrong.
-    fn judged(
+    fn checked_summary(
         &self,
         mut summary: Summary,
         rest: &Rest,

@@ -11,7 +11,7 @@ use crate::mechanics::tie::TieMemory;
 
 /// Moving body.
 #[derive(Clone, Copy)]
-pub struct Moving<R> {
+pub struct BodyState<R> {
     pub place: Place<R>,
     pub angle_rad: R,
     /// Velocity of the centre half a step before, in m/s, and rotation rate.
@@ -22,12 +22,12 @@ pub struct Moving<R> {
     moment_n_m: R,
 }
 
-remembered!(Moving { angle_rad, rate_rad_s, moment_n_m; velocity_m_s, force_n; place: Place });
+remembered!(BodyState { angle_rad, rate_rad_s, moment_n_m; velocity_m_s, force_n; place: Place });
 
-impl<R: Real> Moving<R> {
+impl<R: Real> BodyState<R> {
     /// Adds a force and a moment.
     #[inline(always)]
-    fn feel(&mut self, force_n: [R; 2], moment_n_m: R) {
+    fn add_force(&mut self, force_n: [R; 2], moment_n_m: R) {
         let before = self.force_n;
         self.force_n = both!(i: before[i] + force_n[i]);
         self.moment_n_m += moment_n_m;
@@ -36,7 +36,7 @@ impl<R: Real> Moving<R> {
 
 /// Returns the indices of the bodies of a joint; the supports are the last two bodies.
 #[inline(always)]
-pub fn ends(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
+pub fn joint_bodies(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     let right = structure.bodies.len() + 1;
     both!(end: joint.link.bodies[end].min(right))
 }
@@ -47,37 +47,37 @@ pub struct Motion<'a, const L: usize> {
     gravity_m_s2: f64,
     arch: Arch,
     /// Bodies, then the left and the right support.
-    pub bodies: Vec<Moving<Lanes<L>>>,
+    pub bodies: Vec<BodyState<Lanes<L>>>,
     /// Reference displacements and rotations of the bodies: those at rest if the supports have moved, otherwise zero.
     datum: Vec<[f64; 3]>,
     /// Inverse of the mass, and of the moment of inertia, of each body.
     inverses: Vec<[f64; 2]>,
     pub memories: Vec<Memory<Lanes<L>>>,
     /// Gaps and forces of a group of joints.
-    bearing: [Bearing<Lanes<L>>; TOGETHER],
+    forces: [JointForces<Lanes<L>>; JOINTS_PER_GROUP],
     /// States of crushing at the positions along the joints, joint by joint.
     fibres: Vec<Fibre<Lanes<L>>>,
     pub ties: Vec<TieMemory<Lanes<L>>>,
-    spent: Spent<Lanes<L>>,
+    energies: EnergyTerms<Lanes<L>>,
 }
 
 /// Number of joints whose forces are computed as a group. Each part of the contact law is computed for the whole group before the next part. The
 /// iterations of such short loops are independent, so the processor executes several in parallel; larger groups exceed its cache.
-const TOGETHER: usize = 12;
+const JOINTS_PER_GROUP: usize = 12;
 
 /// Gap and forces of a joint.
 #[derive(Clone, Copy)]
-struct Bearing<R> {
+struct JointForces<R> {
     gap: Gap<R>,
     edges_n: [R; 2],
     shear_n: R,
 }
 
-remembered!(Bearing { shear_n; edges_n; gap: Gap });
+remembered!(JointForces { shear_n; edges_n; gap: Gap });
 
 /// Energies dissipated and work done since the start, in J.
 #[derive(Clone, Copy, Debug)]
-pub struct Spent<R> {
+pub struct EnergyTerms<R> {
     pub friction_j: R,
     /// Energy lost by slip in the balance of the discrete motion, in J.
     pub slip_balance_j: R,
@@ -91,7 +91,7 @@ pub struct Spent<R> {
     pub feet_j: R,
 }
 
-remembered!(Spent {
+remembered!(EnergyTerms {
     friction_j,
     slip_balance_j,
     damped_j,
@@ -111,53 +111,53 @@ pub struct Step<R> {
     /// Damping time over the drift time.
     pub damping: R,
     /// Change of the ground velocity during the kick, in m/s.
-    pub shift_m_s: [R; 2],
+    pub ground_change_m_s: [R; 2],
     /// Displacement of the right support relative to the left one in the drift, in m.
-    pub apart_m: [R; 2],
+    pub feet_apart_change_m: [R; 2],
 }
 
-remembered!(Step { drift_s, kick_s, damping; shift_m_s, apart_m });
+remembered!(Step { drift_s, kick_s, damping; ground_change_m_s, feet_apart_change_m });
 
 /// Movements of the ground in a step of any lane. Absent movements are not computed.
 #[derive(Clone, Copy, Default)]
-pub struct Happens {
+pub struct GroundActivity {
     /// True if the ground shakes.
-    pub shakes: bool,
+    pub ground_moves: bool,
     /// True if the feet move differently.
-    pub parts: bool,
+    pub feet_move_apart: bool,
 }
 
 /// Support along whose joint the whole structure may slide.
-pub struct Slide {
+pub struct SlidingSupport {
     pub joint: usize,
     /// 1 if the structure is after the joint, -1 if it is before.
     pub sense: f64,
     /// True if the support extends beyond the joint.
-    pub goes_on: bool,
+    pub extends: bool,
     /// Displacement of the centre of gravity to the right for a unit slip of the joint.
     pub along_x: f64,
 }
 
 /// Quantities of the motions at one time.
 #[derive(Clone, Copy)]
-pub struct Observed<R> {
+pub struct Observation<R> {
     pub kinetic_j: R,
     /// Potential energy of gravity above the undeformed structure, in J.
     pub potential_j: R,
     pub elastic_j: R,
-    pub spent: Spent<R>,
+    pub energies: EnergyTerms<R>,
     /// Horizontal displacement of the centre of gravity times the mass, in kg m.
     pub sway_kg_m: R,
     /// Square of the largest displacement of a body, without the slip of the structure along either support, in m2.
-    pub farthest_m2: R,
+    pub largest_displacement_m2: R,
     /// Largest rotation of a body, in radians.
-    pub turned_rad: R,
+    pub largest_rotation_rad: R,
     /// Largest compressive stress in Pa, and the index of its joint.
-    pub deepest: [R; 2],
+    pub largest_stress: [R; 2],
 }
 
-remembered!(Observed {
-    kinetic_j, potential_j, elastic_j, sway_kg_m, farthest_m2, turned_rad; deepest; spent: Spent
+remembered!(Observation {
+    kinetic_j, potential_j, elastic_j, sway_kg_m, largest_displacement_m2, largest_rotation_rad; largest_stress; energies: EnergyTerms
 });
 
 impl<'a, const L: usize> Motion<'a, L> {
@@ -170,14 +170,14 @@ impl<'a, const L: usize> Motion<'a, L> {
             structure,
             gravity_m_s2,
             arch: Arch::new(),
-            bodies: vec![Moving::none(); structure.bodies.len() + 2],
+            bodies: vec![BodyState::none(); structure.bodies.len() + 2],
             datum: vec![[0.0; 3]; structure.bodies.len()],
             inverses: structure.bodies.iter().map(inverse).collect(),
             memories: vec![Memory::none(); joints],
-            bearing: [Bearing::none(); TOGETHER],
+            forces: [JointForces::none(); JOINTS_PER_GROUP],
             fibres: vec![Fibre::none(); joints * structure.fibres()],
             ties: ties.collect(),
-            spent: Spent::none(),
+            energies: EnergyTerms::none(),
         }
     }
 
@@ -199,62 +199,62 @@ impl<'a, const L: usize> Motion<'a, L> {
         for (tie, alone) in self.ties.iter_mut().zip(&alone.ties) {
             tie.set(lane, alone);
         }
-        self.spent.set(lane, &Spent::none());
+        self.energies.set(lane, &EnergyTerms::none());
     }
 
     /// Takes one step of all lanes, with the widest vectors of the processor. The vector width does not change the results.
-    pub fn step(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
+    pub fn step(&mut self, step: &Step<Lanes<L>>, activity: GroundActivity) {
         let arch = self.arch;
-        arch.dispatch(Leap {
+        arch.dispatch(LeapfrogStep {
             motion: self,
             step,
-            happens,
+            activity,
         });
     }
 
     #[inline(always)]
-    fn leap(&mut self, step: &Step<Lanes<L>>, happens: Happens) {
-        self.kick(step, happens.shakes);
+    fn leapfrog(&mut self, step: &Step<Lanes<L>>, activity: GroundActivity) {
+        self.kick(step, activity.ground_moves);
         self.drift(step.drift_s);
-        if happens.parts {
-            self.part(step);
+        if activity.feet_move_apart {
+            self.move_right_support(step);
         } else {
-            self.press(step.damping);
+            self.update_forces(step.damping);
         }
     }
 
     /// Moves the right support and computes the forces. The work of the support is the mean of its forces before and after times its displacement.
     #[inline(always)]
-    fn part(&mut self, step: &Step<Lanes<L>>) {
+    fn move_right_support(&mut self, step: &Step<Lanes<L>>) {
         let right = self.structure.bodies.len() + 1;
-        let by_m = step.apart_m;
+        let by_m = step.feet_apart_change_m;
         let support = &mut self.bodies[right];
         let (before, moved) = (support.force_n, support.place.moved_m);
         support.place.moved_m = both!(i: moved[i] + by_m[i]);
-        self.press(step.damping);
+        self.update_forces(step.damping);
         let after = self.bodies[right].force_n;
         let work = both!(i: (before[i] + after[i]) * by_m[i]);
-        self.spent.feet_j -= (work[0] + work[1]) * 0.5;
+        self.energies.feet_j -= (work[0] + work[1]) * 0.5;
     }
 
     /// Updates the velocities to half a step after the positions.
     #[inline(always)]
-    fn kick(&mut self, step: &Step<Lanes<L>>, shaken: bool) {
+    fn kick(&mut self, step: &Step<Lanes<L>>, ground_moves: bool) {
         let mut work = Lanes([0.0; L]);
         let constants = &self.structure.bodies;
         let mut index = 0;
         while index < constants.len() {
             let [x, y, rate] = self.velocity(index, step);
             let (after, body) = ([x, y], &mut self.bodies[index]);
-            if shaken {
+            if ground_moves {
                 let before = body.velocity_m_s;
-                let by_axis = both!(i: (before[i] + after[i]) * step.shift_m_s[i]);
+                let by_axis = both!(i: (before[i] + after[i]) * step.ground_change_m_s[i]);
                 work += (by_axis[0] + by_axis[1]) * (0.5 * constants[index].mass_kg);
             }
             (body.velocity_m_s, body.rate_rad_s) = (after, rate);
             index += 1;
         }
-        self.spent.ground_j -= work;
+        self.energies.ground_j -= work;
     }
 
     #[inline(always)]
@@ -273,7 +273,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Computes the forces at the current positions, and updates the states of the joints.
     #[inline(always)]
-    fn press(&mut self, damping: Lanes<L>) {
+    fn update_forces(&mut self, damping: Lanes<L>) {
         let zero = Lanes([0.0; L]);
         let mut index = 0;
         while index < self.bodies.len() {
@@ -287,51 +287,51 @@ impl<'a, const L: usize> Motion<'a, L> {
         let damping = if damps { Some(damping) } else { None };
         let (law, each) = (&structure.law, structure.fibres());
         let (mut friction_j, mut balance_j, mut damped_j, mut crushed_j) = (zero, zero, zero, zero);
-        for (part, joints) in structure.joints.chunks(TOGETHER).enumerate() {
-            let first = part * TOGETHER;
+        for (part, joints) in structure.joints.chunks(JOINTS_PER_GROUP).enumerate() {
+            let first = part * JOINTS_PER_GROUP;
             let memories = &mut self.memories[first..first + joints.len()];
-            let bearing = &mut self.bearing[..joints.len()];
-            for (joint, bearing) in joints.iter().zip(bearing.iter_mut()) {
-                let [one, other] = ends(structure, joint);
+            let forces = &mut self.forces[..joints.len()];
+            for (joint, forces) in joints.iter().zip(forces.iter_mut()) {
+                let [one, other] = joint_bodies(structure, joint);
                 let (one, other) = (&self.bodies[one].place, &self.bodies[other].place);
-                bearing.gap = joint.link.gap(one, other);
+                forces.gap = joint.link.gap(one, other);
             }
-            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
-            for (index, ((joint, memory), bearing)) in each_joint.enumerate() {
+            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *forces);
+            for (index, ((joint, memory), forces)) in each_joint.enumerate() {
                 let from = (first + index) * each;
                 let fibres = &mut self.fibres[from..from + each];
-                let pressing = law.press(joint, damping, &bearing.gap, memory, fibres);
-                damped_j += pressing.damped_j;
-                crushed_j += pressing.crushed_j;
-                bearing.edges_n = pressing.edges_n;
+                let normal = law.normal_forces(joint, damping, &forces.gap, memory, fibres);
+                damped_j += normal.damped_j;
+                crushed_j += normal.crushed_j;
+                forces.edges_n = normal.edges_n;
             }
-            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *bearing);
-            for ((joint, memory), bearing) in each_joint {
-                let (gap, edges_n) = (&bearing.gap, bearing.edges_n);
-                let rubbing = law.rub(joint, damping, gap, edges_n, memory);
-                friction_j += rubbing.friction_j;
-                balance_j += rubbing.balance_j;
-                damped_j += rubbing.damped_j;
-                bearing.shear_n = rubbing.shear_n;
+            let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *forces);
+            for ((joint, memory), forces) in each_joint {
+                let (gap, edges_n) = (&forces.gap, forces.edges_n);
+                let shear = law.shear_force(joint, damping, gap, edges_n, memory);
+                friction_j += shear.friction_j;
+                balance_j += shear.balance_j;
+                damped_j += shear.damped_j;
+                forces.shear_n = shear.shear_n;
             }
-            for (joint, bearing) in joints.iter().zip(&*bearing) {
-                let (gap, edges_n) = (&bearing.gap, bearing.edges_n);
-                let action = joint.link.action(gap, edges_n, bearing.shear_n);
-                let [one, other] = ends(structure, joint);
-                self.bodies[one].feel(both!(i: -action.force_n[i]), action.moments_n_m[0]);
-                self.bodies[other].feel(action.force_n, action.moments_n_m[1]);
+            for (joint, forces) in joints.iter().zip(&*forces) {
+                let (gap, edges_n) = (&forces.gap, forces.edges_n);
+                let action = joint.link.action(gap, edges_n, forces.shear_n);
+                let [one, other] = joint_bodies(structure, joint);
+                self.bodies[one].add_force(both!(i: -action.force_n[i]), action.moments_n_m[0]);
+                self.bodies[other].add_force(action.force_n, action.moments_n_m[1]);
             }
         }
-        self.spent.friction_j += friction_j;
-        self.spent.slip_balance_j += balance_j;
-        self.spent.damped_j += damped_j;
-        self.spent.crushed_j += crushed_j;
-        self.pull();
+        self.energies.friction_j += friction_j;
+        self.energies.slip_balance_j += balance_j;
+        self.energies.damped_j += damped_j;
+        self.energies.crushed_j += crushed_j;
+        self.add_tie_forces();
     }
 
     /// Adds the forces of the ties, and updates their states.
     #[inline(always)]
-    fn pull(&mut self) {
+    fn add_tie_forces(&mut self) {
         let ground = self.structure.bodies.len();
         let mut index = 0;
         while index < self.ties.len() {
@@ -342,26 +342,34 @@ impl<'a, const L: usize> Motion<'a, L> {
             let span = bound.span(places);
             memory.stretch(&bound.tie, span.stretch_m);
             let action = bound.action(places, &span, memory.force_n);
-            self.bodies[first].feel(both!(i: -action.force_n[i]), action.moments_n_m[0]);
-            self.bodies[second].feel(action.force_n, action.moments_n_m[1]);
+            self.bodies[first].add_force(both!(i: -action.force_n[i]), action.moments_n_m[0]);
+            self.bodies[second].add_force(action.force_n, action.moments_n_m[1]);
         }
     }
 
     /// Computes quantities at the positions, with velocities at the same time after another half kick.
-    pub fn observe(&self, half: &Step<Lanes<L>>, slides: &[Slide]) -> Observed<Lanes<L>> {
+    pub fn observe(
+        &self,
+        half: &Step<Lanes<L>>,
+        supports: &[SlidingSupport],
+    ) -> Observation<Lanes<L>> {
         let arch = self.arch;
         arch.dispatch(
             #[inline(always)]
-            || self.look(half, slides),
+            || self.observe_lanes(half, supports),
         )
     }
 
     #[inline(always)]
-    fn look(&self, half: &Step<Lanes<L>>, slides: &[Slide]) -> Observed<Lanes<L>> {
+    fn observe_lanes(
+        &self,
+        half: &Step<Lanes<L>>,
+        supports: &[SlidingSupport],
+    ) -> Observation<Lanes<L>> {
         let structure = self.structure;
-        let mut seen = Observed {
-            spent: self.spent,
-            ..Observed::none()
+        let mut observation = Observation {
+            energies: self.energies,
+            ..Observation::none()
         };
         for (index, (constants, body)) in structure.bodies.iter().zip(&self.bodies).enumerate() {
             let datum = self.datum[index].map(|part| Lanes([part; L]));
@@ -370,52 +378,54 @@ impl<'a, const L: usize> Motion<'a, L> {
             let before = [body.velocity_m_s[0], body.velocity_m_s[1], body.rate_rad_s];
             for axis in [0, 1, 2] {
                 let half_mass = if axis < 2 { 0.5 * mass } else { 0.5 * inertia };
-                seen.kinetic_j += velocity[axis] * velocity[axis] * half_mass;
+                observation.kinetic_j += velocity[axis] * velocity[axis] * half_mass;
             }
             for axis in [0, 1] {
-                let work = (before[axis] + velocity[axis]) * half.shift_m_s[axis];
-                seen.spent.ground_j -= work * (0.5 * mass);
+                let work = (before[axis] + velocity[axis]) * half.ground_change_m_s[axis];
+                observation.energies.ground_j -= work * (0.5 * mass);
             }
             let [x, y] = body.place.moved_m;
-            seen.potential_j += y * (mass * self.gravity_m_s2);
-            seen.sway_kg_m += x * mass;
+            observation.potential_j += y * (mass * self.gravity_m_s2);
+            observation.sway_kg_m += x * mass;
             let mut nearest = Lanes([f64::INFINITY; L]);
-            for slide in slides {
+            for slide in supports {
                 let along = structure.joints[slide.joint].link.along;
-                let slid = self.memories[slide.joint].slipped_m * slide.sense;
-                let gone = self.gone(usize::from(slide.joint > 0));
+                let slid = self.memories[slide.joint].permanent_slip_m * slide.sense;
+                let of_support = self.support_displacement_m(usize::from(slide.joint > 0));
                 let beside = [
-                    x - datum[0] - gone[0] - slid * along[0],
-                    y - datum[1] - gone[1] - slid * along[1],
+                    x - datum[0] - of_support[0] - slid * along[0],
+                    y - datum[1] - of_support[1] - slid * along[1],
                 ];
                 nearest = nearest.min(beside[0] * beside[0] + beside[1] * beside[1]);
             }
-            seen.farthest_m2 = seen.farthest_m2.max(nearest);
-            seen.turned_rad = seen.turned_rad.max((body.angle_rad - datum[2]).abs());
+            observation.largest_displacement_m2 = observation.largest_displacement_m2.max(nearest);
+            observation.largest_rotation_rad = observation
+                .largest_rotation_rad
+                .max((body.angle_rad - datum[2]).abs());
         }
         for (bound, memory) in structure.ties.iter().zip(&self.ties) {
-            seen.elastic_j += memory.energy_j(&bound.tie);
-            seen.spent.ties_j += memory.taken_j;
+            observation.elastic_j += memory.energy_j(&bound.tie);
+            observation.energies.ties_j += memory.taken_j;
         }
         let each = structure.fibres();
         for (index, (joint, memory)) in structure.joints.iter().zip(&self.memories).enumerate() {
             let fibres = &self.fibres[index * each..(index + 1) * each];
-            seen.elastic_j += structure.energy_j(joint, memory, fibres);
+            observation.elastic_j += structure.energy_j(joint, memory, fibres);
             let deepest = memory.penetrations_m[0].max(memory.penetrations_m[1]);
-            let stress =
-                deepest.min(Lanes([joint.strength_m; L])) * (joint.normal_n_m / joint.area_m2);
-            let more = stress - seen.deepest[0];
-            seen.deepest = [
-                more.positive(stress, seen.deepest[0]),
-                more.positive(Lanes([index as f64; L]), seen.deepest[1]),
+            let stress = deepest.min(Lanes([joint.crushing_penetration_m; L]))
+                * (joint.normal_n_m / joint.area_m2);
+            let more = stress - observation.largest_stress[0];
+            observation.largest_stress = [
+                more.positive(stress, observation.largest_stress[0]),
+                more.positive(Lanes([index as f64; L]), observation.largest_stress[1]),
             ];
         }
-        seen
+        observation
     }
 
     /// Returns the displacement of a support (0 left, 1 right) since the start, in m.
     #[inline(always)]
-    fn gone(&self, support: usize) -> [Lanes<L>; 2] {
+    fn support_displacement_m(&self, support: usize) -> [Lanes<L>; 2] {
         let body = &self.bodies[self.structure.bodies.len() + support];
         let rest = &self.structure.supports[support];
         both!(i: body.place.moved_m[i] - Lanes([rest[i]; L]))
@@ -426,7 +436,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     pub fn velocity(&self, body: usize, half: &Step<Lanes<L>>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
         let moving = &self.bodies[body];
-        let [sideways, upwards] = half.shift_m_s;
+        let [sideways, upwards] = half.ground_change_m_s;
         let fall = [sideways, upwards + half.kick_s * self.gravity_m_s2];
         let per_mass = half.kick_s * per_kg;
         let [x, y] =
@@ -436,7 +446,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Returns the rotations in a lane relative to the reference, and their rates half a step before.
-    pub fn turns(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
+    pub fn rotations_and_rates(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
         let bodies = self.bodies.iter().zip(&self.datum);
         bodies
             .map(move |(body, datum)| (body.angle_rad.0[lane] - datum[2], body.rate_rad_s.0[lane]))
@@ -472,24 +482,24 @@ impl<'a> Motion<'a, 1> {
         motion.memories.copy_from_slice(&rest.memories);
         motion.fibres.copy_from_slice(&rest.fibres);
         motion.ties.copy_from_slice(&rest.ties);
-        motion.press(Lanes([0.0]));
+        motion.update_forces(Lanes([0.0]));
         motion
     }
 }
 
 /// Step to be compiled once for every vector width; with a closure it is a tenth slower.
-struct Leap<'m, 'a, const L: usize> {
+struct LeapfrogStep<'m, 'a, const L: usize> {
     motion: &'m mut Motion<'a, L>,
     step: &'m Step<Lanes<L>>,
-    happens: Happens,
+    activity: GroundActivity,
 }
 
-impl<const L: usize> WithSimd for Leap<'_, '_, L> {
+impl<const L: usize> WithSimd for LeapfrogStep<'_, '_, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.motion.leap(self.step, self.happens);
+        self.motion.leapfrog(self.step, self.activity);
     }
 }
 

@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 
 use nalgebra::Vector2;
 
-use super::motion::{Happens, Motion, Observed, Slide, Step, ends};
+use super::motion::{GroundActivity, Motion, Observation, SlidingSupport, Step, joint_bodies};
 use crate::dynamics::ground::{FeetApart, GroundVelocity};
 use crate::dynamics::history::{
     EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
@@ -49,42 +49,42 @@ struct Lane<'a> {
     velocity: GroundVelocity<'a>,
     /// Relative motion of the feet, and their current relative displacement; `None` if both feet move alike.
     feet: Option<FeetApart<'a>>,
-    apart_m: Vector2<f64>,
+    feet_apart_m: Vector2<f64>,
     quiet_s: f64,
     /// Time up to which the lane steps without interruption, in seconds.
     until_s: f64,
     /// True if the current position has been observed.
-    is_seen: bool,
+    is_observed: bool,
     /// Time up to which the kicks have been applied, and ground velocity at this time.
     kicked_s: f64,
     ground_m_s: Vector2<f64>,
-    seen: Seen,
+    monitor: MotionMonitor,
     /// Barrier with rigid joints in J, if known; otherwise that with elastic joints, once computed.
     barrier_j: Option<f64>,
     quiet_since_s: f64,
     /// Last time at which a joint was open beyond its state at rest.
-    open_until_s: f64,
+    last_open_s: f64,
     marks: Marks,
     /// Error that ends the motion.
-    lost: Option<RowMotionError>,
+    error: Option<RowMotionError>,
     /// Events of ties since the last observation.
-    happened: Vec<(usize, EventKind)>,
+    tie_events: Vec<(usize, EventKind)>,
 }
 
 /// Observations of a motion up to now.
 #[derive(Default)]
-struct Seen {
+struct MotionMonitor {
     /// Potential and elastic energy at rest, in J; `None` before the first observation.
     rest_j: Option<f64>,
     rest_sway_kg_m: f64,
     /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
     opening_m: Vec<[f64; 2]>,
     /// Largest energy of a row at rest, in J.
-    still_j: f64,
+    rest_limit_j: f64,
     /// Largest energy, in J.
     largest_j: f64,
     /// True while the centre of gravity moves back to its position at rest.
-    returns: bool,
+    moves_back: bool,
     /// Time and energy of the first observation on quiet ground.
     quiet: Option<(f64, f64)>,
 }
@@ -102,7 +102,7 @@ pub struct Group<'a, const L: usize> {
     /// Energy barrier, computed at the first request.
     barrier_j: OnceCell<Option<f64>>,
     /// Supports along which the row may slide as a whole.
-    slides: Vec<Slide>,
+    supports: Vec<SlidingSupport>,
 }
 
 impl<'a> Lane<'a> {
@@ -114,18 +114,18 @@ impl<'a> Lane<'a> {
             ground_m_s: velocity.at(start_s),
             velocity,
             feet: FeetApart::of(task.row, task.ground),
-            apart_m: Vector2::zeros(),
+            feet_apart_m: Vector2::zeros(),
             quiet_s: task.ground.end_s(),
             until_s: start_s,
-            is_seen: false,
+            is_observed: false,
             kicked_s: start_s,
-            seen: Seen::default(),
+            monitor: MotionMonitor::default(),
             barrier_j: task.barrier_j,
             quiet_since_s: start_s,
-            open_until_s: start_s,
+            last_open_s: start_s,
             marks: Marks::new(task.settings, start_s),
-            lost: None,
-            happened: Vec::new(),
+            error: None,
+            tie_events: Vec::new(),
             course: Course::new(task, None, recorder),
         }
     }
@@ -146,13 +146,13 @@ impl<'a> Lane<'a> {
             self.course.time + step_s
         };
         if let Some(feet) = &mut self.feet {
-            let apart_m = feet.at(self.course.time);
-            let by_m = apart_m - self.apart_m;
-            step.apart_m = [Lanes([by_m.x]), Lanes([by_m.y])];
-            self.apart_m = apart_m;
+            let feet_apart_m = feet.at(self.course.time);
+            let by_m = feet_apart_m - self.feet_apart_m;
+            step.feet_apart_change_m = [Lanes([by_m.x]), Lanes([by_m.y])];
+            self.feet_apart_m = feet_apart_m;
         }
         self.course.cost.steps += 1;
-        self.is_seen = false;
+        self.is_observed = false;
         step
     }
 
@@ -166,7 +166,7 @@ impl<'a> Lane<'a> {
         let shift = ground_m_s - self.ground_m_s;
         let step = Step {
             kick_s: Lanes([to_s - self.kicked_s]),
-            shift_m_s: [Lanes([shift.x]), Lanes([shift.y])],
+            ground_change_m_s: [Lanes([shift.x]), Lanes([shift.y])],
             ..Step::none()
         };
         (step, ground_m_s)
@@ -186,14 +186,14 @@ impl<'a> Lane<'a> {
 
     /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
     fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
-        if self.seen.opening_m.is_empty() {
+        if self.monitor.opening_m.is_empty() {
             let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
             let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
             let opens = |end: f64| (-end).max(0.0) + most_m;
-            self.seen.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
+            self.monitor.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
             return false;
         }
-        let mut joints = penetrations_m.zip(&self.seen.opening_m);
+        let mut joints = penetrations_m.zip(&self.monitor.opening_m);
         joints.any(|(ends, from)| (0..2).any(|end| -ends[end] > from[end]))
     }
 
@@ -202,33 +202,33 @@ impl<'a> Lane<'a> {
         &mut self,
         index: usize,
         motion: &Motion<'_, L>,
-        slides: &[Slide],
+        supports: &[SlidingSupport],
     ) -> f64 {
-        if self.course.rocks != Some(true) || !self.course.moved {
+        if self.course.has_rocked != Some(true) || !self.course.moved {
             let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
             if is_open {
-                self.open_until_s = self.course.time;
+                self.last_open_s = self.course.time;
             }
-            self.course.rocks = Some(self.course.rocks == Some(true) || is_open || slips);
+            self.course.has_rocked = Some(self.course.has_rocked == Some(true) || is_open || slips);
         }
         let course = &mut self.course;
         let mut slid = 0.0;
         for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
-            let slipped_m = motion.memories[joint].slipped_m.0[index];
-            if let Some(sliding) = &mut course.of_row.sliding {
+            let permanent_slip_m = motion.memories[joint].permanent_slip_m.0[index];
+            if let Some(sliding) = &mut course.row_summary.sliding {
                 sliding.friction_j = course.elastic.friction_j;
-                sliding.offsets_m[joint] = slipped_m;
+                sliding.offsets_m[joint] = permanent_slip_m;
                 let largest = &mut sliding.largest_offsets_m[joint];
-                *largest = largest.max(slipped_m.abs());
+                *largest = largest.max(permanent_slip_m.abs());
             }
             // A block can slide off a support that ends at the joint: it has fallen after a slip by the length of the joint.
-            let on_support = |slide: &&Slide| slide.joint == joint && slide.goes_on;
-            match slides.iter().find(on_support) {
-                Some(slide) => slid += slipped_m * slide.along_x,
-                None => course.overturned |= slipped_m.abs() >= with_joint.link.length_m,
+            let on_support = |support: &&SlidingSupport| support.joint == joint && support.extends;
+            match supports.iter().find(on_support) {
+                Some(support) => slid += permanent_slip_m * support.along_x,
+                None => course.overturned |= permanent_slip_m.abs() >= with_joint.link.length_m,
             }
         }
         slid
@@ -239,7 +239,7 @@ impl<'a> Lane<'a> {
         let since_s = if self.course.moved {
             self.quiet_since_s
         } else {
-            self.open_until_s
+            self.last_open_s
         };
         let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
         quiet.then_some(since_s)
@@ -252,17 +252,20 @@ impl<'a> Lane<'a> {
             return false;
         }
         // A row beyond its barrier falls to that side, with any damping.
-        if self.until == Until::End || self.course.time < self.quiet_s || !self.seen.returns {
+        if self.until == Until::End || self.course.time < self.quiet_s || !self.monitor.moves_back {
             return false;
         }
-        let (quiet_s, quiet_j) = *self.seen.quiet.get_or_insert((self.course.time, energy_j));
+        let (quiet_s, quiet_j) = *self
+            .monitor
+            .quiet
+            .get_or_insert((self.course.time, energy_j));
         if self.until == Until::Settled {
             // Assume that the energy decays `SLOWER` times more slowly from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
-            let rests_s = SLOWER * (energy_j / self.seen.still_j).ln().max(0.0) / rate;
+            let rests_s = SLOWER * (energy_j / self.monitor.rest_limit_j).ln().max(0.0) / rate;
             let rested_s = self.course.time + rests_s + self.course.rest_time_s();
             let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
-            if !(self.course.moved && rests && energy_j < DECAYED * self.seen.largest_j) {
+            if !(self.course.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
                 return false;
             }
         }
@@ -282,15 +285,15 @@ impl<'a, const L: usize> Group<'a, L> {
         let [left, right] = row.supports_extend;
         let last = row.joints.len() - 1;
         // At the right support the block is on the left of the joint.
-        let slide = |joint: usize, sense: f64, goes_on: bool, part: f64| Slide {
+        let support = |joint: usize, sense: f64, extends: bool, part: f64| SlidingSupport {
             joint,
             sense,
-            goes_on,
+            extends,
             along_x: part * sense * row.joints[joint].along().x,
         };
-        let slides = match row.supports {
-            Supports::Left => vec![slide(0, 1.0, left, 1.0)],
-            Supports::Both => vec![slide(0, 1.0, left, 0.5), slide(last, -1.0, right, 0.5)],
+        let supports = match row.supports {
+            Supports::Left => vec![support(0, 1.0, left, 1.0)],
+            Supports::Both => vec![support(0, 1.0, left, 0.5), support(last, -1.0, right, 0.5)],
         };
         Self {
             row,
@@ -300,7 +303,7 @@ impl<'a, const L: usize> Group<'a, L> {
             motion: Motion::new(structure, gravity_m_s2),
             lanes: [const { None }; L],
             barrier_j: OnceCell::new(),
-            slides,
+            supports,
         }
     }
 
@@ -314,15 +317,19 @@ impl<'a, const L: usize> Group<'a, L> {
     ) {
         self.motion.start(lane, self.rest);
         let mut begun = Lane::new(task, until, recorder);
-        let weighted = self.row.blocks.iter().zip(&self.rest.bent);
+        let weighted = self
+            .row
+            .blocks
+            .iter()
+            .zip(&self.rest.self_weight_displacements);
         let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
         let moved_kg_m: f64 = moved.sum();
         let none = || Sliding::none(self.structure.joints.len());
-        begun.course.of_row.sliding = self.structure.slips().then(none);
+        begun.course.row_summary.sliding = self.structure.slips().then(none);
         begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
-        let seen = self.motion.observe(&Step::none(), &self.slides);
-        self.note(lane, &seen);
+        let observation = self.motion.observe(&Step::none(), &self.supports);
+        self.note(lane, &observation);
     }
 
     /// Returns whether motions may start: where all other lanes are between strides. Most lanes are then observed at the same steps.
@@ -336,26 +343,26 @@ impl<'a, const L: usize> Group<'a, L> {
         let damping_time_s = self.structure.damping_time_s;
         loop {
             let mut step = Step::none();
-            let (mut happens, mut due) = (Happens::default(), false);
+            let (mut activity, mut due) = (GroundActivity::default(), false);
             for (index, lane) in self.lanes.iter_mut().enumerate() {
                 let Some(lane) = lane else {
                     continue;
                 };
-                happens.shakes |= lane.is_shaken();
-                happens.parts |= lane.feet.is_some() && lane.course.time < lane.quiet_s;
+                activity.ground_moves |= lane.is_shaken();
+                activity.feet_move_apart |= lane.feet.is_some() && lane.course.time < lane.quiet_s;
                 step.set(index, &lane.next(damping_time_s));
                 due |= lane.is_due();
             }
-            self.motion.step(&step, happens);
+            self.motion.step(&step, activity);
             if due {
                 break;
             }
         }
         let half = self.half_kick();
-        let seen = self.motion.observe(&half, &self.slides);
+        let observation = self.motion.observe(&half, &self.supports);
         for index in 0..L {
             if self.lanes[index].as_ref().is_some_and(Lane::is_due) {
-                self.note(index, &seen);
+                self.note(index, &observation);
             }
         }
     }
@@ -372,71 +379,75 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Records the observed quantities of the motion of a lane.
-    fn note(&mut self, index: usize, seen: &Observed<Lanes<L>>) {
-        let (motion, slides) = (&self.motion, &self.slides);
+    fn note(&mut self, index: usize, observation: &Observation<Lanes<L>>) {
+        let (motion, supports) = (&self.motion, &self.supports);
         let Some(lane) = &mut self.lanes[index] else {
             return;
         };
         let of = |lanes: Lanes<L>| lanes.0[index];
         let course = &mut lane.course;
-        lane.is_seen = true;
+        lane.is_observed = true;
         let time = course.time;
-        let (kinetic, elastic) = (of(seen.kinetic_j), of(seen.elastic_j));
-        let stored = of(seen.potential_j) + elastic;
+        let (kinetic, elastic) = (of(observation.kinetic_j), of(observation.elastic_j));
+        let stored = of(observation.potential_j) + elastic;
         if !(kinetic.is_finite() && stored.is_finite()) {
-            lane.lost = Some(RowMotionError::Failed(format!(
+            lane.error = Some(RowMotionError::Failed(format!(
                 "at {time} s the motion has grown beyond all numbers: give a shorter longest_step_s"
             )));
             return;
         }
-        let rest_j = *lane.seen.rest_j.get_or_insert_with(|| {
-            lane.seen.still_j = (REST_ENERGY_RATIO * course.energy_unit)
+        let rest_j = *lane.monitor.rest_j.get_or_insert_with(|| {
+            lane.monitor.rest_limit_j = (REST_ENERGY_RATIO * course.energy_unit)
                 .max(REST_STRAIN_RATIO * elastic)
                 .max(REST_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
-            lane.seen.rest_sway_kg_m = of(seen.sway_kg_m);
+            lane.monitor.rest_sway_kg_m = of(observation.sway_kg_m);
             stored
         });
-        let spent = &seen.spent;
+        let energies = &observation.energies;
         course.elastic.elastic_j = elastic;
-        course.elastic.damped_j = of(spent.damped_j);
-        course.elastic.friction_j = of(spent.friction_j);
-        course.elastic.crushed_j = of(spent.crushed_j);
-        course.elastic.ties_j = of(spent.ties_j);
-        let taken_with = |friction_j: f64| {
+        course.elastic.damped_j = of(energies.damped_j);
+        course.elastic.friction_j = of(energies.friction_j);
+        course.elastic.crushed_j = of(energies.crushed_j);
+        course.elastic.ties_j = of(energies.ties_j);
+        let dissipated_with = |friction_j: f64| {
             let joints_j = course.elastic.damped_j + friction_j + course.elastic.crushed_j;
             joints_j + course.elastic.ties_j
         };
         // The energy balance uses the slip of the discrete motion; the work of friction is an estimate of it.
-        let taken = taken_with(of(spent.slip_balance_j));
-        course.of_row.energy_taken_j = taken_with(course.elastic.friction_j);
+        let dissipated_j = dissipated_with(of(energies.slip_balance_j));
+        course.row_summary.energy_taken_j = dissipated_with(course.elastic.friction_j);
         let bound = self.structure.ties.iter().map(|bound| &bound.tie);
         let memories = motion.ties.iter().map(|tie| tie.lane(index));
-        lane.happened = course.note_ties(bound.zip(memories));
-        let of_row = &mut course.of_row;
-        (of_row.ground_j, of_row.right_foot_j) = (of(spent.ground_j), of(spent.feet_j));
+        lane.tie_events = course.note_ties(bound.zip(memories));
+        let row_summary = &mut course.row_summary;
+        (row_summary.ground_j, row_summary.right_foot_j) =
+            (of(energies.ground_j), of(energies.feet_j));
         let potential = stored - rest_j;
-        let due = of_row.ground_j + of_row.right_foot_j - taken;
+        let due = row_summary.ground_j + row_summary.right_foot_j - dissipated_j;
         course.note_defect((kinetic + potential - due).abs());
-        if of(seen.deepest[0]) > course.elastic.largest_stress.stress_pa {
+        if of(observation.largest_stress[0]) > course.elastic.largest_stress.stress_pa {
             course.elastic.largest_stress = Stress {
-                stress_pa: of(seen.deepest[0]),
-                joint: of(seen.deepest[1]) as usize,
+                stress_pa: of(observation.largest_stress[0]),
+                joint: of(observation.largest_stress[1]) as usize,
                 time_s: time,
             };
         }
         // The middle between the feet moves half as far as the right foot.
-        let slid = lane.note_joints(index, motion, slides) + 0.5 * lane.apart_m.x;
+        let slid = lane.note_joints(index, motion, supports) + 0.5 * lane.feet_apart_m.x;
         let course = &mut lane.course;
-        let sway = of(seen.sway_kg_m) - lane.seen.rest_sway_kg_m - self.row.mass_kg() * slid;
-        let rotations = motion.turns(index).map(|(rotation, _)| rotation);
-        lane.seen.returns = sway.abs() < course.sway.abs();
+        let sway =
+            of(observation.sway_kg_m) - lane.monitor.rest_sway_kg_m - self.row.mass_kg() * slid;
+        let rotations = motion
+            .rotations_and_rates(index)
+            .map(|(rotation, _)| rotation);
+        lane.monitor.moves_back = sway.abs() < course.sway.abs();
         course.observe(rotations, potential, kinetic, sway);
         let far = OVERTURNED_RATIO * self.row.size_m;
-        course.overturned |=
-            of(seen.turned_rad) >= OVERTURNED_RAD || of(seen.farthest_m2) >= far * far;
-        let height = lane.feet.is_none().then_some(potential + taken);
+        course.overturned |= of(observation.largest_rotation_rad) >= OVERTURNED_RAD
+            || of(observation.largest_displacement_m2) >= far * far;
+        let height = lane.feet.is_none().then_some(potential + dissipated_j);
         course.note_height(height);
-        let vibrates = kinetic < lane.seen.still_j && potential < lane.seen.still_j;
+        let vibrates = kinetic < lane.monitor.rest_limit_j && potential < lane.monitor.rest_limit_j;
         // A row without motion that stands higher than before is held by friction.
         if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
             lane.quiet_since_s = time;
@@ -445,8 +456,8 @@ impl<'a, const L: usize> Group<'a, L> {
         let barrier_j = || *self.barrier_j.get_or_init(self.find_barrier_j);
         let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);
         let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
-        course.mind_balance(rigid_j, scale_j);
-        lane.seen.largest_j = lane.seen.largest_j.max(kinetic + potential);
+        course.halve_unbalanced_steps(rigid_j, scale_j);
+        lane.monitor.largest_j = lane.monitor.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
             lane.course.decide();
         }
@@ -454,12 +465,12 @@ impl<'a, const L: usize> Group<'a, L> {
 
     /// Continues a lane, or returns the result of its motion if it has ended. The lane then steps without interruption up to the next mark of its
     /// clock, with or without samples.
-    pub fn go_on(&mut self, index: usize) -> Option<Result<Summary, RowMotionError>> {
+    pub fn continue_lane(&mut self, index: usize) -> Option<Result<Summary, RowMotionError>> {
         let lane = self.lanes[index].as_mut()?;
-        if !lane.is_seen {
+        if !lane.is_observed {
             return None;
         }
-        if let Some(error) = lane.lost.take() {
+        if let Some(error) = lane.error.take() {
             self.lanes[index] = None;
             return Some(Err(error));
         }
@@ -497,7 +508,8 @@ impl<'a> Group<'a, 1> {
     fn pressure(&self, index: usize) -> JointPressure {
         let structure = self.structure;
         let joint = &structure.joints[index];
-        let [first, second] = ends(structure, joint).map(|body| self.motion.bodies[body].place);
+        let [first, second] =
+            joint_bodies(structure, joint).map(|body| self.motion.bodies[body].place);
         let memory = self.motion.memories[index].lane(0);
         let mut fibres: Vec<_> = self.motion.fibres(index, 0).collect();
         let (edges_n, shear_n) =
@@ -518,7 +530,7 @@ impl<'a> Group<'a, 1> {
                 .then(|| 0.5 * (edges_n[1] - edges_n[0]) / normal_n),
             contact_ratio,
             edge_stresses_pa: [low, high]
-                .map(|end| stiffness_pa_m * end.clamp(0.0, joint.strength_m)),
+                .map(|end| stiffness_pa_m * end.clamp(0.0, joint.crushing_penetration_m)),
         }
     }
 }
@@ -537,18 +549,18 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         let stood = !self.course().moved;
         self.lane_mut().until_s = until;
         self.stride();
-        if let Some(error) = self.lane_mut().lost.take() {
+        if let Some(error) = self.lane_mut().error.take() {
             return Err(error);
         }
         let course = self.course_mut();
         if stood && course.moved {
             let (time_s, energy_j) = (course.time, course.potential);
             course.opened.clear();
-            let turns = self.turns().unzip();
-            self.report_uplift(time_s, energy_j, turns);
+            let rotations_and_rates = self.rotations_and_rates().unzip();
+            self.report_uplift(time_s, energy_j, rotations_and_rates);
         }
-        let happened = std::mem::take(&mut self.lane_mut().happened);
-        self.report_ties(happened);
+        let tie_events = std::mem::take(&mut self.lane_mut().tie_events);
+        self.report_ties(tie_events);
         Ok(())
     }
 
@@ -560,8 +572,8 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
             sample.rates_rad_s.push(rate.0[0]);
             sample.poses.push(self.pose(index));
         }
-        sample.feet_apart_m = self.lane().apart_m;
-        let seen = motion.observe(&half, &self.slides);
+        sample.feet_apart_m = self.lane().feet_apart_m;
+        let observation = motion.observe(&half, &self.supports);
         for joint in 0..self.structure.joints.len() {
             let pressure = self.pressure(joint);
             if pressure.normal_n >= self.course().least_load_n() {
@@ -574,14 +586,14 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         let ties = self.structure.ties.iter().zip(&motion.ties);
         let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
-        if let Some(sliding) = &self.course().of_row.sliding {
+        if let Some(sliding) = &self.course().row_summary.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);
         }
-        Ok(seen.kinetic_j.0[0])
+        Ok(observation.kinetic_j.0[0])
     }
 
-    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
-        self.motion.turns(0)
+    fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.motion.rotations_and_rates(0)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {

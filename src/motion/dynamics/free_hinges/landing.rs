@@ -68,7 +68,7 @@ impl Piece {
     }
 
     /// Returns the deviation of the arc of a point from its tangent in a step, over the step length.
-    fn bend(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
+    fn arc_deviation(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
         let (arm, turn) = (point - self.centre, step_s * self.rate);
         arm * (-0.5 * turn * self.rate) - turned(arm) * (turn * turn * self.rate / 6.0)
     }
@@ -86,7 +86,7 @@ struct Step {
 
 /// Impacts that follow each other within the shortest step.
 #[derive(Clone, Copy, Debug, Default)]
-struct Crowd {
+struct ImpactCluster {
     /// Time of the first impact, in seconds.
     first_s: f64,
     impacts: usize,
@@ -130,9 +130,9 @@ pub struct LandingStepper<'a> {
     start_energy: f64,
     friction_demand: f64,
     step_iterations: u64,
-    crowd: Crowd,
+    cluster: ImpactCluster,
     /// Time, in seconds, since which the row rests in its initial position; `None` while it moves.
-    lies_since_s: Option<f64>,
+    rest_since_s: Option<f64>,
 }
 
 impl<'a> LandingStepper<'a> {
@@ -187,12 +187,12 @@ impl<'a> LandingStepper<'a> {
             start_energy: 0.0,
             friction_demand: 0.0,
             step_iterations: 0,
-            crowd: Crowd::default(),
-            lies_since_s: None,
+            cluster: ImpactCluster::default(),
+            rest_since_s: None,
         };
-        stepper.weigh_pieces();
+        stepper.update_piece_centres();
         stepper.course.note_ties(stepper.ties.memories());
-        stepper.course.note_return();
+        stepper.course.save_results_before_fall();
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -221,7 +221,7 @@ impl<'a> LandingStepper<'a> {
             self.program.start_from(&active);
         }
         self.program.place(&self.placement);
-        self.weigh_pieces();
+        self.update_piece_centres();
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         let (energy, sway) = (self.energy(), self.sway_kg_m());
@@ -233,8 +233,8 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Returns whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
-    fn is_crowded(&self) -> bool {
-        self.has_just_landed() && self.crowd.impacts > self.course.task.settings.merged_after
+    fn has_impact_cluster(&self) -> bool {
+        self.has_just_landed() && self.cluster.impacts > self.course.task.settings.merged_after
     }
 
     /// Returns whether the last step ended at an impact.
@@ -243,7 +243,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Constrains the corners in contact.
-    fn touch_shut(&mut self) {
+    fn constrain_closed_corners(&mut self) {
         for (touching, gaps) in self.load.touching.iter_mut().zip(&self.placement.gaps_m) {
             *touching = gaps.map(|gap| gap == 0.0);
         }
@@ -283,11 +283,11 @@ impl<'a> LandingStepper<'a> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse, time - self.kicked_s);
-        self.right.stop_at(time);
+        self.right.set_velocity(time);
         self.load.jumps.fill(Twist::ZERO);
-        self.jump_to_right_support();
+        self.add_right_support_velocity();
         self.landing.fill([0.0; 2]);
-        self.touch_shut();
+        self.constrain_closed_corners();
         ground
     }
 
@@ -299,8 +299,8 @@ impl<'a> LandingStepper<'a> {
     fn solve_step(&mut self, step: f64) -> Result<(), RowMotionError> {
         let (from_s, to_s) = self.kicked(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
-        self.right.step(self.course.time, step);
-        self.jump(step);
+        self.right.set_mean_velocity(self.course.time, step);
+        self.set_relative_velocities(step);
         self.solve()
     }
 
@@ -312,14 +312,14 @@ impl<'a> LandingStepper<'a> {
         let effort = effort.map_err(why)?;
         let iterations = effort.iterations as u64;
         self.course.cost.evaluations += iterations;
-        self.course.of_row.programs += 1;
-        self.course.of_row.relaxed += effort.relaxed as u64;
+        self.course.row_summary.programs += 1;
+        self.course.row_summary.relaxed += effort.relaxed as u64;
         self.step_iterations += iterations;
         Ok(())
     }
 
     /// Computes the prescribed relative velocities at the joints: corrections for arcs over the next step, and rates that close landing corners.
-    fn jump(&mut self, step: f64) {
+    fn set_relative_velocities(&mut self, step: f64) {
         self.load.jumps.fill(Twist::ZERO);
         let count = self.pieces.len();
         let boundaries = count + usize::from(self.row.supports == Supports::Both);
@@ -338,9 +338,10 @@ impl<'a> LandingStepper<'a> {
                 edge
             };
             let point = self.placement.frames[joint].corner_m(nearer);
-            let bend = |piece: &Piece| piece.bend(point, step);
+            let arc_deviation = |piece: &Piece| piece.arc_deviation(point, step);
             let left = index.checked_sub(1).map(|left| &self.pieces[left]);
-            let jump = left.map_or(Vector2::zeros(), bend) - right.map_or(Vector2::zeros(), bend);
+            let jump = left.map_or(Vector2::zeros(), arc_deviation)
+                - right.map_or(Vector2::zeros(), arc_deviation);
             self.load.jumps[joint] = Twist::translation(jump);
         }
         for (joint, rates) in self.landing.iter().enumerate() {
@@ -352,11 +353,11 @@ impl<'a> LandingStepper<'a> {
                     + Twist::rotation(frame.intrados_m, rate);
             }
         }
-        self.jump_to_right_support();
+        self.add_right_support_velocity();
     }
 
     /// Adds the motion of the right support: its joint gets the opposite relative velocity, as if the support were at rest.
-    fn jump_to_right_support(&mut self) {
+    fn add_right_support_velocity(&mut self) {
         if self.right.moves()
             && let Some(last) = self.load.jumps.last_mut()
         {
@@ -372,14 +373,14 @@ impl<'a> LandingStepper<'a> {
         self.program.joint_impulses(&mut self.shares);
         let [along, normal] = self.shares[self.shares.len() - 1];
         let by_row = frame.along * along + frame.normal * normal;
-        let impulse = by_row + self.ties.on_right_support_n() * lasts_s;
+        let impulse = by_row + self.ties.right_support_force_n() * lasts_s;
         -impulse.dot(&self.right.mean_m_s())
     }
 
     /// Adds the work of the right support to the energy balance, and returns the work.
     fn note_right_support(&mut self, lasts_s: f64) -> f64 {
         let work = self.work_of_right_support(lasts_s);
-        self.course.of_row.right_foot_j += work;
+        self.course.row_summary.right_foot_j += work;
         work
     }
 
@@ -426,12 +427,12 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Records the work of the ground and the forces of a solved step, and computes its pieces.
-    fn account(&mut self, step: &Step) {
+    fn record_step(&mut self, step: &Step) {
         let before = self.momentum();
         let (from_s, to_s) = self.kicked(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
-        self.course.of_row.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
+        self.course.row_summary.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
         self.note_right_support(to_s - from_s);
         // In a shorter time the rounding errors of the velocities exceed the effect of the forces.
         if step.merged || to_s - from_s < self.course.task.settings.shortest_step_s {
@@ -457,18 +458,18 @@ impl<'a> LandingStepper<'a> {
             }
         }
         self.open_gaps(self.course.time + step.length_s);
-        self.take_pieces();
+        self.adopt_pieces();
         self.course.time += step.length_s;
         self.closer.close(&mut self.placement);
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
-        let of_row = &mut self.course.of_row;
-        of_row.closure_error_m = of_row.closure_error_m.max(error_m);
+        let row_summary = &mut self.course.row_summary;
+        row_summary.closure_error_m = row_summary.closure_error_m.max(error_m);
         // NaN is also an error.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
-            self.weigh_pieces();
+            self.update_piece_centres();
             Ok(())
         } else {
             let time_s = self.course.time;
@@ -487,19 +488,19 @@ impl<'a> LandingStepper<'a> {
             return;
         }
         let was_open = self.placement.open_corners() > 0;
-        self.right.go(time_s);
+        self.right.move_to(time_s);
         let stood = &self.rest.placement.support_poses;
         let poses = self.right.poses(stood);
         self.placement.move_supports(poses);
         self.ties.supports = poses;
         self.placement.open(|joint| change[joint]);
         if was_open || self.placement.open_corners() > 0 {
-            self.right.followed_m = self.right.gone_m;
+            self.right.followed_m = self.right.displacement_m;
         }
     }
 
     /// Replaces the pieces of the motion by those of the solution, and stores the corners about which joints turn.
-    fn take_pieces(&mut self) {
+    fn adopt_pieces(&mut self) {
         self.right.velocity_m_s = self.right.next_m_s;
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
@@ -510,7 +511,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Computes the centres of the pieces in the current position.
-    fn weigh_pieces(&mut self) {
+    fn update_piece_centres(&mut self) {
         for index in 0..self.pieces.len() {
             let (mut first, mut mass) = (Vector2::zeros(), 0.0);
             for block in self.blocks_of(index) {
@@ -530,38 +531,38 @@ impl<'a> LandingStepper<'a> {
 
     /// Completes the velocity at a landing with the old mechanism, then projects it onto the admissible velocities.
     fn impact(&mut self) -> Result<(), RowMotionError> {
-        self.shut_what_landed();
+        self.close_landed_corners();
         self.pressed.copy_from_slice(&self.program.active);
         self.complete_kick()?;
         let kinetic_before = kinetic(&self.next_pieces);
         self.course.potential = self.energy();
-        self.audit(kinetic_before);
+        self.check_energy(kinetic_before);
         self.load.free.copy_from_slice(&self.program.velocities);
-        self.touch_shut();
+        self.constrain_closed_corners();
         self.program.start_from(&self.pressed);
         // Most landing corners get a compressive impulse.
         self.press(Self::has_landed);
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
         let work = self.note_right_support(0.0);
-        self.course.of_row.energy_taken_j += kinetic_before + work - kinetic_after;
-        self.take_pieces();
+        self.course.row_summary.energy_taken_j += kinetic_before + work - kinetic_after;
+        self.adopt_pieces();
         self.kicked_s = self.course.time;
         self.course.impacts += 1;
-        let crowd_s = self.course.time - self.crowd.first_s;
-        if self.crowd.impacts == 0 || crowd_s > self.course.task.settings.shortest_step_s {
-            self.crowd.first_s = self.course.time;
-            self.crowd.impacts = 0;
+        let since_s = self.course.time - self.cluster.first_s;
+        if self.cluster.impacts == 0 || since_s > self.course.task.settings.shortest_step_s {
+            self.cluster.first_s = self.course.time;
+            self.cluster.impacts = 0;
         }
-        self.crowd.impacts += 1;
+        self.cluster.impacts += 1;
         Ok(())
     }
 
     /// Closes the corners that belong to an impact, besides those closed by the removal of the closure error.
-    fn shut_what_landed(&mut self) {
+    fn close_landed_corners(&mut self) {
         loop {
             // On moved supports three joints stay open.
-            let moved = self.rest.is_on_hinges() || self.right_support_is_gone();
+            let moved = self.rest.is_on_hinges() || self.right_support_is_displaced();
             let may_shut = self.row.supports == Supports::Both && !moved;
             let few = may_shut && self.placement.open_corners() <= 3;
             let near = self.placement.largest_gap_ratio() < LAST_THREE_RATIO;
@@ -575,7 +576,7 @@ impl<'a> LandingStepper<'a> {
             }
         }
         self.program.place(&self.placement);
-        self.weigh_pieces();
+        self.update_piece_centres();
     }
 
     /// Solves for the velocities at the time of the positions, with the contacts of the beginning of the step.
@@ -589,7 +590,8 @@ impl<'a> LandingStepper<'a> {
         }
         self.solve()?;
         self.form_pieces();
-        self.course.of_row.ground_j -= ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
+        self.course.row_summary.ground_j -=
+            ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
         self.note_right_support(self.course.time - self.kicked_s);
         self.right.velocity_m_s = self.right.next_m_s;
         Ok(())
@@ -610,7 +612,7 @@ mod tests {
 
     /// Solves the quadratic program of a step with an interior-point solver, with up to three rows per joint. The unknowns of a block are the
     /// velocity of its centre and its rotation rate times the radius of gyration, all times the root of its mass.
-    fn judged(stepper: &LandingStepper) -> Option<Vec<Twist>> {
+    fn reference_velocities(stepper: &LandingStepper) -> Option<Vec<Twist>> {
         let blocks = &stepper.row.blocks;
         let centres = &stepper.placement.centres_m;
         let gyration = |b: usize| (blocks[b].inertia_kg_m2 / blocks[b].mass_kg).sqrt();
@@ -715,19 +717,21 @@ mod tests {
             let mut worst = 0.0_f64;
             let mut compared = 0;
             for _ in 0..500 {
-                stepper.touch_shut();
+                stepper.constrain_closed_corners();
                 stepper.landing.fill([0.0; 2]);
                 stepper.solve_step(settings.longest_step_s).unwrap();
                 // The solver fails near rest, where the impulses are not unique.
-                let judge = judged(&stepper);
-                compared += usize::from(judge.is_some());
+                let reference = reference_velocities(&stepper);
+                compared += usize::from(reference.is_some());
                 let velocities = &stepper.program.velocities;
-                for (block, (ours, judge)) in
-                    velocities.iter().zip(judge.iter().flatten()).enumerate()
+                for (block, (ours, reference)) in velocities
+                    .iter()
+                    .zip(reference.iter().flatten())
+                    .enumerate()
                 {
                     let centre = stepper.placement.centres_m[block];
                     fastest = fastest.max(ours.at(centre).norm());
-                    worst = worst.max((ours.at(centre) - judge.at(centre)).norm());
+                    worst = worst.max((ours.at(centre) - reference.at(centre)).norm());
                 }
                 stepper.step(60.0).unwrap();
             }

@@ -33,18 +33,21 @@ impl<'a> Rest<'a> {
     }
 
     /// Returns whether a row with these gaps is in this position, by its contacts: three hinges determine the position.
-    pub fn has(&self, gaps_m: &[[f64; 2]]) -> bool {
+    pub fn has_contacts(&self, gaps_m: &[[f64; 2]]) -> bool {
         touching(gaps_m).eq(self.touching.iter().copied())
     }
 
     /// Returns the rotations of the blocks relative to this position.
-    pub fn turned_rad(&self, poses: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+    pub fn relative_rotations_rad(
+        &self,
+        poses: impl Iterator<Item = f64>,
+    ) -> impl Iterator<Item = f64> {
         let stood = self.placement.poses.iter().map(Pose::rotation_rad);
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
     /// Returns the sum of displacements of the blocks from this position times their masses, in kg m, for given centres.
-    pub fn moved_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
+    pub fn mass_displacement_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
         let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
         let moved = blocks.map(|(block, (now, stood))| (now - stood) * block.mass_kg);
@@ -53,15 +56,15 @@ impl<'a> Rest<'a> {
 
     /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet. `feet_m` are the displacements of
     /// the feet.
-    pub fn is_left_by(
+    pub fn has_left(
         &self,
         blocks: impl Iterator<Item = (Vector2<f64>, f64)>,
         feet_m: [Vector2<f64>; 2],
     ) -> bool {
         let far = (OVERTURNED_RATIO * self.row.size_m).powi(2);
         let stood = self.placement.centres_m.iter().zip(&self.placement.poses);
-        let is_left = |((centre_m, rotation_rad), (stood_m, pose)): ((_, f64), (_, &Pose))| {
-            let moved_m: Vector2<f64> = centre_m - stood_m;
+        let is_left = |((centre_m, rotation_rad), (initial_m, pose)): ((_, f64), (_, &Pose))| {
+            let moved_m: Vector2<f64> = centre_m - initial_m;
             let is_far = |foot_m: &Vector2<f64>| (moved_m - foot_m).norm_squared() >= far;
             (rotation_rad - pose.rotation_rad()).abs() >= OVERTURNED_RAD
                 || feet_m.iter().all(is_far)

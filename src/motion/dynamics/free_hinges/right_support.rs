@@ -16,7 +16,7 @@ pub(super) struct RightSupport<'a> {
     /// Relative motion of the feet; `None` if both feet move alike, or the row has only one.
     feet: Option<FeetApart<'a>>,
     /// Displacement relative to the left support, in metres.
-    pub gone_m: Vector2<f64>,
+    pub displacement_m: Vector2<f64>,
     /// Displacement at which the joints last followed the support, in metres. Movements too small to open a joint accumulate.
     pub followed_m: Vector2<f64>,
     /// Velocity in the last step or after the last impact, then the velocity in the current solution.
@@ -40,19 +40,19 @@ impl<'a> RightSupport<'a> {
     /// Returns the current poses of both supports for given initial poses.
     pub fn poses(&self, stood: &[Pose; 2]) -> [Pose; 2] {
         let [left, mut right] = *stood;
-        right.translation += self.gone_m;
+        right.translation += self.displacement_m;
         [left, right]
     }
 
     /// Sets the velocity of the current solution to the mean over a step that starts at `from_s`.
-    pub fn step(&mut self, from_s: f64, lasts_s: f64) {
+    pub fn set_mean_velocity(&mut self, from_s: f64, lasts_s: f64) {
         if let Some(feet) = &self.feet {
             self.next_m_s = (feet.ahead(from_s + lasts_s) - self.followed_m) / lasts_s;
         }
     }
 
     /// Sets the velocity of the current solution to that at an instant.
-    pub fn stop_at(&mut self, time_s: f64) {
+    pub fn set_velocity(&mut self, time_s: f64) {
         if let Some(feet) = &self.feet {
             self.next_m_s = feet.velocity_m_s(time_s);
         }
@@ -64,9 +64,9 @@ impl<'a> RightSupport<'a> {
     }
 
     /// Moves the right support to its position at `time_s`.
-    pub fn go(&mut self, time_s: f64) {
+    pub fn move_to(&mut self, time_s: f64) {
         if let Some(feet) = &mut self.feet {
-            self.gone_m = feet.at(time_s);
+            self.displacement_m = feet.at(time_s);
         }
     }
 }

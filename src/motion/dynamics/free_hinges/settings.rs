@@ -10,7 +10,7 @@ const SHORTEST_STEP_RATIO: f64 = 1.0 / 30.0;
 /// than 1 % from those with the shortest steps; with the steps of a single run, those of 5 arches differ.
 pub const MANY_CASES_STEP_RATIO: f64 = 1.1 / 0.34;
 /// Number of impacts within the shortest step after which the next landings are merged; an infinite series of impacts would stop time.
-const CROWDED_IMPACTS: usize = 50;
+const CLUSTER_IMPACTS: usize = 50;
 /// Time after an impact in which a repetition merges landings, over the shortest step.
 const MERGED_RATIO: f64 = 4.0;
 /// Ratio of the step to the longest stable step of a single block between ties. Closed joints combine blocks to heavier bodies with longer stable
@@ -26,7 +26,7 @@ impl Settings {
         Self {
             longest_step_s,
             shortest_step_s: SHORTEST_STEP_RATIO * longest_step_s,
-            merged_after: CROWDED_IMPACTS,
+            merged_after: CLUSTER_IMPACTS,
             end_s,
             ..Self::default()
         }

@@ -14,7 +14,7 @@ use std::mem;
 
 use nalgebra::{Vector2, Vector3};
 
-use self::impact::{Landing, Taken};
+use self::impact::{Dissipation, Landing};
 use super::rest::Rest;
 use super::right_support::RightSupport;
 use super::ties::Ties;
@@ -36,7 +36,7 @@ use crate::mechanics::stance::Stance;
 /// Tolerance of rates, relative to the fastest motion plus the effect of gravity in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
 /// Largest residual rate due to the proximal term, relative to the fastest motion; above it the impulses are solved for again.
-const DRAWN: f64 = 1e-6;
+const LARGEST_RESIDUAL_RATE: f64 = 1e-6;
 /// Least gap before a landing, over the thickness of the joint.
 const APART_RATIO: f64 = 1e-9;
 /// Relative error of friction bounds below which these have converged.
@@ -51,7 +51,7 @@ pub struct SlidingStepper<'a> {
     rest: Rest<'a>,
     right: RightSupport<'a>,
     /// Gaps and offsets of the joints in the initial position.
-    stood_m: Vec<Vector3<f64>>,
+    initial_coordinates_m: Vec<Vector3<f64>>,
     course: Course<'a>,
     faces: Vec<Faces>,
     thinnest_m: f64,
@@ -62,11 +62,11 @@ pub struct SlidingStepper<'a> {
     contacts: Vec<Contact>,
     ties: Ties<'a>,
     /// Changes of the velocities of the blocks by ties in a kick.
-    pulled: Vec<Vector3<f64>>,
+    tie_velocities: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
     stuck: Vec<f64>,
     /// Position error of the joint coordinates at the end of the step without their rates, over the step length.
-    lags: Vec<Vector3<f64>>,
+    position_errors: Vec<Vector3<f64>>,
     /// Rates of the joint coordinates before the step.
     rates_before: Vec<Vector3<f64>>,
     /// Time up to which the kicks have been applied.
@@ -79,7 +79,7 @@ pub struct SlidingStepper<'a> {
     /// True while the contacts are those of the initial position.
     stands: bool,
     /// Energy dissipated by friction outside impacts.
-    held_back: f64,
+    sliding_friction_j: f64,
     /// Impact of the last step; `None` if there was none.
     landing: Option<Landing>,
     /// Least energy up to now, without the work of the ground.
@@ -118,17 +118,17 @@ impl<'a> SlidingStepper<'a> {
         program.touch(&rest.touching);
         let ties = Ties::new(row, standing);
         let mut course = Course::new(task, None, recorder);
-        course.of_row.sliding = Some(Sliding::none(joints));
+        course.row_summary.sliding = Some(Sliding::none(joints));
         course.note_ties(ties.memories());
-        course.note_return();
-        let start_energy = gravity * rest.moved_kg_m(&placement.centres_m).y;
+        course.save_results_before_fall();
+        let start_energy = gravity * rest.mass_displacement_kg_m(&placement.centres_m).y;
         // Heights include the energy dissipated by friction: friction may hold the row up to its highest position.
         course.summit = Summit::new(start_energy, ground.start_s());
-        let stands = rest.has(&placement.gaps_m);
+        let stands = rest.has_contacts(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
-            let rotations = rest.turned_rad(rotations);
-            let sway = rest.moved_kg_m(&placement.centres_m).x;
+            let rotations = rest.relative_rotations_rad(rotations);
+            let sway = rest.mass_displacement_kg_m(&placement.centres_m).x;
             course.released(rotations, start_energy, sway, true);
         }
         Self {
@@ -138,21 +138,21 @@ impl<'a> SlidingStepper<'a> {
             course,
             velocities: vec![Vector3::zeros(); blocks],
             stuck: contacts.iter().map(|c| c.coordinates_m.z).collect(),
-            lags: vec![Vector3::zeros(); joints],
+            position_errors: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
             kicked_s: ground.start_s(),
             last_step: task.settings.longest_step_s,
             auxiliary: program.clone(),
             program,
             modes_before: vec![Mode::WHOLE; joints],
-            stood_m: stood.iter().map(|c| c.coordinates_m).collect(),
+            initial_coordinates_m: stood.iter().map(|c| c.coordinates_m).collect(),
             rest,
             right: RightSupport::new(row, ground),
             supports,
             stands,
             ties,
-            pulled: vec![Vector3::zeros(); blocks],
-            held_back: 0.0,
+            tie_velocities: vec![Vector3::zeros(); blocks],
+            sliding_friction_j: 0.0,
             landing: None,
             least_energy: f64::INFINITY,
             friction_demand: 0.0,
@@ -174,15 +174,15 @@ impl<'a> SlidingStepper<'a> {
     /// Sets the free velocities after a kick up to `to_s`, with the tie forces during this time.
     fn load(&mut self, kick: Vector2<f64>, to_s: f64) {
         let lasts_s = to_s - self.kicked_s;
-        self.pulled.fill(Vector3::zeros());
-        let pulled = &mut self.pulled;
+        self.tie_velocities.fill(Vector3::zeros());
+        let tie_velocities = &mut self.tie_velocities;
         self.ties
             .pull(&self.centres, lasts_s, |block, velocity, turning| {
-                pulled[block] += Vector3::new(velocity.x, velocity.y, turning);
+                tie_velocities[block] += Vector3::new(velocity.x, velocity.y, turning);
             });
         let (velocities, kick) = (&self.velocities, Vector3::new(kick.x, kick.y, 0.0));
         self.program
-            .load(|block| velocities[block] + kick + pulled[block]);
+            .load(|block| velocities[block] + kick + tie_velocities[block]);
     }
 
     fn kinetic(&self) -> f64 {
@@ -191,7 +191,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Computes the position errors of the coordinates at the end of a step over the step length, for the velocities of the last solution. They
     /// contain the current coordinates and the curvature of the motion, without the effect of the rates.
-    fn lag(&mut self, step: f64) {
+    fn update_position_errors(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
                 let way_m = self.right.next_m_s * step;
@@ -204,23 +204,23 @@ impl<'a> SlidingStepper<'a> {
         let mut left = Some(self.supports[0]);
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
-            let mut lag = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
+            let mut error = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
             // A joint between blocks that move as one has no curvature; linear motion would produce some.
             let mut right = None;
             if self.program.modes[joint] != Mode::WHOLE {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
-                lag += then.coordinates_m - now - self.program.joint_rate(joint) * step;
+                error += then.coordinates_m - now - self.program.joint_rate(joint) * step;
             } else {
-                lag += self.carried(joint, self.right.next_m_s) * step;
+                error += self.right_support_rates(joint, self.right.next_m_s) * step;
             }
-            self.lags[joint] = lag / step;
+            self.position_errors[joint] = error / step;
             left = right;
         }
     }
 
     /// Returns the rates of the coordinates of a joint due to a velocity of the right support.
-    fn carried(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
+    fn right_support_rates(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         if self.right.moves() && joint + 1 == self.faces.len() {
             self.contacts[joint].carried(&self.faces[joint], velocity_m_s)
         } else {
@@ -232,7 +232,7 @@ impl<'a> SlidingStepper<'a> {
     ///
     /// # Errors
     /// If their relative error is above 5 %.
-    fn judge(&mut self, error: f64) -> Result<(), RowMotionError> {
+    fn check_friction_bounds(&mut self, error: f64) -> Result<(), RowMotionError> {
         if error <= CONVERGED {
             return Ok(());
         }
@@ -257,29 +257,33 @@ impl<'a> SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
-        self.right.step(self.course.time, step);
-        self.lag(step);
+        self.right.set_mean_velocity(self.course.time, step);
+        self.update_position_errors(step);
         self.load(kick, to_s);
         let speeds = self.velocities.iter().map(|v| v.x.abs() + v.y.abs());
         let fastest = speeds.fold(0.0, f64::max);
         let tolerance = RATE_TOLERANCE * (self.gravity * step + fastest);
-        let mut solution = self.program.solve(|joint| self.lags[joint], tolerance);
+        let mut solution = self
+            .program
+            .solve(|joint| self.position_errors[joint], tolerance);
         let mut passes = solution.passes;
         let again = solution.changed;
         if again {
-            self.lag(step);
+            self.update_position_errors(step);
         }
-        if again || solution.drawn_m_s > DRAWN * (self.gravity * step + fastest) {
-            solution = self.program.solve(|joint| self.lags[joint], tolerance);
+        if again || solution.drawn_m_s > LARGEST_RESIDUAL_RATE * (self.gravity * step + fastest) {
+            solution = self
+                .program
+                .solve(|joint| self.position_errors[joint], tolerance);
             passes += solution.passes;
         }
         let passes = passes as u64;
-        let (cost, of_row) = (&mut self.course.cost, &mut self.course.of_row);
+        let (cost, row_summary) = (&mut self.course.cost, &mut self.course.row_summary);
         cost.steps += 1;
         cost.evaluations += passes;
-        of_row.programs += 1;
-        of_row.most_iterations = of_row.most_iterations.max(passes);
-        self.judge(solution.bound_error)
+        row_summary.programs += 1;
+        row_summary.most_iterations = row_summary.most_iterations.max(passes);
+        self.check_friction_bounds(solution.bound_error)
     }
 
     fn note_forces(&mut self, time_s: f64) {
@@ -302,8 +306,8 @@ impl<'a> SlidingStepper<'a> {
         self.course.time += step;
         if self.right.moves() {
             self.right.velocity_m_s = self.right.next_m_s;
-            self.right.go(self.course.time);
-            self.right.followed_m = self.right.gone_m;
+            self.right.move_to(self.course.time);
+            self.right.followed_m = self.right.displacement_m;
             let poses = self.right.poses(&self.rest.placement.support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
             self.ties.supports = poses;
@@ -318,9 +322,9 @@ impl<'a> SlidingStepper<'a> {
             let largest = &mut self.sliding().largest_offsets_m[joint];
             *largest = largest.max(offset_m);
             let least = APART_RATIO * self.faces[joint].thickness_m;
-            let stood_m = &self.stood_m[joint];
-            let slipped_m = (self.stuck[joint] - stood_m.z).abs();
-            let [intrados, extrados, _] = (contact.coordinates_m - stood_m).into();
+            let initial_coordinates_m = &self.initial_coordinates_m[joint];
+            let slipped_m = (self.stuck[joint] - initial_coordinates_m.z).abs();
+            let [intrados, extrados, _] = (contact.coordinates_m - initial_coordinates_m).into();
             self.course.moved |= slipped_m.max(intrados).max(extrados) > least;
             self.course.overturned |= contact.ends_m[1] <= contact.ends_m[0];
             self.contacts[joint] = contact;
@@ -330,30 +334,30 @@ impl<'a> SlidingStepper<'a> {
         let before = self.course.potential + self.ties.taken_j();
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
-        let happened = self.course.note_ties(self.ties.memories());
-        let height = self.gravity * self.rest.moved_kg_m(&self.centres).y;
+        let tie_events = self.course.note_ties(self.ties.memories());
+        let height = self.gravity * self.rest.mass_displacement_kg_m(&self.centres).y;
         let potential = height + self.ties.energy_j();
         let taken = self.ties.taken_j();
-        self.audit(kinetic + 0.5 * (before + potential + taken));
-        let sway = self.displacement();
+        self.check_energy(kinetic + 0.5 * (before + potential + taken));
+        let sway = self.sway_kg_m();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
-        let rotations = self.rest.turned_rad(rotations);
+        let rotations = self.rest.relative_rotations_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
         self.course.overturned |= self.has_fallen();
-        let height = potential + self.held_back + taken;
+        let height = potential + self.sliding_friction_j + taken;
         let height = (!self.right.moves()).then_some(height);
         self.course.note_height(height);
-        happened
+        tie_events
     }
 
     /// Returns the record of slip.
     fn sliding(&mut self) -> &mut Sliding {
-        let sliding = self.course.of_row.sliding.as_mut();
+        let sliding = self.course.row_summary.sliding.as_mut();
         sliding.expect("joints may slip")
     }
 
     /// Returns the slip of the row along the left and the right support, in metres.
-    fn slides(&self) -> [Vector2<f64>; 2] {
+    fn support_slips_m(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
             let along = support.turned(self.row.joints[joint].along());
@@ -368,17 +372,17 @@ impl<'a> SlidingStepper<'a> {
 
     /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet.
     fn has_fallen(&self) -> bool {
-        let [left, right] = self.slides();
+        let [left, right] = self.support_slips_m();
         let blocks = self.positions.iter();
         let blocks = blocks.map(|position| (position.centre_m, position.rotation_rad));
-        let feet_m = [left, right + self.right.gone_m];
-        self.rest.is_left_by(blocks, feet_m)
+        let feet_m = [left, right + self.right.displacement_m];
+        self.rest.has_left(blocks, feet_m)
     }
 
     /// Compares the energy in the middle of a step, without the work of the ground, with the least value up to now; an increase is a numerical error.
     /// In the middle of a step, velocities and heights are known, and their energy is constant in equal steps without impulses at the joints.
-    fn audit(&mut self, energy: f64) {
-        let left = energy - self.course.of_row.ground_j - self.course.of_row.right_foot_j;
+    fn check_energy(&mut self, energy: f64) {
+        let left = energy - self.course.row_summary.ground_j - self.course.row_summary.right_foot_j;
         self.course.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
@@ -387,14 +391,14 @@ impl<'a> SlidingStepper<'a> {
     /// energy in J.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
-        self.right.stop_at(self.course.time);
+        self.right.set_velocity(self.course.time);
         let rates_at_gaps = |joint: usize| {
             let [intrados, extrados] = self.gaps(joint).map(|gap| gap / self.last_step);
             Vector3::new(intrados, extrados, 0.0)
         };
         let mut apart: Vec<_> = (0..self.faces.len()).map(rates_at_gaps).collect();
         let last = apart.len() - 1;
-        apart[last] += self.carried(last, self.right.next_m_s);
+        apart[last] += self.right_support_rates(last, self.right.next_m_s);
         mem::swap(&mut self.program, &mut self.auxiliary);
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
@@ -407,7 +411,7 @@ impl<'a> SlidingStepper<'a> {
     }
 
     /// Reports the joints that open in a step from the closed row. The step begins at `from_s`, with this energy, and with these rotations and rates.
-    fn note_uplift(&mut self, from_s: f64, energy_j: f64, turns: Vec<(f64, f64)>) {
+    fn note_uplift(&mut self, from_s: f64, energy_j: f64, rotations_and_rates: Vec<(f64, f64)>) {
         let opened = &mut self.course.opened;
         opened.clear();
         for (joint, mode) in self.program.modes.iter().enumerate() {
@@ -422,35 +426,35 @@ impl<'a> SlidingStepper<'a> {
             self.stands &= !is_open;
         }
         if !self.stands {
-            self.report_uplift(from_s, energy_j, turns.into_iter().unzip());
+            self.report_uplift(from_s, energy_j, rotations_and_rates.into_iter().unzip());
         }
     }
 
     /// Returns whether the contacts are those of the initial position.
-    fn touches_as_it_stood(&self) -> bool {
+    fn has_initial_contacts(&self) -> bool {
         let mut modes = self.program.modes.iter().zip(&self.rest.touching);
-        modes.all(|(mode, stood)| mode.pressed == *stood) && !self.right_support_is_gone()
+        modes.all(|(mode, stood)| mode.pressed == *stood) && !self.right_support_is_displaced()
     }
 
     /// Returns whether the right support is displaced relative to the left one.
-    fn right_support_is_gone(&self) -> bool {
-        self.right.gone_m.norm() > APART_RATIO * self.thinnest_m
+    fn right_support_is_displaced(&self) -> bool {
+        self.right.displacement_m.norm() > APART_RATIO * self.thinnest_m
     }
 
     /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slip of the row
     /// along the ground.
-    fn displacement(&self) -> f64 {
+    fn sway_kg_m(&self) -> f64 {
         let on_ground = match (self.row.supports, self.row.supports_extend) {
             (Supports::Left, [base, _]) => [base; 2],
             (Supports::Both, both) => both,
         };
         // A block can slide off a support that ends at the joint, so slip on such a support is included.
-        let slides = self.slides().into_iter().zip(on_ground);
+        let slides = self.support_slips_m().into_iter().zip(on_ground);
         let slides = slides.filter(|(_, on_ground)| *on_ground);
         let slid: f64 = slides.map(|(slide, _)| 0.5 * slide.x).sum();
         let mass = self.row.mass_kg();
-        let sway =
-            self.rest.moved_kg_m(&self.centres).x - mass * (slid + 0.5 * self.right.gone_m.x);
+        let sway = self.rest.mass_displacement_kg_m(&self.centres).x
+            - mass * (slid + 0.5 * self.right.displacement_m.x);
         let least = SWAY_RATIO * mass * self.row.size_m;
         if sway.abs() > least { sway } else { 0.0 }
     }
@@ -478,7 +482,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn complete(&mut self) {
-        self.end_landing(Taken::default(), true);
+        self.end_landing(Dissipation::default(), true);
         let offsets_m = self.stuck.clone();
         self.sliding().offsets_m = offsets_m;
     }
@@ -490,51 +494,55 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let momentum = self.momentum();
         let stood = self.stands.then(|| {
             let energy_j = self.kinetic() + self.course.potential;
-            (self.course.time, energy_j, self.turns().collect())
+            (
+                self.course.time,
+                energy_j,
+                self.rotations_and_rates().collect(),
+            )
         });
         self.solve(step, to_s, kick)?;
         let mean_m_s = self.right.mean_m_s();
         if self.right.moves() {
             let last = self.faces.len() - 1;
-            let carried_j = self.program.impulses[last].dot(&self.carried(last, mean_m_s));
-            self.course.of_row.right_foot_j -= carried_j;
-            let pulled = self.ties.on_right_support_n() * (to_s - self.kicked_s);
-            self.course.of_row.right_foot_j -= pulled.dot(&mean_m_s);
+            let work_j = self.program.impulses[last].dot(&self.right_support_rates(last, mean_m_s));
+            self.course.row_summary.right_foot_j -= work_j;
+            let impulse = self.ties.right_support_force_n() * (to_s - self.kicked_s);
+            self.course.row_summary.right_foot_j -= impulse.dot(&mean_m_s);
         }
         for (block, velocity) in self.velocities.iter_mut().enumerate() {
             *velocity = self.program.velocity(block);
         }
-        self.course.of_row.ground_j -= ground.dot(&((momentum + self.momentum()) * 0.5));
+        self.course.row_summary.ground_j -= ground.dot(&((momentum + self.momentum()) * 0.5));
         self.note_forces(to_s - self.kicked_s);
         self.kicked_s = to_s;
         self.last_step = step;
         let landing = self.find_landing(step);
-        let [mut late, taken] = self.taken(mean_m_s);
+        let [mut late, taken] = self.dissipation(mean_m_s);
         self.sliding().friction_j += late.friction_j + taken.friction_j;
         if landing.is_none() {
             late.add(taken);
             // Friction in an impact does not count as holding the row up.
-            self.held_back += self.held_back_j();
+            self.sliding_friction_j += self.step_friction_j();
         }
         self.end_landing(late, landing.is_none());
         if let Some(landing) = landing {
             self.landing = Some(Landing {
                 energy_before_j: self.kinetic() + taken.total_j,
-                taken,
+                dissipation: taken,
                 ..landing
             });
             self.course.impacts += 1;
             self.course.await_impact();
         }
-        let happened = self.drift(step);
-        if let Some((from_s, energy_j, turns)) = stood {
-            self.note_uplift(from_s, energy_j, turns);
+        let tie_events = self.drift(step);
+        if let Some((from_s, energy_j, rotations_and_rates)) = stood {
+            self.note_uplift(from_s, energy_j, rotations_and_rates);
         } else {
-            self.stands = self.touches_as_it_stood();
+            self.stands = self.has_initial_contacts();
         }
         let scale_j = self.course.task.energy_scale_j;
-        self.course.mind_balance(scale_j, || scale_j);
-        self.report_ties(happened);
+        self.course.halve_unbalanced_steps(scale_j, || scale_j);
+        self.report_ties(tie_events);
         Ok(())
     }
 
@@ -545,7 +553,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
             sample.poses.push(position.pose(block.centre_m));
         }
-        sample.feet_apart_m = self.right.gone_m;
+        sample.feet_apart_m = self.right.displacement_m;
         sample.offsets_m.extend(&self.stuck);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -557,10 +565,10 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         Ok(kinetic_j)
     }
 
-    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
+    fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)> {
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         let rates = self.velocities.iter().map(|velocity| velocity.z);
-        self.rest.turned_rad(rotations).zip(rates)
+        self.rest.relative_rotations_rad(rotations).zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
@@ -587,7 +595,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     fn stands(&self, sample: &Sample) -> bool {
         let stood = &self.rest.touching;
         let touches = |joint: usize| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint];
-        let lies = if self.right_support_is_gone() {
+        let lies = if self.right_support_is_displaced() {
             self.course.is_quiet(self.course.quiet_since_s)
         } else {
             (0..self.faces.len()).all(touches)
@@ -599,7 +607,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn rests_since(&self) -> Option<f64> {
         let low = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
-        let undeformed = low && !self.right_support_is_gone();
+        let undeformed = low && !self.right_support_is_displaced();
         let rests = if undeformed {
             self.course.time > self.course.quiet_since_s
         } else {

@@ -40,7 +40,7 @@ impl<'a> Ties<'a> {
     }
 
     /// Returns the force of the ties on the right support, in N.
-    pub fn on_right_support_n(&self) -> Vector2<f64> {
+    pub fn right_support_force_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
         let ends = self.memories().zip(&self.lines);
         let ends = ends.flat_map(|((tie, memory), line)| {

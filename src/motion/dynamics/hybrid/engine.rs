@@ -12,7 +12,7 @@ use crate::dynamics::history::Cost;
 
 /// State of a system at one time.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<M, const N: usize> {
+pub struct SystemState<M, const N: usize> {
     /// Time, in seconds.
     pub time_s: f64,
     /// Index of the piece of the forcing.
@@ -23,7 +23,7 @@ pub struct Moment<M, const N: usize> {
     pub state: State<N>,
 }
 
-impl<M: Copy, const N: usize> Moment<M, N> {
+impl<M: Copy, const N: usize> SystemState<M, N> {
     /// Returns another time and state in the same mode and on the same piece.
     #[must_use]
     pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
@@ -54,29 +54,31 @@ pub trait HybridSystem<const N: usize> {
     fn is_still(&self, mode: Self::Mode) -> bool;
 
     /// Returns the rate of change of the state, per second. Times are in the piece, its ends included.
-    fn slope(&self, now: &Moment<Self::Mode, N>) -> State<N>;
+    fn slope(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
 
     /// Returns the state within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
     /// events.
     fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.
-    fn scale(&self, now: &Moment<Self::Mode, N>) -> State<N>;
+    fn scale(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
 
     /// Returns a suitable first step in seconds, and the longest one for which the search for guards is reliable.
-    fn step_sizes_s(&self, now: &Moment<Self::Mode, N>, relative_tolerance: f64) -> (f64, f64);
+    fn step_sizes_s(&self, now: &SystemState<Self::Mode, N>, relative_tolerance: f64)
+    -> (f64, f64);
 
     /// Returns the guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
     /// Returns the value of a guard, which fires when it falls below zero, and its rate of change, per second.
-    fn guard_value(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (f64, f64);
+    fn guard_value(&self, guard: Self::Guard, now: &SystemState<Self::Mode, N>) -> (f64, f64);
 
     /// Returns the guard that has already fired at the start of a piece or mode, if any.
-    fn fired_at_once(&self, now: &Moment<Self::Mode, N>) -> Option<Self::Guard>;
+    fn fired_at_once(&self, now: &SystemState<Self::Mode, N>) -> Option<Self::Guard>;
 
     /// Returns the mode and state after the event of a guard.
-    fn reset(&self, guard: Self::Guard, now: &Moment<Self::Mode, N>) -> (Self::Mode, State<N>);
+    fn reset(&self, guard: Self::Guard, now: &SystemState<Self::Mode, N>)
+    -> (Self::Mode, State<N>);
 }
 
 /// Event of a guard, with the modes and states before and after.
@@ -99,7 +101,7 @@ pub struct Transition<M, G, const N: usize> {
 /// Observer of a simulation. Steps and transitions arrive in order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// Receives a part of the motion without an event, in the mode and on the piece of its start.
-    fn step(&mut self, _from: &Moment<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
+    fn step(&mut self, _from: &SystemState<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -124,7 +126,7 @@ pub struct Settings {
 #[derive(Clone, Copy, Debug)]
 pub struct Finish<M, const N: usize> {
     /// State at the last transition, at the end of the simulation, or where an observer stopped it.
-    pub now: Moment<M, N>,
+    pub now: SystemState<M, N>,
     /// True if an observer stopped the simulation.
     pub stopped: bool,
     /// Computational effort.
@@ -157,7 +159,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
     let mut finish = Finish {
-        now: Moment {
+        now: SystemState {
             time_s: 0.0,
             piece: 0,
             mode,
@@ -261,7 +263,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
 /// Returns the integration task from a moment in its mode and on its piece, up to a time.
 pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    from: &Moment<S::Mode, N>,
+    from: &SystemState<S::Mode, N>,
     end_s: f64,
     relative_tolerance: f64,
 ) -> Task<N> {
@@ -285,7 +287,7 @@ pub(super) fn task<S: HybridSystem<N>, const N: usize>(
 /// the step) that its curvature, of order `d^2`, is below rounding error.
 fn land<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    from: &Moment<S::Mode, N>,
+    from: &SystemState<S::Mode, N>,
     task: &Task<N>,
     guard: S::Guard,
     time_s: f64,
@@ -342,7 +344,7 @@ type Point = (f64, (f64, f64));
 /// Returns the first guard to fire within a step, and its time.
 fn first_event<S: HybridSystem<N>, const N: usize>(
     system: &S,
-    from: &Moment<S::Mode, N>,
+    from: &SystemState<S::Mode, N>,
     step: &Step<N>,
 ) -> Option<(S::Guard, f64)> {
     let mut first: Option<(S::Guard, f64)> = None;

@@ -1,6 +1,6 @@
 //! Positions of the bodies of a mechanism, in the frame of the ground.
 
-use super::rocking::{Mode, Moment, Phase, Rocking, RockingState, Swing};
+use super::rocking::{Mode, Phase, Rocking, RockingState, Swing, SystemState};
 use crate::dynamics::history::State;
 use crate::mechanics::chain::{Link, Mechanism, MechanismChain};
 use crate::mechanics::sway::Sway;
@@ -9,7 +9,7 @@ use crate::mechanics::sway::Sway;
 pub(super) type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;
 
 /// State of a structure on moving ground at one time.
-pub(super) type Now<'a, C> = Moment<'a, <C as MechanismChain>::Mechanism>;
+pub(super) type StructureState<'a, C> = SystemState<'a, <C as MechanismChain>::Mechanism>;
 
 /// Returns the rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground. A sway to the left is reflected,
 /// which reverses the order of the bodies and the sign of their rotations.

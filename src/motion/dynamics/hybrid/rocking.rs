@@ -21,7 +21,7 @@ use crate::mechanics::sway::Sway;
 pub type Mode<'a, M> = Phase<Swing<'a, M>>;
 
 /// Rocking structure at one time.
-pub type Moment<'a, M> = engine::Moment<Mode<'a, M>, 3>;
+pub type SystemState<'a, M> = engine::SystemState<Mode<'a, M>, 3>;
 
 /// Phase of the motion.
 #[derive(Clone, Copy, Debug)]
@@ -163,7 +163,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the ground acceleration in the frame of a mechanism with this sway.
-    fn ground_m_s2(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
+    fn ground_m_s2(&self, sway: Sway, now: &SystemState<'a, C::Mechanism>) -> Vector2<f64> {
         let mut ground_m_s2 = self.piece(now.piece).at(now.time_s).0;
         ground_m_s2.x *= sway.sign();
         ground_m_s2
@@ -185,7 +185,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Returns the thrust excess and friction demand.
     #[must_use]
-    pub fn demand(&self, now: &Moment<'a, C::Mechanism>) -> Demand {
+    pub fn demand(&self, now: &SystemState<'a, C::Mechanism>) -> Demand {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);
             return self.chain.demand_at_rest(body_force_g);
@@ -196,7 +196,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Returns the thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
     #[must_use]
-    pub fn eccentricity_ratios(&self, now: &Moment<'a, C::Mechanism>) -> Vec<Option<f64>> {
+    pub fn eccentricity_ratios(&self, now: &SystemState<'a, C::Mechanism>) -> Vec<Option<f64>> {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);
             return self.chain.eccentricity_ratios_at_rest(body_force_g);
@@ -210,12 +210,16 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns gravity minus the ground acceleration in the frame of a mechanism with this sway, in multiples of gravity.
-    fn body_force_g(&self, sway: Sway, now: &Moment<'a, C::Mechanism>) -> Vector2<f64> {
+    fn body_force_g(&self, sway: Sway, now: &SystemState<'a, C::Mechanism>) -> Vector2<f64> {
         -self.ground_m_s2(sway, now) / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
     }
 
     /// Returns the state of a mechanism.
-    fn motion(&self, swing: Swing<'a, C::Mechanism>, now: &Moment<'a, C::Mechanism>) -> Motion {
+    fn motion(
+        &self,
+        swing: Swing<'a, C::Mechanism>,
+        now: &SystemState<'a, C::Mechanism>,
+    ) -> Motion {
         let (q_rad, rate) = (now.state[0], now.state[1]);
         let coefficients = swing.link.mechanism.coefficients(q_rad);
         let ground_m_s2 = self.ground_m_s2(swing.sway, now);
@@ -274,7 +278,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         !matches!(mode, Phase::Rocking(_))
     }
 
-    fn slope(&self, now: &Moment<'a, C::Mechanism>) -> RockingState {
+    fn slope(&self, now: &SystemState<'a, C::Mechanism>) -> RockingState {
         let Phase::Rocking(Swing { sway, link, .. }) = now.mode else {
             return RockingState::zeros();
         };
@@ -315,7 +319,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         RockingState::new(coordinate, slope / span, work)
     }
 
-    fn scale(&self, now: &Moment<'a, C::Mechanism>) -> RockingState {
+    fn scale(&self, now: &SystemState<'a, C::Mechanism>) -> RockingState {
         let Phase::Rocking(Swing { link, .. }) = now.mode else {
             return RockingState::repeat(1.0);
         };
@@ -324,7 +328,11 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         RockingState::new(reach_rad, rate_rad_s, energy)
     }
 
-    fn step_sizes_s(&self, now: &Moment<'a, C::Mechanism>, relative_tolerance: f64) -> (f64, f64) {
+    fn step_sizes_s(
+        &self,
+        now: &SystemState<'a, C::Mechanism>,
+        relative_tolerance: f64,
+    ) -> (f64, f64) {
         let Phase::Rocking(Swing { link, .. }) = now.mode else {
             return (f64::INFINITY, f64::INFINITY);
         };
@@ -356,7 +364,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn guard_value(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> (f64, f64) {
+    fn guard_value(&self, guard: Guard, now: &SystemState<'a, C::Mechanism>) -> (f64, f64) {
         let piece = self.piece(now.piece);
         let (q, rate) = (now.state[0], now.state[1]);
         match (guard, now.mode) {
@@ -375,7 +383,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn fired_at_once(&self, now: &Moment<'a, C::Mechanism>) -> Option<Guard> {
+    fn fired_at_once(&self, now: &SystemState<'a, C::Mechanism>) -> Option<Guard> {
         match now.mode {
             Phase::Rest => {
                 let fired = |guard: &Guard| self.guard_value(*guard, now).0 < 0.0;
@@ -391,7 +399,11 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         }
     }
 
-    fn reset(&self, guard: Guard, now: &Moment<'a, C::Mechanism>) -> (Self::Mode, RockingState) {
+    fn reset(
+        &self,
+        guard: Guard,
+        now: &SystemState<'a, C::Mechanism>,
+    ) -> (Self::Mode, RockingState) {
         let work = now.state[2];
         let still = RockingState::new(0.0, 0.0, work);
         match (guard, now.mode) {

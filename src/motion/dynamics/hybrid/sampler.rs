@@ -7,8 +7,8 @@ use nalgebra::Vector2;
 
 use super::engine::{HybridSystem, task};
 use super::integrator::{Step, integrate};
-use super::posture::{Now, posture, state};
-use super::rocking::{Moment, Phase, Rocking, RockingState};
+use super::posture::{StructureState, posture, state};
+use super::rocking::{Phase, Rocking, RockingState, SystemState};
 use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::history::{Cost, OpenHinge, Sample, State};
 use crate::dynamics::recorder::Recorder;
@@ -71,7 +71,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         self.recorder.sample(sample)
     }
 
-    fn sample(&mut self, now: &Now<'a, C>) -> Sample {
+    fn sample(&mut self, now: &StructureState<'a, C>) -> Sample {
         let rocking = self.rocking;
         let mut sample = mem::take(&mut self.spare);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
@@ -112,7 +112,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     }
 
     /// Takes the samples of a step.
-    pub(super) fn step(&mut self, from: &Now<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+    pub(super) fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
             let state = self.rocking.between(step, time_s);
@@ -128,9 +128,9 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     }
 
     /// Takes the last sample, at the end of the simulation.
-    pub(super) fn finish(&mut self, now: &Now<'a, C>) -> ControlFlow<()> {
+    pub(super) fn finish(&mut self, now: &StructureState<'a, C>) -> ControlFlow<()> {
         let piece = self.rocking.ground.piece_at(now.time_s);
-        let last = self.sample(&Moment { piece, ..*now });
+        let last = self.sample(&SystemState { piece, ..*now });
         // Replace a sample that differs from the end only by rounding error.
         if let Some(held) = self.held.take()
             && held.time_s < now.time_s - 1e-9 * self.output_step_s
@@ -142,7 +142,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
 
     /// Computes the fall of an overturned mechanism if the recorder wants it. The hinges stay the same, also beyond the limit position, where the
     /// first of them begins to close.
-    pub(super) fn follow_fall(&mut self, from: &Now<'a, C>) {
+    pub(super) fn follow_fall(&mut self, from: &StructureState<'a, C>) {
         let rocking = self.rocking;
         let Phase::Overturned(swing) = from.mode else {
             return;
@@ -154,7 +154,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         self.output_step_s = every_s;
         self.next = (from.time_s / every_s) as u64 + 1;
         let until_s = from.time_s + fall::LONGEST_S;
-        let mut now = Moment {
+        let mut now = SystemState {
             mode: Phase::Rocking(swing),
             ..*from
         };
@@ -167,7 +167,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             now.piece = piece;
             let end_s = motion.end_s.min(until_s);
             let task = task(rocking, &now, end_s, FALL_TOLERANCE);
-            let overturned = Moment { piece, ..*from };
+            let overturned = SystemState { piece, ..*from };
             let watch = |step: &Step<3>| {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::engine::{HybridSystem, Observer, Settings, Transition, falling_root, simulate};
 use super::integrator::Step;
-use super::posture::{Now, posture, seen_from_ground, state};
+use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::Sampler;
 use crate::dynamics::ground::GroundMotion;
@@ -121,7 +121,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     };
     let every_s = request.output_step_s;
     let energy = |swing: Swing<'_, C::Mechanism>| rocking.energy(swing.link, &state);
-    let mut tally = Tally {
+    let mut collector = SummaryCollector {
         rocking: &rocking,
         sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
         impacts: 0,
@@ -131,17 +131,17 @@ fn history_of<C: MechanismChain + MechanismModel>(
         energy_without_work: mode.swing().map_or(0.0, energy),
         largest_defect: 0.0,
     };
-    tally.note_peak(mode, &state);
-    let finish = simulate(&rocking, mode, state, &settings, &mut tally);
+    collector.note_peak(mode, &state);
+    let finish = simulate(&rocking, mode, state, &settings, &mut collector);
     let finish = finish.map_err(SimulationError::computation)?;
     let now = &finish.now;
-    if let Some(sampler) = tally.sampler.as_mut().filter(|_| !finish.stopped) {
+    if let Some(sampler) = collector.sampler.as_mut().filter(|_| !finish.stopped) {
         // The history ends here in any case.
         let _ = sampler.finish(now);
         sampler.follow_fall(now);
     }
-    tally.note_peak(now.mode, &now.state);
-    tally.check_energy(now.mode, &now.state);
+    collector.note_peak(now.mode, &now.state);
+    collector.check_energy(now.mode, &now.state);
     let may_overturn = |swing: Swing<'_, C::Mechanism>| {
         rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
     };
@@ -150,25 +150,25 @@ fn history_of<C: MechanismChain + MechanismModel>(
         _ if now.time_s < ground.end_s() => Outcome::Incomplete,
         Phase::Rocking(swing) if may_overturn(swing) => Outcome::Incomplete,
         Phase::Rocking(_) => Outcome::StillRocking,
-        Phase::Rest if tally.last_rest_s.is_some() => Outcome::Rest,
+        Phase::Rest if collector.last_rest_s.is_some() => Outcome::Rest,
         Phase::Rest => Outcome::NeverMoved,
     };
-    let (mut outcome_time_s, mut peaks) = (now.time_s, tally.peaks);
-    match (now.mode, tally.last_passage, tally.last_rest_s) {
+    let (mut outcome_time_s, mut peaks) = (now.time_s, collector.peaks);
+    match (now.mode, collector.last_passage, collector.last_rest_s) {
         (Phase::Overturned(_), Some(passage), _) => (outcome_time_s, peaks) = passage,
         (Phase::Rest, _, Some(time_s)) => outcome_time_s = time_s,
         _ => {}
     }
     let (peak_rotations_rad, peak_over_critical) = peaks;
-    let sampler = tally.sampler.as_ref();
+    let sampler = collector.sampler.as_ref();
     let demanding = sampler.filter(|sampler| sampler.recorder.wants_demand());
     Ok(Summary {
         outcome,
         outcome_time_s,
         end_s: now.time_s,
-        impacts: tally.impacts,
+        impacts: collector.impacts,
         peak_rotations_rad,
-        energy_defect_ratio: tally.largest_defect / rocking.barrier,
+        energy_defect_ratio: collector.largest_defect / rocking.barrier,
         thrust: demanding.map(|sampler| match outcome {
             Outcome::Overturned(_) => sampler.thrust_before_critical,
             _ => sampler.thrust,
@@ -304,7 +304,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
 }
 
 /// Collects the data of a summary, and takes samples for a recorder.
-struct Tally<'r, 'a, C: MechanismChain> {
+struct SummaryCollector<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
     sampler: Option<Sampler<'r, 'a, C>>,
     impacts: usize,
@@ -318,7 +318,7 @@ struct Tally<'r, 'a, C: MechanismChain> {
     largest_defect: f64,
 }
 
-impl<C: MechanismChain> Tally<'_, '_, C> {
+impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
     /// Updates the peaks. All rotations increase with `q`, so the largest occur at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {
@@ -365,8 +365,8 @@ impl<C: MechanismChain> Tally<'_, '_, C> {
     }
 }
 
-impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for Tally<'_, 'a, C> {
-    fn step(&mut self, from: &Now<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for SummaryCollector<'_, 'a, C> {
+    fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
         self.note_step(from.mode, step);
         let sampler = self.sampler.as_mut();
         sampler.map_or(ControlFlow::Continue(()), |one| one.step(from, step))

@@ -55,7 +55,7 @@ pub struct Course<'a> {
     /// True once a joint has opened or slipped; for elastic joints, once the row has moved with more energy than at rest.
     pub moved: bool,
     /// For elastic joints: true once a joint has opened beyond its state at rest, or slipped. `None` for rigid joints.
-    pub rocks: Option<bool>,
+    pub has_rocked: Option<bool>,
     /// Sway times mass, in kg m, below which the side of the motion does not change.
     pub least_sway_kg_m: f64,
     /// Weight times size, in J.
@@ -68,7 +68,7 @@ pub struct Course<'a> {
     pub cost: Cost,
     peak_rotations_rad: Vec<f64>,
     energy_defect_ratio: f64,
-    pub of_row: RowSummary,
+    pub row_summary: RowSummary,
     /// Results for elastic joints.
     pub elastic: ElasticSummary,
     /// Longest step from now on, in seconds.
@@ -81,9 +81,9 @@ pub struct Course<'a> {
     /// Time since which the kinetic energy is small, in seconds.
     pub quiet_since_s: f64,
     /// Potential energy below which the row has overturned, in J; minus infinity if the stepper uses other criteria.
-    fallen: f64,
+    overturned_below_j: f64,
     /// Results up to the last time from which the row may have fallen without return.
-    before_fall: UpTo,
+    before_fall: PartialResults,
     cycle: Option<HalfCycle>,
     cycle_energy: Option<f64>,
     rising: bool,
@@ -97,18 +97,18 @@ pub struct Course<'a> {
     /// True once the recorder has stopped the history.
     pub(super) stopped: bool,
     /// True once the history is complete and the fall is computed.
-    pub(super) falls: bool,
+    pub(super) is_falling: bool,
     /// Sample, reused to avoid allocations.
     pub(super) sample: Sample,
     phase: usize,
     /// Events held back until an impact is reported; `None` if no impact is pending.
-    later: Option<Vec<Event>>,
+    pending_events: Option<Vec<Event>>,
     thrust: ThrustRecord,
 }
 
 /// Results up to a time.
 #[derive(Clone, Default)]
-struct UpTo {
+struct PartialResults {
     time_s: f64,
     peak_rotations_rad: Vec<f64>,
     impacts: usize,
@@ -140,16 +140,16 @@ impl Summit {
 }
 
 /// Returns right for a positive value, left for any other.
-pub(super) fn towards(value: f64) -> Sway {
+pub(super) fn side_of(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
 
 impl<'a> Course<'a> {
-    /// Returns the record of a motion that begins. `fallen` is the potential energy in J below which the row has overturned; `None` if the stepper
+    /// Returns the record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if the stepper
     /// uses other criteria.
     pub fn new(
         task: Task<'a>,
-        fallen: Option<f64>,
+        overturned_below_j: Option<f64>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
         let Task { row, settings, .. } = task;
@@ -161,7 +161,7 @@ impl<'a> Course<'a> {
             kinetic: 0.0,
             sway: 0.0,
             moved: false,
-            rocks: None,
+            has_rocked: None,
             least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
             energy_unit,
             shut: Vec::new(),
@@ -171,11 +171,11 @@ impl<'a> Course<'a> {
             summit: Summit::new(0.0, start_s),
             overturned: false,
             quiet_since_s: start_s,
-            fallen: fallen.unwrap_or(f64::NEG_INFINITY),
-            before_fall: UpTo {
+            overturned_below_j: overturned_below_j.unwrap_or(f64::NEG_INFINITY),
+            before_fall: PartialResults {
                 time_s: start_s,
                 peak_rotations_rad: vec![0.0; row.blocks.len()],
-                ..UpTo::default()
+                ..PartialResults::default()
             },
             cycle: None,
             cycle_energy: None,
@@ -186,16 +186,16 @@ impl<'a> Course<'a> {
             recent_from_s: start_s,
             is_safe: false,
             stopped: false,
-            falls: false,
+            is_falling: false,
             sample: Sample::default(),
             phase: 0,
-            later: None,
+            pending_events: None,
             thrust: ThrustRecord::default(),
             impacts: 0,
             peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
             cost: Cost::default(),
-            of_row: RowSummary {
+            row_summary: RowSummary {
                 least_normal_n: f64::INFINITY,
                 longest_step_s: settings.longest_step_s,
                 shortest_step_s: settings.shortest_step_s,
@@ -214,28 +214,43 @@ impl<'a> Course<'a> {
     ) -> Option<(Outcome, f64)> {
         let time = self.time;
         if self.stopped {
-            return Some((self.standing().unwrap_or(Outcome::StillRocking), time));
+            return Some((
+                self.outcome_with_closed_joints()
+                    .unwrap_or(Outcome::StillRocking),
+                time,
+            ));
         }
         if let Some(time_s) = overturned_s {
-            return Some((Outcome::Overturned(towards(self.sway)), time_s));
+            return Some((Outcome::Overturned(side_of(self.sway)), time_s));
         }
         if time >= self.task.ground.end_s()
             && let Some(time_s) = rests_since()
         {
             let rest = (Outcome::Rest, time_s);
-            return Some(self.standing().map_or(rest, |standing| (standing, time)));
+            return Some(
+                self.outcome_with_closed_joints()
+                    .map_or(rest, |standing| (standing, time)),
+            );
         }
         let over = time >= self.task.settings.end_s;
-        over.then(|| (self.standing().unwrap_or(Outcome::StillRocking), time))
+        over.then(|| {
+            (
+                self.outcome_with_closed_joints()
+                    .unwrap_or(Outcome::StillRocking),
+                time,
+            )
+        })
     }
 
     /// Returns the outcome while no joint has opened or slipped; `None` afterwards.
-    fn standing(&self) -> Option<Outcome> {
+    fn outcome_with_closed_joints(&self) -> Option<Outcome> {
         let least_j = REST_ENERGY_RATIO * self.energy_unit;
-        match self.rocks {
+        match self.has_rocked {
             None => (!self.moved).then_some(Outcome::NeverMoved),
             Some(true) => None,
-            Some(false) if self.of_row.largest_kinetic_j < least_j => Some(Outcome::NeverMoved),
+            Some(false) if self.row_summary.largest_kinetic_j < least_j => {
+                Some(Outcome::NeverMoved)
+            }
             Some(false) => Some(Outcome::Vibrates),
         }
     }
@@ -248,14 +263,14 @@ impl<'a> Course<'a> {
         let lies = |barrier_j: &f64| self.elastic.crushed_j <= SLIPPED_RATIO * barrier_j;
         let energy_ratio = match self.known_barrier_j().filter(lies) {
             Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
-            None => self.recent_j[0].max(self.recent_j[1]) / self.task.built_barrier_j,
+            None => self.recent_j[0].max(self.recent_j[1]) / self.task.undeformed_barrier_j,
         };
         self.time < self.task.ground.end_s() || energy_ratio > SAFE
     }
 
     /// Returns the energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
     fn known_barrier_j(&self) -> Option<f64> {
-        let sliding = self.of_row.sliding.as_ref();
+        let sliding = self.row_summary.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
         let known = |barrier_j: &f64| rubbed_j <= SLIPPED_RATIO * barrier_j;
         self.task.barrier_j.filter(known)
@@ -281,7 +296,7 @@ impl<'a> Course<'a> {
                 friction = friction.max(tangential.abs() / normal);
             }
         }
-        let least_n = &mut self.of_row.least_normal_n;
+        let least_n = &mut self.row_summary.least_normal_n;
         *least_n = least_n.min(least / lasts_s);
         friction
     }
@@ -298,11 +313,11 @@ impl<'a> Course<'a> {
 
     /// Returns the last time at which the row could still return, if its potential energy shows that it has overturned.
     pub fn fallen_s(&self, potential: f64) -> Option<f64> {
-        (potential < self.fallen).then_some(self.highest_s)
+        (potential < self.overturned_below_j).then_some(self.highest_s)
     }
 
     /// Returns whether there is a recorder.
-    pub const fn is_followed(&self) -> bool {
+    pub const fn has_recorder(&self) -> bool {
         self.recorder.is_some()
     }
 
@@ -317,10 +332,10 @@ impl<'a> Course<'a> {
         self.note_peaks(rotations_rad);
         self.potential = potential;
         self.sway = sway;
-        self.of_row.largest_potential_j = potential.max(0.0);
+        self.row_summary.largest_potential_j = potential.max(0.0);
         self.moved = moved;
         self.rising = true;
-        self.note_return();
+        self.save_results_before_fall();
     }
 
     /// Updates peaks, half cycles and energies after a step, from the rotations of the blocks, the potential and kinetic energy, and the displacement
@@ -345,9 +360,9 @@ impl<'a> Course<'a> {
             self.quiet_since_s = self.time;
         }
         self.sway = sway;
-        let of_row = &mut self.of_row;
-        of_row.largest_potential_j = of_row.largest_potential_j.max(potential);
-        of_row.largest_kinetic_j = of_row.largest_kinetic_j.max(kinetic);
+        let row_summary = &mut self.row_summary;
+        row_summary.largest_potential_j = row_summary.largest_potential_j.max(potential);
+        row_summary.largest_kinetic_j = row_summary.largest_kinetic_j.max(kinetic);
         let recent_s = RECENT_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt();
         if self.time - self.recent_from_s > recent_s {
             self.recent_from_s = self.time;
@@ -355,7 +370,7 @@ impl<'a> Course<'a> {
         }
         self.recent_j[1] = self.recent_j[1].max(kinetic);
         if sway.abs() > self.least_sway_kg_m {
-            let side = towards(sway);
+            let side = side_of(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
                 self.end_cycle(Some(kinetic + potential));
                 self.cycle = Some(HalfCycle {
@@ -371,8 +386,8 @@ impl<'a> Course<'a> {
         {
             (cycle.peak_rad, cycle.peak_time_s) = (largest, self.time);
         }
-        if self.highest_s == self.time && self.fallen > f64::NEG_INFINITY {
-            self.note_return();
+        if self.highest_s == self.time && self.overturned_below_j > f64::NEG_INFINITY {
+            self.save_results_before_fall();
         }
     }
 
@@ -390,7 +405,7 @@ impl<'a> Course<'a> {
             summit.time = self.time;
         }
         if summit.time == self.time {
-            self.note_return();
+            self.save_results_before_fall();
         }
     }
 
@@ -401,52 +416,54 @@ impl<'a> Course<'a> {
     ) -> Vec<(usize, EventKind)> {
         let mut happened = Vec::new();
         for (index, (tie, memory)) in ties.enumerate() {
-            if let Some(known) = self.of_row.ties.get_mut(index) {
+            if let Some(known) = self.row_summary.ties.get_mut(index) {
                 let kinds = known.note(tie, &memory, self.time).into_iter().flatten();
                 happened.extend(kinds.map(|kind| (index, kind)));
             } else {
                 let at_rest = TieSummary::at_rest(tie, &memory, self.time);
-                self.of_row.ties.push(at_rest);
+                self.row_summary.ties.push(at_rest);
             }
         }
         happened
     }
 
     /// Records the results at this time, at which the row can still return.
-    pub fn note_return(&mut self) {
+    pub fn save_results_before_fall(&mut self) {
         let before_fall = &mut self.before_fall;
         before_fall.time_s = self.time;
         let peaks_rad = &self.peak_rotations_rad;
         before_fall.peak_rotations_rad.clone_from(peaks_rad);
         before_fall.impacts = self.impacts;
-        before_fall.half_cycles = self.of_row.half_cycles.len();
+        before_fall.half_cycles = self.row_summary.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
         before_fall.largest_stress = self.elastic.largest_stress;
-        if let Some(sliding) = &self.of_row.sliding {
+        if let Some(sliding) = &self.row_summary.sliding {
             let slips_m = &sliding.largest_offsets_m;
             before_fall.largest_slips_m.clone_from(slips_m);
         }
-        before_fall.ties.clone_from(&self.of_row.ties);
+        before_fall.ties.clone_from(&self.row_summary.ties);
     }
 
     /// Resets the results to those at the last time at which the row could still return.
-    fn take_back_the_fall(&mut self) {
+    fn restore_results_before_fall(&mut self) {
         let before_fall = mem::take(&mut self.before_fall);
         self.peak_rotations_rad = before_fall.peak_rotations_rad;
         self.impacts = before_fall.impacts;
-        self.of_row.half_cycles.truncate(before_fall.half_cycles);
+        self.row_summary
+            .half_cycles
+            .truncate(before_fall.half_cycles);
         self.cycle = None;
         if let Some(mut cycle) = before_fall.cycle {
             cycle.duration_s = before_fall.time_s - cycle.start_s;
-            self.of_row.half_cycles.push(cycle);
+            self.row_summary.half_cycles.push(cycle);
         }
         self.thrust = before_fall.thrust;
         self.elastic.largest_stress = before_fall.largest_stress;
-        if let Some(sliding) = &mut self.of_row.sliding {
+        if let Some(sliding) = &mut self.row_summary.sliding {
             sliding.largest_offsets_m = before_fall.largest_slips_m;
         }
-        for (tie, before) in self.of_row.ties.iter_mut().zip(before_fall.ties) {
+        for (tie, before) in self.row_summary.ties.iter_mut().zip(before_fall.ties) {
             tie.peak_force_n = before.peak_force_n;
             tie.peak_force_time_s = before.peak_force_time_s;
         }
@@ -471,7 +488,7 @@ impl<'a> Course<'a> {
             let energies = energy.zip(self.cycle_energy);
             let ratio = energies.map(|(after, before)| after / before);
             cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
-            self.of_row.half_cycles.push(cycle);
+            self.row_summary.half_cycles.push(cycle);
             self.cycle_energy = energy;
         }
     }
@@ -484,7 +501,7 @@ impl<'a> Course<'a> {
 
     /// Returns the largest error of the energy balance up to now, over the largest energy of the motion or `barrier_j`, whichever is larger.
     pub fn energy_error(&self, barrier_j: f64) -> f64 {
-        let kinetic_j = self.of_row.largest_kinetic_j;
+        let kinetic_j = self.row_summary.largest_kinetic_j;
         let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
         let defect_j = self.energy_defect_ratio * self.energy_unit;
         defect_j / kinetic_j.max(barrier_j).max(least_j)
@@ -492,16 +509,16 @@ impl<'a> Course<'a> {
 
     /// Halves the steps a few times at most, if the error of the energy balance is too large relative to `scale_j` and to another energy, which takes
     /// longer to compute.
-    pub fn mind_balance(&mut self, scale_j: f64, other_scale_j: impl FnOnce() -> f64) {
-        let part = HALVED_FROM.get(self.of_row.halvings as usize);
+    pub fn halve_unbalanced_steps(&mut self, scale_j: f64, other_scale_j: impl FnOnce() -> f64) {
+        let part = HALVED_FROM.get(self.row_summary.halvings as usize);
         let most = part.unwrap_or(&f64::INFINITY) * LARGEST_ENERGY_ERROR;
         if self.task.settings.may_halve
             && self.energy_error(scale_j) > most
             && self.energy_error(other_scale_j()) > most
         {
             self.longest_step_s *= 0.5;
-            self.of_row.halvings += 1;
-            let shortest_s = &mut self.of_row.shortest_step_s;
+            self.row_summary.halvings += 1;
+            let shortest_s = &mut self.row_summary.shortest_step_s;
             *shortest_s = shortest_s.min(self.longest_step_s);
         }
     }
@@ -530,7 +547,7 @@ impl<'a> Course<'a> {
         sample.energy_j = kinetic + self.potential;
         let ratio = |barrier_j| sample.energy_j / barrier_j;
         sample.energy_ratio = self.task.barrier_j.map(ratio);
-        if self.falls {
+        if self.is_falling {
             if let Some(recorder) = &mut self.recorder {
                 self.stopped = recorder.fall(sample).is_break();
             }
@@ -545,22 +562,22 @@ impl<'a> Course<'a> {
 
     /// Sends an event that begins a phase to the recorder. Events after a pending impact are held back until the impact is reported.
     pub(super) fn report(&mut self, event: &Event) {
-        if self.falls {
+        if self.is_falling {
             return;
         }
-        let later = match &mut self.later {
-            Some(later) if event.impact.is_none() => {
+        let pending_events = match &mut self.pending_events {
+            Some(pending_events) if event.impact.is_none() => {
                 self.phase += 1;
-                later.push(event.clone());
+                pending_events.push(event.clone());
                 return;
             }
-            later => later.take(),
+            pending_events => pending_events.take(),
         };
-        if later.is_none() {
+        if pending_events.is_none() {
             self.phase += 1;
         }
         if let Some(recorder) = &mut self.recorder {
-            for event in [event].into_iter().chain(later.iter().flatten()) {
+            for event in [event].into_iter().chain(pending_events.iter().flatten()) {
                 self.stopped |= recorder.event(event).is_break();
             }
         }
@@ -568,15 +585,15 @@ impl<'a> Course<'a> {
 
     /// Begins the phase of an impact that is reported after the next step, when its energy is known.
     pub fn await_impact(&mut self) {
-        if self.is_followed() && !self.falls {
+        if self.has_recorder() && !self.is_falling {
             self.phase += 1;
-            self.later = Some(Vec::new());
+            self.pending_events = Some(Vec::new());
         }
     }
 
     /// Subtracts energy that an impact at this time dissipated in the step after it, in J, from the energy of the half cycle that began with the
     /// impact.
-    pub fn took_late(&mut self, taken_j: f64) {
+    pub fn subtract_late_dissipation(&mut self, taken_j: f64) {
         if self.cycle.is_none_or(|cycle| cycle.start_s != self.time) {
             return;
         }
@@ -584,7 +601,7 @@ impl<'a> Course<'a> {
             return;
         };
         let before = mem::replace(energy, *energy - taken_j);
-        let ended = self.of_row.half_cycles.last_mut();
+        let ended = self.row_summary.half_cycles.last_mut();
         if let Some(ratio) = ended.and_then(|cycle| cycle.energy_ratio.as_mut()) {
             *ratio *= *energy / before;
         }
@@ -592,10 +609,10 @@ impl<'a> Course<'a> {
 
     /// Returns the summary, and reports the end if the row rests or has overturned.
     pub fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
-        self.of_row.half_cycles_with_fall =
-            self.of_row.half_cycles.len() + usize::from(self.cycle.is_some());
+        self.row_summary.half_cycles_with_fall =
+            self.row_summary.half_cycles.len() + usize::from(self.cycle.is_some());
         if let Outcome::Overturned(_) = outcome {
-            self.take_back_the_fall();
+            self.restore_results_before_fall();
         }
         self.end_cycle(None);
         let outcome = match outcome {
@@ -603,11 +620,11 @@ impl<'a> Course<'a> {
             _ if self.is_incomplete() => Outcome::Incomplete,
             _ => outcome,
         };
-        let potential_j = self.of_row.largest_potential_j;
+        let potential_j = self.row_summary.largest_potential_j;
         let over = |barrier_j: f64| potential_j / barrier_j;
-        self.of_row.peak_potential_over_barrier = self.known_barrier_j().map(over);
-        self.of_row.energy_error = self.energy_error(self.task.energy_scale_j);
-        let row = Box::new(self.of_row.clone());
+        self.row_summary.peak_potential_over_barrier = self.known_barrier_j().map(over);
+        self.row_summary.energy_error = self.energy_error(self.task.energy_scale_j);
+        let row = Box::new(self.row_summary.clone());
         let summary = Summary {
             outcome,
             outcome_time_s,
@@ -617,7 +634,7 @@ impl<'a> Course<'a> {
             energy_defect_ratio: self.energy_defect_ratio,
             thrust: self.recorder.is_some().then_some(self.thrust),
             cost: self.cost,
-            details: match self.rocks {
+            details: match self.has_rocked {
                 None => Details::Rigid(row),
                 Some(_) => Details::Elastic(row, self.elastic),
             },

@@ -115,7 +115,7 @@ impl RigidRow {
         if self.is_on_hinges() || !self.row.ties.is_empty() {
             return None;
         }
-        self.built_barrier_j(gravity_m_s2)
+        self.undeformed_barrier_j(gravity_m_s2)
     }
 
     /// Returns the task to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
@@ -126,14 +126,14 @@ impl RigidRow {
         gravity_m_s2: f64,
         settings: Settings,
     ) -> Task<'a> {
-        let built_j = self.built_barrier_j(gravity_m_s2);
+        let built_j = self.undeformed_barrier_j(gravity_m_s2);
         // If the feet move apart they do work, and the barrier is unknown.
         let parts = ground.right_foot_of(&self.row).is_some();
         let known = self.is_on_hinges() || self.row.ties.is_empty();
         let task = Task::new(&self.row, ground, gravity_m_s2, settings);
         Task {
             barrier_j: self.barrier_j(gravity_m_s2).filter(|_| !parts),
-            built_barrier_j: built_j.unwrap_or(task.built_barrier_j),
+            undeformed_barrier_j: built_j.unwrap_or(task.undeformed_barrier_j),
             energy_scale_j: built_j.filter(|_| known).unwrap_or(0.0),
             ..task
         }
@@ -144,7 +144,7 @@ impl RigidRow {
         self.standing.placement.open_corners() > 0
     }
 
-    fn built_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
+    fn undeformed_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         match (&self.first, &self.row.blocks[..], &self.row.joints[..]) {
             (Some(row), ..) => {
                 let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use nalgebra::Vector2;
 
 use super::clock::Marks;
-use super::course::{Course, towards};
+use super::course::{Course, side_of};
 use super::error::RowMotionError;
 use crate::dynamics::fall::{self, FallEnd};
 use crate::dynamics::history::{
@@ -26,7 +26,7 @@ pub trait Stepper<'a>: Sized {
     /// the kinetic energy in J.
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError>;
     /// Returns the rotations of the blocks, and their rates after the last step.
-    fn turns(&self) -> impl Iterator<Item = (f64, f64)>;
+    fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)>;
     /// Returns the gaps of a joint at intrados and extrados, in metres.
     fn gaps(&self, joint: usize) -> [f64; 2];
     /// Returns the current or last position of contact of a joint at an edge, in metres.
@@ -50,7 +50,7 @@ pub trait Stepper<'a>: Sized {
     /// Returns the side of the centre of gravity; in its undeformed position, the direction of its velocity.
     fn heading(&self) -> Sway {
         let sway = self.course().sway;
-        towards(if sway == 0.0 { self.momentum().x } else { sway })
+        side_of(if sway == 0.0 { self.momentum().x } else { sway })
     }
 
     /// Returns the state of a row in motion.
@@ -62,11 +62,16 @@ pub trait Stepper<'a>: Sized {
     }
 
     /// Reports the first opening of joints. At `time_s` all joints were still closed; energy, rotations and rates are those at that time.
-    fn report_uplift(&mut self, time_s: f64, energy_j: f64, turns: (Vec<f64>, Vec<f64>)) {
-        if !self.course().is_followed() {
+    fn report_uplift(
+        &mut self,
+        time_s: f64,
+        energy_j: f64,
+        rotations_and_rates: (Vec<f64>, Vec<f64>),
+    ) {
+        if !self.course().has_recorder() {
             return;
         }
-        let (rotations_rad, rates_rad_s) = turns;
+        let (rotations_rad, rates_rad_s) = rotations_and_rates;
         let event = Event {
             rotations_rad,
             rates_rad_s,
@@ -86,7 +91,7 @@ pub trait Stepper<'a>: Sized {
         friction_j: Option<f64>,
     ) {
         let course = self.course();
-        if !course.is_followed() {
+        if !course.has_recorder() {
             return;
         }
         let opens_at_once = |joint: usize| {
@@ -128,7 +133,7 @@ pub trait Stepper<'a>: Sized {
     /// Reports events of ties in the last step.
     fn report_ties(&mut self, happened: Vec<(usize, EventKind)>) {
         for (tie, kind) in happened {
-            if self.course().is_followed() {
+            if self.course().has_recorder() {
                 let tie = Some(tie);
                 let event = self.event(kind, self.course().moved);
                 self.course_mut().report(&Event { tie, ..event });
@@ -139,7 +144,7 @@ pub trait Stepper<'a>: Sized {
     /// Returns an event at the current time; `moves` is false if the row rests.
     fn event(&self, kind: EventKind, moves: bool) -> Event {
         let course = self.course();
-        let (rotations_rad, rates_rad_s) = self.turns().unzip();
+        let (rotations_rad, rates_rad_s) = self.rotations_and_rates().unzip();
         let joints = 0..course.task.row.joints.len();
         let state = if moves { self.moving() } else { State::Rest };
         Event {
@@ -155,7 +160,7 @@ pub trait Stepper<'a>: Sized {
     fn sample(&mut self) -> Result<(), RowMotionError> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
-        let rotations = self.turns().map(|(rotation, _)| rotation);
+        let rotations = self.rotations_and_rates().map(|(rotation, _)| rotation);
         sample.rotations_rad.extend(rotations);
         for joint in 0..self.course().task.row.joints.len() {
             let gaps = self.gaps(joint);
@@ -184,7 +189,7 @@ where
     let settings = stepper.course().task.settings;
     let mut marks = Marks::new(settings, stepper.course().time);
     let mut sampled_s = None;
-    let samples_are_made = settings.output_step_s.is_some() && stepper.course().is_followed();
+    let samples_are_made = settings.output_step_s.is_some() && stepper.course().has_recorder();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
     let (outcome, outcome_time_s) = loop {
         let course = stepper.course();
@@ -210,7 +215,7 @@ where
     }
     stepper.complete();
     let course = stepper.course_mut();
-    course.of_row.longest_step = Elapsed(longest_step);
+    course.row_summary.longest_step = Elapsed(longest_step);
     let summary = course.end(outcome, outcome_time_s);
     if let Outcome::Overturned(_) = outcome {
         follow_fall(&mut stepper);
@@ -225,7 +230,7 @@ fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
     if !course.recorder.as_ref().is_some_and(wanted) {
         return;
     }
-    course.falls = true;
+    course.is_falling = true;
     let mut marks = Marks::of_fall(course.task.settings, course.time);
     let end = fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
     if let Some(recorder) = &mut stepper.course_mut().recorder {

@@ -17,7 +17,7 @@ pub struct Task<'a> {
     /// Energy in J that the first mechanism needs to overturn; `None` if unknown.
     pub barrier_j: Option<f64>,
     /// Energy barrier of the undeformed row with rigid joints and without ties, in J; an estimate if unknown.
-    pub built_barrier_j: f64,
+    pub undeformed_barrier_j: f64,
     /// Scale of errors of the energy balance, in J, if the motion has less energy.
     pub energy_scale_j: f64,
 }
@@ -36,7 +36,7 @@ impl<'a> Task<'a> {
             gravity_m_s2,
             settings,
             barrier_j: None,
-            built_barrier_j: estimated_barrier_j(row, gravity_m_s2),
+            undeformed_barrier_j: estimated_barrier_j(row, gravity_m_s2),
             energy_scale_j: 0.0,
         }
     }

@@ -114,7 +114,7 @@ pub struct Memory<R> {
     /// Elastic shear force, in N.
     pub shear_n: R,
     /// Permanent slip, in m.
-    pub slipped_m: R,
+    pub permanent_slip_m: R,
     /// Normal forces of damping at the edges, in N.
     viscous_n: [R; 2],
     /// Shear force of damping, in N.
@@ -130,12 +130,12 @@ pub struct Fibre<R> {
     force_m: R,
 }
 
-remembered!(Memory { slip_m, shear_n, slipped_m, viscous_shear_n; penetrations_m, viscous_n });
+remembered!(Memory { slip_m, shear_n, permanent_slip_m, viscous_shear_n; penetrations_m, viscous_n });
 remembered!(Fibre { crushed_m, force_m });
 
 /// Normal forces of a joint, and the energy dissipated with them.
 #[derive(Clone, Copy, Debug)]
-pub struct Pressing<R> {
+pub struct NormalForces<R> {
     /// Statically equivalent normal forces at the edges, in N.
     pub edges_n: [R; 2],
     /// Energy dissipated by damping in the step, in J, by the trapezoidal rule.
@@ -146,7 +146,7 @@ pub struct Pressing<R> {
 
 /// Shear force of a joint, and the energy dissipated with it.
 #[derive(Clone, Copy, Debug)]
-pub struct Rubbing<R> {
+pub struct ShearForce<R> {
     /// Shear force, in N.
     pub shear_n: R,
     /// Energy dissipated by damping in the step, in J.
@@ -169,32 +169,32 @@ pub struct ElasticJoint {
     /// Shear stiffness of the closed joint, in N/m.
     pub shear_n_m: f64,
     /// Penetration at which the joint crushes, in m; infinite without crushing.
-    pub strength_m: f64,
+    pub crushing_penetration_m: f64,
     /// Area of the joint, in m2.
     pub area_m2: f64,
 }
 
 /// Contact law of all joints of a structure.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Law {
+pub(crate) struct ContactLaw {
     pub section: Section,
     pub crushes: bool,
     /// Coefficient of friction, and a constant added to the bound of the shear force: zero, or infinity to prevent slip.
     pub friction: [f64; 2],
 }
 
-impl Law {
+impl ContactLaw {
     /// Computes the normal forces of a joint for a gap, and updates the state of the joint. `damping` is the damping time over the length of the
     /// step.
     #[inline(always)]
-    pub fn press<R: Real>(
+    pub fn normal_forces<R: Real>(
         &self,
         joint: &ElasticJoint,
         damping: Option<R>,
         gap: &Gap<R>,
         memory: &mut Memory<R>,
         fibres: &mut [Fibre<R>],
-    ) -> Pressing<R> {
+    ) -> NormalForces<R> {
         let zero = R::of(0.0);
         let p = gap.penetrations_m;
         let moved = both!(end: p[end] - memory.penetrations_m[end]);
@@ -203,22 +203,22 @@ impl Law {
             clippy::manual_map,
             reason = "in functions as large as a step the compiler leaves calls of closures"
         )]
-        let brakes = match damping {
+        let damping_m = match damping {
             Some(damping) => Some(both!(end: moved[end] * damping)),
             None => None,
         };
-        let limit = self.crushes.then_some(joint.strength_m);
+        let limit = self.crushes.then_some(joint.crushing_penetration_m);
         let (elastic, total, crushed) = match &self.section {
             Section::Whole => {
-                let elastic = pressed(p);
-                let total = match brakes {
-                    Some(b) => braked(p, both!(end: p[end] + b[end])),
+                let elastic = compressive_forces(p);
+                let total = match damping_m {
+                    Some(b) => damped_compressive_forces(p, both!(end: p[end] + b[end])),
                     None => elastic,
                 };
                 (elastic, total, zero)
             }
-            Section::Cells(nodes) => in_cells(nodes, limit, p, brakes, fibres),
-            Section::Points(points) => at_points(points, limit, p, brakes, fibres),
+            Section::Cells(nodes) => in_cells(nodes, limit, p, damping_m, fibres),
+            Section::Points(points) => at_points(points, limit, p, damping_m, fibres),
         };
         let k = joint.normal_n_m * (1.0 / 6.0);
         let mut damped_j = zero;
@@ -229,7 +229,7 @@ impl Law {
             damped_j = (taken[0] + taken[1]) * 0.5;
             memory.viscous_n = viscous;
         }
-        Pressing {
+        NormalForces {
             edges_n: both!(end: total[end] * k),
             damped_j,
             crushed_j: crushed * k,
@@ -238,14 +238,14 @@ impl Law {
 
     /// Computes the shear force of a joint for a gap and given normal forces at the edges, and updates the state of the joint.
     #[inline(always)]
-    pub(crate) fn rub<R: Real>(
+    pub(crate) fn shear_force<R: Real>(
         &self,
         joint: &ElasticJoint,
         damping: Option<R>,
         gap: &Gap<R>,
         edges_n: [R; 2],
         memory: &mut Memory<R>,
-    ) -> Rubbing<R> {
+    ) -> ShearForce<R> {
         let [coefficient, lock] = self.friction;
         let bound = (edges_n[0] + edges_n[1]) * coefficient + R::of(lock);
         let kt = joint.shear_n_m;
@@ -265,8 +265,8 @@ impl Law {
         }
         memory.slip_m = gap.slip_m;
         memory.shear_n = elastic;
-        memory.slipped_m += slipped;
-        Rubbing {
+        memory.permanent_slip_m += slipped;
+        ShearForce {
             shear_n,
             damped_j,
             friction_j,
@@ -289,7 +289,7 @@ type Sums<R> = ([R; 2], [R; 2], R);
 fn fibre<R: Real>(
     at: f64,
     p: [R; 2],
-    brakes: Option<[R; 2]>,
+    damping_m: Option<[R; 2]>,
     limit: Option<f64>,
     memory: &mut Fibre<R>,
 ) -> (R, R, R) {
@@ -301,8 +301,8 @@ fn fibre<R: Real>(
         q -= over;
     }
     let mut v = q;
-    if let Some(brakes) = brakes {
-        v += brakes[0] * (1.0 - at) + brakes[1] * at;
+    if let Some(damping_m) = damping_m {
+        v += damping_m[0] * (1.0 - at) + damping_m[1] * at;
     }
     if let Some(limit) = limit {
         v = v.min(R::of(limit));
@@ -315,7 +315,7 @@ fn at_points<R: Real>(
     points: &[[f64; 2]],
     limit: Option<f64>,
     p: [R; 2],
-    brakes: Option<[R; 2]>,
+    damping_m: Option<[R; 2]>,
     fibres: &mut [Fibre<R>],
 ) -> Sums<R> {
     let zero = R::of(0.0);
@@ -324,7 +324,7 @@ fn at_points<R: Real>(
     while index < points.len() {
         let ([at, share], memory) = (points[index], &mut fibres[index]);
         index += 1;
-        let (q, v, over) = fibre(at, p, brakes, limit, memory);
+        let (q, v, over) = fibre(at, p, damping_m, limit, memory);
         let share = 6.0 * share;
         let elastic = q.max(zero) * share;
         let total = q.positive(v.max(zero), zero) * share;
@@ -342,7 +342,7 @@ fn in_cells<R: Real>(
     nodes: &[f64],
     limit: Option<f64>,
     p: [R; 2],
-    brakes: Option<[R; 2]>,
+    damping_m: Option<[R; 2]>,
     fibres: &mut [Fibre<R>],
 ) -> Sums<R> {
     let zero = R::of(0.0);
@@ -353,17 +353,17 @@ fn in_cells<R: Real>(
     let mut index = 0;
     while index <= nodes.len() {
         let (at, here) = match nodes.get(index) {
-            Some(&at) => (at, fibre(at, p, brakes, limit, &mut fibres[index])),
+            Some(&at) => (at, fibre(at, p, damping_m, limit, &mut fibres[index])),
             None => before,
         };
         if index > 0 {
             let (left, (q, v, over)) = before;
             let width = at - left;
             let ends = [q, here.0];
-            let elastic = pressed(ends);
-            let total = match brakes {
+            let elastic = compressive_forces(ends);
+            let total = match damping_m {
                 None => elastic,
-                Some(_) => braked(ends, [v, here.1]),
+                Some(_) => damped_compressive_forces(ends, [v, here.1]),
             };
             let elastic = both!(end: elastic[end] * width);
             let total = both!(end: total[end] * width);
@@ -401,7 +401,7 @@ fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
 
 /// Returns six times the end forces that are equivalent to a stress on a part of the length, linear between the values `low` and `high`.
 #[inline(always)]
-fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
+fn end_forces<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     let (part, sum) = (to - from, from + to);
     let whole = (low + high) * 3.0;
     let at_one = low * (from + sum) + high * (to + sum);
@@ -410,20 +410,20 @@ fn amount<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
 
 /// Returns six times the end forces of the compressive part of a stress that is linear between the ends.
 #[inline(always)]
-fn pressed<R: Real>(ends: [R; 2]) -> [R; 2] {
+fn compressive_forces<R: Real>(ends: [R; 2]) -> [R; 2] {
     let zero = R::of(0.0);
-    amount(positive_part(ends), both!(end: ends[end].max(zero)))
+    end_forces(positive_part(ends), both!(end: ends[end].max(zero)))
 }
 
 /// Returns six times the end forces of a second linear stress, over the part where both stresses are compressive.
 #[inline(always)]
-fn braked<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
+fn damped_compressive_forces<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));
     let from = touching[0].max(pressing[0]);
     let to = touching[1].min(pressing[1]).max(from);
     let (ends, slope) = ([from, to], stress[1] - stress[0]);
     let presses = both!(end: (stress[0] + slope * ends[end]).max(R::of(0.0)));
-    amount(ends, presses)
+    end_forces(ends, presses)
 }
 
 /// Returns the energy of the compressive part.

@@ -10,7 +10,7 @@ use crate::mechanics::lanes::{Dual, Lanes, Real};
 use crate::mechanics::tie::TieMemory;
 
 /// Number type of a single motion.
-type Alone = Lanes<1>;
+type SingleLane = Lanes<1>;
 
 /// Structure in equilibrium.
 #[derive(Clone, Debug)]
@@ -18,13 +18,13 @@ pub struct Rest {
     /// Displacements (m) and rotations (rad) of the bodies.
     pub moved: Vec<[f64; 3]>,
     /// Displacements (m) and rotations (rad) under the weight alone, on supports in their original position.
-    pub bent: Vec<[f64; 3]>,
+    pub self_weight_displacements: Vec<[f64; 3]>,
     /// States of the joints.
-    pub memories: Vec<Memory<Alone>>,
+    pub memories: Vec<Memory<SingleLane>>,
     /// States of crushing at the positions along the joints, joint by joint.
-    pub fibres: Vec<Fibre<Alone>>,
+    pub fibres: Vec<Fibre<SingleLane>>,
     /// States of the ties.
-    pub ties: Vec<TieMemory<Alone>>,
+    pub ties: Vec<TieMemory<SingleLane>>,
     /// Unbalanced force over the weight.
     pub unbalanced: f64,
     /// Number of Newton steps.
@@ -68,7 +68,7 @@ pub enum RestError {
         number = .0 + 1,
         part = 1e2 * .1
     )]
-    TieOnTheWay(usize, f64),
+    TieDuringMovement(usize, f64),
     /// No equilibrium was found.
     #[error("no equilibrium was found under the weight of the structure")]
     NotFound,
@@ -149,7 +149,7 @@ impl ElasticStructure {
     /// Finds the equilibrium after a slow movement of the supports, from the equilibrium `built` before it. The movement is divided into steps; each
     /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. The plastic elongation of ties remains.
     fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
-        let bent = built.bent.clone();
+        let self_weight_displacements = built.self_weight_displacements.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
         // A common displacement of both supports causes no forces.
@@ -175,7 +175,7 @@ impl ElasticStructure {
                 }
                 None => here.moved.clone(),
             };
-            let on_way = self.on_part_of_the_way(next);
+            let on_way = self.at_movement_fraction(next);
             let most_m = (FARTHEST * (next - part) * extent_m).max(NOT_FAR * length_m);
             let near = |rest: &Rest| {
                 let moved = rest.moved.iter().zip(&here.moved);
@@ -194,7 +194,7 @@ impl ElasticStructure {
                 continue;
             };
             if let Some(tie) = found.broken_tie() {
-                return Err(RestError::TieOnTheWay(tie, next));
+                return Err(RestError::TieDuringMovement(tie, next));
             }
             if found.steps - here.steps <= QUICK_STEPS {
                 stride = (1.5 * stride).min(longest);
@@ -202,7 +202,7 @@ impl ElasticStructure {
             before = Some((part, here.moved));
             (here, part) = (found, next);
         }
-        here.bent = bent;
+        here.self_weight_displacements = self_weight_displacements;
         Ok(here)
     }
 
@@ -246,8 +246,8 @@ impl ElasticStructure {
         }
         let load_m_s2 = [0.0, -gravity_m_s2];
         let rest_j = Search::new(self, load_m_s2).energy_j(rest);
-        if let Some(pass_j) = self.pass_j(rest, gravity_m_s2) {
-            return Some(pass_j - rest_j);
+        if let Some(summit_j) = self.summit_j(rest, gravity_m_s2) {
+            return Some(summit_j - rest_j);
         }
         // With moved supports the state depends on the path, which is different for softer joints.
         if self.law.crushes || self.has_settled() {
@@ -259,14 +259,14 @@ impl ElasticStructure {
             if step > 0 {
                 softer = softer.stiffness_times(1.0 / RAISED);
             }
-            let pass_j = softer.pass_j(&softer.balanced(load_m_s2)?, gravity_m_s2)?;
-            Some(pass_j - rest_j).filter(|barrier_j| *barrier_j > 0.0)
+            let summit_j = softer.summit_j(&softer.balanced(load_m_s2)?, gravity_m_s2)?;
+            Some(summit_j - rest_j).filter(|barrier_j| *barrier_j > 0.0)
         })
     }
 
     /// Returns the energy in J, above that of the undeformed structure, at the top of the lower one of the paths to the right and to the left.
-    fn pass_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
-        let to = |sense| self.pass_towards_j(rest, gravity_m_s2, sense);
+    fn summit_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+        let to = |sense| self.summit_towards_j(rest, gravity_m_s2, sense);
         Some(to(1.0)?.min(to(-1.0)?))
     }
 
@@ -276,18 +276,18 @@ impl ElasticStructure {
     ///
     /// A structure that overturns passes through all positions of its centre of gravity. Among nearby shapes with the same position, those on the
     /// path have the least energy. A structure with less energy than at the top cannot pass it.
-    fn pass_towards_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
+    fn summit_towards_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
         let without_slip = self.without_slip();
         let search = Search::new(&without_slip, [0.0, -gravity_m_s2]);
         let mass_kg = self.mass_kg();
         let first_m = FIRST_STRIDE * search.length_m;
         let (mut stride_m, mut work_j) = (first_m, 0.0);
-        let mut here = Pushed {
+        let mut here = PushedEquilibrium {
             moved: rest.moved.clone(),
             push_m_s2: 0.0,
             sway_m: search.sway_m(&rest.moved),
         };
-        let mut before: Option<Pushed> = None;
+        let mut before: Option<PushedEquilibrium> = None;
         for _ in 0..MOST_STRIDES {
             let there = search.pushed(before.as_ref(), &here, sense * stride_m);
             let Some((there, steps)) = there else {
@@ -346,7 +346,7 @@ const SOFTER: usize = 6;
 const BALANCED_ON_WAY: f64 = 1e-7;
 
 /// Structure in equilibrium with a sideways push.
-struct Pushed {
+struct PushedEquilibrium {
     moved: Vec<[f64; 3]>,
     /// Push to the right per unit mass, in m/s2.
     push_m_s2: f64,
@@ -388,7 +388,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the search with given states of the ties.
-    fn with_ties(mut self, ties: &[TieMemory<Alone>]) -> Self {
+    fn with_ties(mut self, ties: &[TieMemory<SingleLane>]) -> Self {
         self.yielded_m = ties.iter().map(|tie| tie.yielded_m.0[0]).collect();
         self
     }
@@ -410,7 +410,7 @@ impl<'a> Search<'a> {
         let units = [1.0, 1.0, self.length_m];
         let Some(matrix) = matrix else {
             let place = |body: usize, _| self.place(moved, body);
-            self.act(bonded, place, |row, _, force: Alone| {
+            self.act(bonded, place, |row, _, force: SingleLane| {
                 forces[row] += force.0[0] / units[row % 3];
             });
             return;
@@ -482,7 +482,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the position of a body or a support.
-    fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<Alone> {
+    fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<SingleLane> {
         Place::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
@@ -566,10 +566,10 @@ impl<'a> Search<'a> {
     /// number of Newton steps; `None` if it does not converge.
     fn pushed(
         &self,
-        before: Option<&Pushed>,
-        here: &Pushed,
+        before: Option<&PushedEquilibrium>,
+        here: &PushedEquilibrium,
         stride_m: f64,
-    ) -> Option<(Pushed, usize)> {
+    ) -> Option<(PushedEquilibrium, usize)> {
         let bodies = &self.structure.bodies;
         let size = 3 * bodies.len();
         let sway_m = here.sway_m + stride_m;
@@ -592,7 +592,7 @@ impl<'a> Search<'a> {
                 norm = self.norm(&forces);
             }
             if norm < BALANCED_ON_WAY && missing.abs() < 1e-6 * stride_m.abs() {
-                let there = Pushed {
+                let there = PushedEquilibrium {
                     moved,
                     push_m_s2,
                     sway_m,
@@ -666,7 +666,7 @@ impl<'a> Search<'a> {
             (self.structure).act(joint, [&one, &other], None, memory, fibres);
         }
         Rest {
-            bent: moved.clone(),
+            self_weight_displacements: moved.clone(),
             moved,
             memories,
             fibres,

@@ -4,7 +4,9 @@ use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-use super::contact::{Contact, ElasticJoint, Fibre, Law, Memory, Pressing, Rubbing, Section};
+use super::contact::{
+    Contact, ContactLaw, ElasticJoint, Fibre, Memory, NormalForces, Section, ShearForce,
+};
 use super::kinematics::{Action, Link, Place};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, allow, within};
@@ -165,7 +167,7 @@ pub struct ElasticStructure {
     /// Upper bound of the contribution of ties to the square of the highest angular frequency, in rad2/s2.
     ties_square_frequency: f64,
     /// Contact law of all joints.
-    pub(crate) law: Law,
+    pub(crate) law: ContactLaw,
     /// Damping time in s.
     pub damping_time_s: f64,
 }
@@ -206,7 +208,8 @@ impl ElasticStructure {
                 link: Link::new(pair, arms_m, along, row.handedness, length_m),
                 normal_n_m: stiffness.normal_pa_m * area_m2,
                 shear_n_m: stiffness.shear_pa_m * area_m2,
-                strength_m: strength_pa.map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
+                crushing_penetration_m: strength_pa
+                    .map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
                 area_m2,
             })
         };
@@ -240,7 +243,7 @@ impl ElasticStructure {
             joints,
             ties: Vec::new(),
             ties_square_frequency: 0.0,
-            law: Law {
+            law: ContactLaw {
                 section: Section::new(properties.contact, crushes),
                 crushes,
                 friction,
@@ -276,7 +279,7 @@ impl ElasticStructure {
     }
 
     /// Returns this structure with the supports at a fraction of their movement, which starts at the common displacement of [`Self::moved_along`].
-    pub(super) fn on_part_of_the_way(&self, part: f64) -> Self {
+    pub(super) fn at_movement_fraction(&self, part: f64) -> Self {
         let from = self.moved_along().1.supports;
         let between = |from: f64, to: f64| to - (1.0 - part) * (to - from);
         let on_way =
@@ -329,7 +332,7 @@ impl ElasticStructure {
         for joint in &mut other.joints {
             joint.normal_n_m *= factor;
             joint.shear_n_m *= factor;
-            joint.strength_m /= factor;
+            joint.crushing_penetration_m /= factor;
         }
         for tie in &mut other.ties {
             tie.tie.stiffness_n_m *= factor;
@@ -347,12 +350,14 @@ impl ElasticStructure {
         damping: Option<R>,
         memory: &mut Memory<R>,
         fibres: &mut [Fibre<R>],
-    ) -> (Action<R>, Pressing<R>, Rubbing<R>) {
+    ) -> (Action<R>, NormalForces<R>, ShearForce<R>) {
         let gap = joint.link.gap(places[0], places[1]);
-        let pressing = self.law.press(joint, damping, &gap, memory, fibres);
-        let rubbing = self.law.rub(joint, damping, &gap, pressing.edges_n, memory);
-        let action = joint.link.action(&gap, pressing.edges_n, rubbing.shear_n);
-        (action, pressing, rubbing)
+        let normal = self.law.normal_forces(joint, damping, &gap, memory, fibres);
+        let shear = self
+            .law
+            .shear_force(joint, damping, &gap, normal.edges_n, memory);
+        let action = joint.link.action(&gap, normal.edges_n, shear.shear_n);
+        (action, normal, shear)
     }
 
     /// Returns the elastic forces of a joint at rest: the normal forces at its edges and the shear force, in N.
@@ -364,8 +369,8 @@ impl ElasticStructure {
         memory: &Memory<Lanes<1>>,
         fibres: &mut [Fibre<Lanes<1>>],
     ) -> ([f64; 2], f64) {
-        let (_, pressing, rubbing) = self.act(joint, places, None, &mut memory.clone(), fibres);
-        (pressing.edges_n.map(|edge| edge.0[0]), rubbing.shear_n.0[0])
+        let (_, normal, shear) = self.act(joint, places, None, &mut memory.clone(), fibres);
+        (normal.edges_n.map(|edge| edge.0[0]), shear.shear_n.0[0])
     }
 
     /// Returns the elastic energy of a joint, in J.

@@ -189,12 +189,12 @@ pub struct Masonry {
     pub row: Row,
     /// Fill and loads in pictures.
     #[serde(skip)]
-    pub carried: Carried,
+    pub load_outlines: LoadOutlines,
 }
 
 /// Fill and loads of an arch for pictures, each with the block that carries it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Carried {
+pub struct LoadOutlines {
     /// Corners of the fill above each block, in metres.
     pub fill_m: Vec<FillColumn>,
     /// Block of each load, and the position of its middle, in metres.
@@ -292,12 +292,18 @@ impl Masonry {
         }
         let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
         let loads_m = loads.iter().filter_map(|load| load.place_m(&arch));
-        let mut carried = Carried {
+        let mut load_outlines = LoadOutlines {
             fill_m: fill_m.map_err(MasonryError::Fill)?,
             loads_m: loads_m.collect(),
         };
-        let voussoirs = carried.fill_m.iter_mut().map(|(voussoir, _)| voussoir);
-        let loaded = carried.loads_m.iter_mut().map(|(voussoir, _)| voussoir);
+        let voussoirs = load_outlines
+            .fill_m
+            .iter_mut()
+            .map(|(voussoir, _)| voussoir);
+        let loaded = load_outlines
+            .loads_m
+            .iter_mut()
+            .map(|(voussoir, _)| voussoir);
         voussoirs.chain(loaded).for_each(|block| *block += first);
         Ok(Self {
             shape,
@@ -305,7 +311,7 @@ impl Masonry {
             fill,
             loads,
             row,
-            carried,
+            load_outlines,
         })
     }
 

@@ -13,7 +13,7 @@ use super::pins::{Pins, Pulls, side, two_bodies};
 use super::{Condition, Pin};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::capacity::{CapacityError, Displaced, GivesWay};
+use crate::mechanics::capacity::{CapacityError, Displaced, TieEventFractions};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::lanes::Lanes;
 use crate::mechanics::stability::{RowOnset, onset};
@@ -69,7 +69,10 @@ impl<'a> Held<'a> {
                 break;
             };
             held.ties.push(ties);
-            let bears = |q_rad: f64| held.bears_g(q_rad).is_some_and(|push_g| push_g > 0.0);
+            let bears = |q_rad: f64| {
+                held.equilibrium_push_g(q_rad)
+                    .is_some_and(|push_g| push_g > 0.0)
+            };
             if !bears(q_rad) {
                 let (_, end_rad) = bisect(q_rad - STEP_RAD, q_rad, Width::Rounding, |q| !bears(q));
                 held.end_rad = end_rad;
@@ -102,7 +105,9 @@ impl<'a> Held<'a> {
     pub fn displaced(&self, part: f64) -> Displaced {
         let q_rad = part * self.end_rad;
         let poses = self.poses(q_rad).expect("its bodies meet on its way");
-        let push_g = self.bears_g(q_rad).expect("its bodies meet on its way");
+        let push_g = self
+            .equilibrium_push_g(q_rad)
+            .expect("its bodies meet on its way");
         let condition = Condition {
             supports: [Pose::UNDEFORMED; 2],
             force_g: Vector2::new(self.sway.sign() * push_g, -1.0),
@@ -121,7 +126,7 @@ impl<'a> Held<'a> {
 
     /// Returns the fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
     #[must_use]
-    pub fn ties_give_way(&self) -> Vec<GivesWay> {
+    pub fn tie_event_fractions(&self) -> Vec<TieEventFractions> {
         let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;
             let yields = self.first(index, |memory| {
@@ -131,7 +136,7 @@ impl<'a> Held<'a> {
             let in_time =
                 |[_, yields]: &[f64; 2]| breaks.is_none_or(|[_, broken]| *yields < broken);
             let yields = yields.filter(in_time).map(|[_, yields]| yields);
-            GivesWay { yields, breaks }
+            TieEventFractions { yields, breaks }
         });
         ties.collect()
     }
@@ -184,7 +189,7 @@ impl<'a> Held<'a> {
     }
 
     /// Returns the push in equilibrium with weight and ties, in multiples of gravity: the loads then have no moment about any pin.
-    fn bears_g(&self, q_rad: f64) -> Option<f64> {
+    fn equilibrium_push_g(&self, q_rad: f64) -> Option<f64> {
         let (row, poses) = (self.row, self.poses(q_rad)?);
         let (_, pulls) = self.pulls(q_rad, &poses);
         let (push, weight) = (Vector2::new(self.sway.sign(), 0.0), Vector2::new(0.0, -1.0));

@@ -31,7 +31,11 @@ const LEAST_SWING_RATIO: f64 = 1e-18;
 
 impl LandingStepper<'_> {
     pub fn height_energy(&self) -> f64 {
-        self.gravity * self.rest.moved_kg_m(&self.placement.centres_m).y
+        self.gravity
+            * self
+                .rest
+                .mass_displacement_kg_m(&self.placement.centres_m)
+                .y
     }
 
     /// Returns the potential energy of the blocks, in J.
@@ -49,9 +53,11 @@ impl LandingStepper<'_> {
     }
 
     /// Compares the energy at an instant with the energy balance.
-    pub fn audit(&mut self, kinetic: f64) {
-        let taken = self.course.of_row.energy_taken_j + self.ties.taken_j();
-        let due = self.start_energy + self.course.of_row.ground_j + self.course.of_row.right_foot_j
+    pub fn check_energy(&mut self, kinetic: f64) {
+        let taken = self.course.row_summary.energy_taken_j + self.ties.taken_j();
+        let due = self.start_energy
+            + self.course.row_summary.ground_j
+            + self.course.row_summary.right_foot_j
             - taken;
         let defect = kinetic + self.course.potential - due;
         self.course.note_defect(defect.abs());
@@ -69,13 +75,13 @@ impl LandingStepper<'_> {
             self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
         self.course.moved |= !lies || swings;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
-        let rotations = self.rest.turned_rad(rotations);
+        let rotations = self.rest.relative_rotations_rad(rotations);
         self.course.observe(rotations, potential, kinetic, sway);
         let least = REST_ENERGY_RATIO * self.course.energy_unit;
         // Ties that have yielded or broken have another elastic energy at rest.
         let rests = kinetic < least && self.height().abs() < least;
-        let known_s = self.lies_since_s.filter(|_| lies);
-        self.lies_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
+        let known_s = self.rest_since_s.filter(|_| lies);
+        self.rest_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
         if self.may_end_on_hinges() {
             self.observe_hinges();
         }
@@ -93,24 +99,27 @@ impl LandingStepper<'_> {
         self.course.note_height(height);
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         let blocks = self.placement.centres_m.iter().copied().zip(rotations);
-        let feet_m = [Vector2::zeros(), self.right.gone_m];
-        self.course.overturned |= self.rest.is_left_by(blocks, feet_m);
+        let feet_m = [Vector2::zeros(), self.right.displacement_m];
+        self.course.overturned |= self.rest.has_left(blocks, feet_m);
     }
 
     /// Returns whether the row is in its initial position.
     fn lies_at_rest(&self) -> bool {
-        self.rest.has(&self.placement.gaps_m) && !self.right_support_is_gone()
+        self.rest.has_contacts(&self.placement.gaps_m) && !self.right_support_is_displaced()
     }
 
     /// Returns whether the right support is displaced relative to the left one.
-    pub fn right_support_is_gone(&self) -> bool {
-        self.right.gone_m.norm() > SHUT_RATIO * self.thinnest
+    pub fn right_support_is_displaced(&self) -> bool {
+        self.right.displacement_m.norm() > SHUT_RATIO * self.thinnest
     }
 
     /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, in kg m.
     pub fn sway_kg_m(&self) -> f64 {
-        let sway = self.rest.moved_kg_m(&self.placement.centres_m).x;
-        sway - 0.5 * self.row.mass_kg() * self.right.gone_m.x
+        let sway = self
+            .rest
+            .mass_displacement_kg_m(&self.placement.centres_m)
+            .x;
+        sway - 0.5 * self.row.mass_kg() * self.right.displacement_m.x
     }
 
     fn note_impact(&mut self, taken_before: f64) {
@@ -133,7 +142,7 @@ impl LandingStepper<'_> {
                 opened.push(Hinge::Joint { joint, edge });
             }
         }
-        let taken_j = self.course.of_row.energy_taken_j - taken_before;
+        let taken_j = self.course.row_summary.energy_taken_j - taken_before;
         self.stands = self.course.opened.is_empty() && self.lies_at_rest();
         let before_j = kinetic(&self.pieces) + taken_j;
         let lies = self.lies_at_rest();
@@ -148,7 +157,7 @@ impl LandingStepper<'_> {
         let stood = &self.rest.touching;
         let shut = gaps.filter(|(joint, _)| stood[*joint] == [true; 2]);
         opened.extend(shut.filter_map(|(joint, gaps)| open_hinge(joint, *gaps)));
-        self.stands = opened.is_empty() && !self.right_support_is_gone();
+        self.stands = opened.is_empty() && !self.right_support_is_displaced();
         if !self.stands {
             // The row was at rest until then.
             let still = vec![0.0; self.row.blocks.len()];
@@ -170,24 +179,24 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         self.step_iterations = 0;
         let longest = equal_step(self.course.time, until, self.course.longest_step_s);
-        self.touch_shut();
+        self.constrain_closed_corners();
         self.closed.copy_from_slice(&self.load.touching);
         let from_s = self.course.time;
-        let taken_before = self.course.of_row.energy_taken_j;
+        let taken_before = self.course.row_summary.energy_taken_j;
         self.landing.fill([0.0; 2]);
         if self.has_just_landed() {
             // Most corners that were in contact before the impact are in contact again under gravity.
             self.press(|stepper, joint, edge| stepper.pressed[joint][edge]);
         }
         let step = self.solve_to_landing(longest)?;
-        self.account(&step);
+        self.record_step(&step);
         self.drift(&step)?;
         let mut joints = 0..self.load.touching.len();
         let landed = joints.any(|joint| (0..2).any(|edge| self.has_landed(joint, edge)));
         if landed {
             self.impact()?;
         }
-        let happened = self.course.note_ties(self.ties.memories());
+        let tie_events = self.course.note_ties(self.ties.memories());
         self.observe();
         if landed {
             self.note_impact(taken_before);
@@ -195,12 +204,12 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
             self.note_uplift(from_s);
         }
         let scale_j = self.course.task.energy_scale_j;
-        self.course.mind_balance(scale_j, || scale_j);
-        self.report_ties(happened);
+        self.course.halve_unbalanced_steps(scale_j, || scale_j);
+        self.report_ties(tie_events);
         self.course.cost.steps += 1;
-        let of_row = &mut self.course.of_row;
-        of_row.merged += u64::from(step.merged);
-        of_row.most_iterations = of_row.most_iterations.max(self.step_iterations);
+        let row_summary = &mut self.course.row_summary;
+        row_summary.merged += u64::from(step.merged);
+        row_summary.most_iterations = row_summary.most_iterations.max(self.step_iterations);
         Ok(())
     }
 
@@ -223,22 +232,22 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         solved?;
         let work = ground.dot(&(before + momentum(&self.next_pieces))) * 0.5;
-        self.course.of_row.ground_j -= work;
-        self.course.of_row.right_foot_j += right_j;
-        self.audit(kinetic_j);
-        self.course.of_row.ground_j += work;
-        self.course.of_row.right_foot_j -= right_j;
-        sample.feet_apart_m = self.right.gone_m;
+        self.course.row_summary.ground_j -= work;
+        self.course.row_summary.right_foot_j += right_j;
+        self.check_energy(kinetic_j);
+        self.course.row_summary.ground_j += work;
+        self.course.row_summary.right_foot_j -= right_j;
+        sample.feet_apart_m = self.right.displacement_m;
         sample.poses.extend(&self.placement.poses);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         Ok(kinetic_j)
     }
 
-    fn turns(&self) -> impl Iterator<Item = (f64, f64)> {
+    fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)> {
         let rates = self.program.velocities.iter().map(|twist| twist.rate);
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
-        self.rest.turned_rad(rotations).zip(rates)
+        self.rest.relative_rotations_rad(rotations).zip(rates)
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
@@ -260,12 +269,12 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn rests_since(&self) -> Option<f64> {
-        let on_hinges = self.rest.is_on_hinges() || self.right_support_is_gone();
+        let on_hinges = self.rest.is_on_hinges() || self.right_support_is_displaced();
         if on_hinges && !self.lies_at_rest() {
             let quiet = self.course.is_quiet(self.course.quiet_since_s);
             return quiet.then_some(self.course.quiet_since_s);
         }
-        self.lies_since_s
+        self.rest_since_s
     }
 
     /// Decides by height only: the elastic energy of ties may be less than at rest.

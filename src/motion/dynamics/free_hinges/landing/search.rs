@@ -15,7 +15,7 @@ const LANDING_TOLERANCE: f64 = 1e-6;
 
 /// Corner that closes.
 #[derive(Clone, Copy, Debug)]
-struct Fall {
+struct ClosingCorner {
     joint: usize,
     edge: usize,
     gap_m: f64,
@@ -23,7 +23,7 @@ struct Fall {
     rate_m_s: f64,
 }
 
-impl Fall {
+impl ClosingCorner {
     fn duration_s(&self) -> f64 {
         self.gap_m / -self.rate_m_s
     }
@@ -33,13 +33,14 @@ impl LandingStepper<'_> {
     /// Solves the step that ends at the first landing, or the longest step without a landing. The step length affects the kick and therefore the
     /// landing.
     pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
-        let floor = if self.is_crowded() {
+        let floor = if self.has_impact_cluster() {
             self.course.task.settings.shortest_step_s.min(longest)
         } else {
             0.0
         };
-        let duration_s = |fall: Option<Fall>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
-        let mut step = duration_s(self.first_fall()).clamp(floor, longest);
+        let duration_s =
+            |fall: Option<ClosingCorner>| fall.map_or(f64::INFINITY, |fall| fall.duration_s());
+        let mut step = duration_s(self.first_landing()).clamp(floor, longest);
         // No corner lands within `safe`; some corner lands within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
         // The initial rates correspond to a step of negative length whose kick ends at the end of the last kick.
@@ -47,7 +48,7 @@ impl LandingStepper<'_> {
         for pass in 1.. {
             self.note_rates();
             self.solve_step(step)?;
-            let fall = self.first_fall();
+            let fall = self.first_landing();
             let lands = duration_s(fall);
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
             // With rounding errors a step may seem too long although it was safe before.
@@ -92,7 +93,7 @@ impl LandingStepper<'_> {
     }
 
     /// Returns the step length at whose end a corner lands, by a linear model of its rate. The model uses the rates of the last two solved steps.
-    fn landing(&self, fall: &Fall, step: f64, earlier: f64) -> f64 {
+    fn landing(&self, fall: &ClosingCorner, step: f64, earlier: f64) -> f64 {
         let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
         let acceleration = change / (step - earlier);
         let rate = fall.rate_m_s - acceleration * step;
@@ -108,12 +109,12 @@ impl LandingStepper<'_> {
     }
 
     /// Returns the open corner that lands first at the rates of the last solution; `None` if none closes.
-    fn first_fall(&self) -> Option<Fall> {
-        let mut first: Option<Fall> = None;
+    fn first_landing(&self) -> Option<ClosingCorner> {
+        let mut first: Option<ClosingCorner> = None;
         for (joint, rates) in self.program.open_joints() {
             let gaps = self.placement.gaps_m[joint];
             for edge in 0..2 {
-                let fall = Fall {
+                let fall = ClosingCorner {
                     joint,
                     edge,
                     gap_m: gaps[edge],
@@ -132,10 +133,10 @@ impl LandingStepper<'_> {
     fn merge(&mut self, step: f64) -> Result<(), RowMotionError> {
         if self.kicked_s < self.course.time {
             self.complete_kick()?;
-            self.take_pieces();
+            self.adopt_pieces();
             self.kicked_s = self.course.time;
         }
-        self.crowd.impacts = 0;
+        self.cluster.impacts = 0;
         self.solve_step(step)?;
         let without = self.kinetic_of_solution() - self.work_of_right_support(0.0);
         for round in 0.. {
@@ -180,7 +181,7 @@ impl LandingStepper<'_> {
             self.solve_step(step)?;
         }
         let with = self.kinetic_of_solution() - self.work_of_right_support(0.0);
-        self.course.of_row.energy_taken_j += without - with;
+        self.course.row_summary.energy_taken_j += without - with;
         Ok(())
     }
 }

@@ -17,18 +17,18 @@ pub(super) struct Landing {
     pub(super) shut: Vec<Hinge>,
     /// Kinetic energy before the impact, in J.
     pub(super) energy_before_j: f64,
-    pub(super) taken: Taken,
+    pub(super) dissipation: Dissipation,
 }
 
 /// Energy dissipated by the impulses at joints, in J.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Taken {
+pub(super) struct Dissipation {
     pub(super) total_j: f64,
     /// Part dissipated by friction.
     pub(super) friction_j: f64,
 }
 
-impl Taken {
+impl Dissipation {
     pub(super) fn add(&mut self, other: Self) {
         self.total_j += other.total_j;
         self.friction_j += other.friction_j;
@@ -68,7 +68,7 @@ impl SlidingStepper<'_> {
             modes_before: before.clone(),
             shut,
             energy_before_j: 0.0,
-            taken: Taken::default(),
+            dissipation: Dissipation::default(),
         })
     }
 
@@ -92,12 +92,12 @@ impl SlidingStepper<'_> {
     ///
     /// The work of an impulse is its product with the mean of the rates before and after. The sum over the steps of an impact does not depend on the
     /// distribution of the impulse over these steps.
-    pub(super) fn taken(&self, mean_m_s: Vector2<f64>) -> [Taken; 2] {
+    pub(super) fn dissipation(&self, mean_m_s: Vector2<f64>) -> [Dissipation; 2] {
         let landed_before = self.landing.as_ref().map(|landing| &landing.corners);
-        let mut parts = [Taken::default(); 2];
+        let mut parts = [Dissipation::default(); 2];
         for (joint, impulse) in self.program.impulses.iter().enumerate() {
             let mean = (self.rates_before[joint] + self.program.joint_rate(joint)) * 0.5
-                + self.carried(joint, mean_m_s);
+                + self.right_support_rates(joint, mean_m_s);
             let by_row = impulse.component_mul(&mean);
             let late = landed_before.map_or([false; 2], |corners| corners[joint]);
             for end in 0..2 {
@@ -115,29 +115,29 @@ impl SlidingStepper<'_> {
     }
 
     /// Returns the energy dissipated by friction in the solved step, with the rates at its end.
-    pub(super) fn held_back_j(&self) -> f64 {
-        let mut held_back_j = 0.0;
+    pub(super) fn step_friction_j(&self) -> f64 {
+        let mut step_friction_j = 0.0;
         for (joint, impulse) in self.program.impulses.iter().enumerate() {
             if let Along::Slip(_) = self.program.modes[joint].along {
-                let rate = self.program.joint_rate(joint).z + self.lags[joint].z;
+                let rate = self.program.joint_rate(joint).z + self.position_errors[joint].z;
                 // Below the tolerance of the rates the sign is a rounding error.
-                held_back_j += (-impulse.z * rate).max(0.0);
+                step_friction_j += (-impulse.z * rate).max(0.0);
             }
         }
-        held_back_j
+        step_friction_j
     }
 
     /// Completes and reports the impact of the last step, if there was one. `late` is the energy dissipated since then. The blocks still have the
     /// positions of that step, and the rates after the current one. `alone` is true if no corner lands in the current step.
-    pub(super) fn end_landing(&mut self, late: Taken, alone: bool) {
+    pub(super) fn end_landing(&mut self, late: Dissipation, alone: bool) {
         let Some(mut landing) = self.landing.take() else {
             return;
         };
-        self.course.took_late(late.total_j);
-        landing.taken.add(late);
-        let (total_j, friction_j) = (landing.taken.total_j, landing.taken.friction_j);
-        self.course.of_row.energy_taken_j += total_j - friction_j;
-        if !self.course.is_followed() {
+        self.course.subtract_late_dissipation(late.total_j);
+        landing.dissipation.add(late);
+        let (total_j, friction_j) = (landing.dissipation.total_j, landing.dissipation.friction_j);
+        self.course.row_summary.energy_taken_j += total_j - friction_j;
+        if !self.course.has_recorder() {
             return;
         }
         let after = if alone {
@@ -148,8 +148,10 @@ impl SlidingStepper<'_> {
         self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
         self.course.shut = landing.shut;
         let sticks = |mode: &Mode| mode.along == Along::Stick;
-        let moves = !(self.touches_as_it_stood() && self.program.modes.iter().all(sticks));
-        let stood = self.turns().all(|(rotation_rad, _)| rotation_rad == 0.0);
+        let moves = !(self.has_initial_contacts() && self.program.modes.iter().all(sticks));
+        let stood = self
+            .rotations_and_rates()
+            .all(|(rotation_rad, _)| rotation_rad == 0.0);
         let energies_j = [landing.energy_before_j, total_j];
         self.report_impact([moves, stood], energies_j, Some(friction_j));
     }
