@@ -73,7 +73,7 @@ fn tied(bencher: Bencher, count: usize) {
 #[divan::bench]
 fn on_two_feet(bencher: Bencher) {
     let (model, (ground, request)) = (model(1e10), case(0.2));
-    let late = ground.late_by(0.05).expect("a delay");
+    let late = ground.delayed_by(0.05).expect("a delay");
     let ground = ground.with_right_foot(late);
     let simulate = || model.simulate(&ground, &request, None).expect("a history");
     let steps = simulate().cost.steps * 37;

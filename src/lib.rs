@@ -94,7 +94,7 @@ pub use dynamics::model::{
 };
 pub use dynamics::recording::{History, MEMORY_BYTES, MemoryError, Samples};
 pub use dynamics::row::error::{RowModelError, RowMotionError};
-pub use dynamics::until::Until;
+pub use dynamics::until::EndCondition;
 pub use mechanics::arch::Arch;
 pub use mechanics::blocks::Row;
 pub use mechanics::chain::Hinge;

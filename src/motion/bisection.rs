@@ -139,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn ends_enclose_the_change_as_narrowly_as_asked() {
+    fn the_interval_is_as_narrow_as_the_given_width() {
         let change = 2.0_f64.sqrt();
         let ends = |width| bisect(1.0, 2.0, width, |x| x >= change);
         let (low, high) = ends(Width::Rounding);
@@ -151,62 +151,62 @@ mod tests {
     }
 
     #[test]
-    fn a_smooth_function_is_followed_to_zero_in_few_steps() {
+    fn the_zero_of_a_smooth_function_is_found_in_few_steps() {
         let smooth = |x: f64| 2.0 - x * x + (SQRT_2 - x).powi(3);
         let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
         for (value, most) in [(smooth as fn(f64) -> f64, 15), (cliff, 60)] {
-            let mut asked = 0;
+            let mut calls = 0;
             let (low, high) = falls_below_zero(1.0, (2.0, value(2.0)), 0.0, |x| {
-                asked += 1;
+                calls += 1;
                 value(x)
             });
             assert_eq!(low.next_up(), high);
-            assert!((low - SQRT_2).abs() < 1e-15 && asked <= most, "{asked}");
+            assert!((low - SQRT_2).abs() < 1e-15 && calls <= most, "{calls}");
         }
     }
 
     #[test]
-    fn rounding_is_not_followed() {
+    fn the_search_ends_at_rounding_error() {
         let noisy = |x: f64| SQRT_2 - x + 1e-9 * (1e12 * x).sin();
         let cliff = |x: f64| if x < SQRT_2 { 1.0 } else { f64::NAN };
-        // The least of several forces: level at first, and steep where the row gives way.
+        // Least of several linear functions: rising at first, steep at the end.
         let kinked = |x: f64| (0.01 + 1e-3 * x).min(SQRT_2 - x).min(30.0 * (1.43 - x));
         for (value, most) in [(noisy as fn(f64) -> f64, 12), (cliff, 30), (kinked, 14)] {
-            let mut asked = 0;
+            let mut calls = 0;
             let (low, high) = falls_below_zero(1.0, (2.0, value(2.0)), 1e-8, |x| {
-                asked += 1;
+                calls += 1;
                 value(x)
             });
             assert!(value(low) >= 0.0 && (value(high) < 0.0 || value(high).is_nan()));
-            assert!((low - SQRT_2).abs() < 2e-8 && asked <= most, "{asked}");
+            assert!((low - SQRT_2).abs() < 2e-8 && calls <= most, "{calls}");
         }
     }
 
     #[test]
-    fn what_may_be_asked_next_is_asked() {
+    fn next_middles_contain_every_next_point() {
         for change in [1.01, 1.3, 1.77, 1.999] {
-            let (width, mut asked, mut next) = (Width::Relative(1e-3), Vec::new(), Vec::new());
+            let (width, mut calls, mut next) = (Width::Relative(1e-3), Vec::new(), Vec::new());
             let (mut low, mut high) = (1.0, 2.0);
             let ends = bisect(low, high, width, |x| {
                 if !next.contains(&x) {
                     next = next_middles(low, high, width, 3);
-                    asked.push(next.len());
+                    calls.push(next.len());
                 }
                 assert!(next.contains(&x));
                 *if x >= change { &mut high } else { &mut low } = x;
                 x >= change
             });
             assert_eq!(ends, (low, high));
-            // Ten steps, or nine where a thousandth of the end is twice that of the beginning.
+            // Ten steps, or nine if the relative width at the upper end allows twice the interval.
             assert!(
-                asked == [7, 7, 7, 1] || asked == [7, 7, 7],
-                "{change}: {asked:?}"
+                calls == [7, 7, 7, 1] || calls == [7, 7, 7],
+                "{change}: {calls:?}"
             );
         }
     }
 
     #[test]
-    fn failures_are_passed_on() {
+    fn errors_of_the_function_are_returned() {
         let failed = try_bisect(0.0, 1.0, Width::Rounding, |_| Err::<bool, _>("no"));
         assert_eq!(failed, Err("no"));
     }

@@ -3,7 +3,7 @@
 use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::Block;
 use archrock::mechanics::elastic_joint::{
-    ElasticJoint, ElasticStructure, Fibre, Link, Memory, Place,
+    BodyPosition, ElasticJoint, ElasticStructure, Fibre, JointGeometry, Memory,
 };
 use archrock::{Contact, ElasticProperties};
 use nalgebra::Vector2;
@@ -22,7 +22,7 @@ fn structure(
 ) -> ElasticStructure {
     let arm = |centre: [f64; 2]| [MIDDLE_M[0] - centre[0], MIDDLE_M[1] - centre[1]];
     let joint = ElasticJoint {
-        link: Link::new([0, 1], CENTRES_M.map(arm), ALONG, 1.0, LENGTH_M),
+        geometry: JointGeometry::new([0, 1], CENTRES_M.map(arm), ALONG, 1.0, LENGTH_M),
         normal_n_m: NORMAL_N_M,
         shear_n_m: 0.4 * NORMAL_N_M,
         crushing_penetration_m: crushing_penetration_m.unwrap_or(f64::INFINITY),
@@ -43,10 +43,10 @@ fn structure(
     ElasticStructure::new(vec![body; 2], vec![joint], &properties)
 }
 
-fn places(q: [f64; 6]) -> [Place<Lanes<1>>; 2] {
+fn places(q: [f64; 6]) -> [BodyPosition<Lanes<1>>; 2] {
     [
-        Place::at(&[q[0], q[1], q[2]]),
-        Place::at(&[q[3], q[4], q[5]]),
+        BodyPosition::at(&[q[0], q[1], q[2]]),
+        BodyPosition::at(&[q[3], q[4], q[5]]),
     ]
 }
 

@@ -754,7 +754,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     for (row, stage) in table.rows.iter().zip(stages) {
         let state = stage.state.as_ref().unwrap();
         counts.push(state.hinges.len());
-        let mut open = state.hinges.iter().zip(&state.turns_rad);
+        let mut open = state.hinges.iter().zip(&state.hinge_rotations_rad);
         for number in 1..=4 {
             let cell = |what: &str| &row[&format!("hinge_{number}_{what}")];
             let (hinge, turn_rad) = open.next().unzip();
@@ -1060,8 +1060,11 @@ fn paths_are_those_of_another_program() {
             (state.right_reaction.linear.x.abs() - thrust).abs() < 2e-6,
             "{at}"
         );
-        for ((hinge, turn), (joint, edge, expected)) in
-            state.hinges.iter().zip(&state.turns_rad).zip(hinges)
+        for ((hinge, turn), (joint, edge, expected)) in state
+            .hinges
+            .iter()
+            .zip(&state.hinge_rotations_rad)
+            .zip(hinges)
         {
             assert_eq!((hinge.joint, hinge.edge), (joint, edge), "{at}");
             assert!((turn - expected).abs() < 6e-6, "{at}: {turn}");
@@ -1167,7 +1170,7 @@ fn a_springing_that_turns_leaves_an_arch_that_fits() {
     };
     assert_eq!(follower.move_supports(turned, 0.0, 0.02).unwrap(), None);
     let state = follower.state().unwrap();
-    let sum: f64 = state.turns_rad.iter().sum();
+    let sum: f64 = state.hinge_rotations_rad.iter().sum();
     assert!((sum + 0.02).abs() < 1e-14 && state.margin() >= -1e-12);
     assert!(follower.stance.placement.closure_error() < 1e-13);
 }

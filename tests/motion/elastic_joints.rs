@@ -7,13 +7,13 @@ use std::ops::ControlFlow;
 use archrock::dynamics::repeatability::Repetitions;
 use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row, Supports};
-use archrock::mechanics::elastic_joint::{ElasticStructure, Place, RestError};
+use archrock::mechanics::elastic_joint::{BodyPosition, ElasticStructure, RestError};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::{
-    Contact, ElasticJoints, ElasticProperties, GroundMotion, Job, Jobs, JointStiffness, Materials,
-    Model, Outcome, Pulse, Request, RowModelError, Sample, SimulationError, Stiffness, Summary,
-    Sway, Until,
+    Contact, ElasticJoints, ElasticProperties, EndCondition, GroundMotion, Job, Jobs,
+    JointStiffness, Materials, Model, Outcome, Pulse, Request, RowModelError, Sample,
+    SimulationError, Stiffness, Summary, Sway,
 };
 use nalgebra::Vector2;
 
@@ -83,7 +83,7 @@ fn overturns_at(
 ) {
     let cases = [1.0 - tolerance, 1.0 + tolerance]
         .map(|factor| (push(pulse, factor * due_m_s2, duration_s), *request));
-    let answers = model.simulate_all_until(Until::Safe, &cases);
+    let answers = model.simulate_all_until(EndCondition::Safe, &cases);
     let [below, above] = [0, 1].map(|case| falls(answers[case].as_ref().unwrap()));
     assert!(!below && above, "{due_m_s2}: {below} {above}");
 }
@@ -91,7 +91,7 @@ fn overturns_at(
 /// Thrust relative to the weight, from the force on the first block.
 fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     let rest = structure.rest([0.0, -gravity_m_s2]).unwrap();
-    let places = [Place::none(), Place::at(&rest.moved[0])];
+    let places = [BodyPosition::none(), BodyPosition::at(&rest.moved[0])];
     let mut memory = rest.memories[0];
     let mut fibres = rest.fibres.clone();
     let (action, ..) = structure.act(
@@ -363,7 +363,9 @@ impl Everything {
                     repetition,
                     until,
                 };
-                waiting.extend([Until::End, Until::Settled, Until::Safe].map(job));
+                waiting.extend(
+                    [EndCondition::End, EndCondition::Settled, EndCondition::Safe].map(job),
+                );
             }
         }
         Self {

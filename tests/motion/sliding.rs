@@ -9,7 +9,7 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
 use archrock::internals::complementarity;
-use archrock::internals::coulomb::{Along, Program};
+use archrock::internals::coulomb::{Program, TangentialMode};
 use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::internals::slip::{Contact, Faces, Position};
 use archrock::mechanics::blocks::{Joint, Row, Supports};
@@ -1010,9 +1010,9 @@ fn judged(
     for joint in 0..joints {
         for axis in 0..3 {
             let at = 3 * joint + axis;
-            let drawn = 1e-6 * compliance[(at, at)];
-            rates[at] += lags[joint][axis] - drawn * before[joint][axis];
-            compliance[(at, at)] += drawn;
+            let proximal = 1e-6 * compliance[(at, at)];
+            rates[at] += lags[joint][axis] - proximal * before[joint][axis];
+            compliance[(at, at)] += proximal;
         }
     }
     // Impulses are combinations of the unknowns, scaled so that the matrix has a unit diagonal.
@@ -1104,9 +1104,9 @@ fn every_step_solves_the_complementarity_problem() {
                 Position::new(position.centre_m + v.xy(), position.rotation_rad + v.z);
         }
         for (joint, mode) in program.modes.iter().enumerate() {
-            slipping += usize::from(matches!(mode.along, Along::Slip(_)));
+            slipping += usize::from(matches!(mode.tangential, TangentialMode::Slip(_)));
             open += usize::from(mode.pressed != [true; 2]);
-            if mode.along != Along::Stick {
+            if mode.tangential != TangentialMode::Stick {
                 stuck[joint] += step * (program.joint_rate(joint) + lags[joint]).z;
             }
         }

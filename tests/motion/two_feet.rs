@@ -14,7 +14,8 @@ use archrock::dynamics::model::SimulationError;
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::settling::{Movement, Movements};
 use archrock::{
-    ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, Model, Pulse, RowOptions, Until,
+    ElasticJoints, ElasticProperties, EndCondition, FreeHinges, GroundMotion, Model, Pulse,
+    RowOptions,
 };
 use nalgebra::Vector2;
 use roxmltree::Document;
@@ -43,7 +44,7 @@ fn shaking(strong: [f64; 2], hz: [f64; 2]) -> GroundMotion {
 fn feet_go_apart_as_their_motions_do() {
     // A rectangular pulse leaves the ground with a velocity: late by a delay, the foot stays behind by that times the delay.
     let ground = pulse(Pulse::Rectangular, 0.3, 0.4);
-    let late = ground.late_by(0.25).unwrap();
+    let late = ground.delayed_by(0.25).unwrap();
     let apart_m = ground
         .clone()
         .with_right_foot(late)
@@ -65,7 +66,7 @@ fn feet_go_apart_as_their_motions_do() {
         );
     }
     // The motion late by nothing is the motion.
-    assert_eq!(ground.late_by(0.0).unwrap(), ground);
+    assert_eq!(ground.delayed_by(0.0).unwrap(), ground);
     let same = ground.clone().with_right_foot(ground.clone());
     assert!(
         same.feet_apart_m(&[0.3, 7.0])
@@ -88,7 +89,7 @@ fn feet_go_apart_as_their_motions_do() {
     assert_eq!(both.end_s(), 0.8);
     assert_eq!(both.ends_s(), [0.4, 0.8]);
     assert!(both.has_vertical() && !ground.has_vertical());
-    assert!(ground.late_by(f64::NAN).is_err() && ground.late_by(-1.0).is_err());
+    assert!(ground.delayed_by(f64::NAN).is_err() && ground.delayed_by(-1.0).is_err());
 }
 
 /// A negative delay starts the right foot earlier. The left foot keeps its times; if the right foot accelerates before time zero, the motion
@@ -385,7 +386,7 @@ fn feet_side_by_side_are_as_feet_alone() {
     let cases: Vec<_> = (0..7)
         .map(|case| {
             let ground = shaking([2.0 + 0.5 * f64::from(case), 1.0], [1.5, 4.0]);
-            let late = ground.late_by(0.02 * f64::from(case)).unwrap();
+            let late = ground.delayed_by(0.02 * f64::from(case)).unwrap();
             let ground = if case % 3 == 0 {
                 ground
             } else {
@@ -429,7 +430,7 @@ fn a_stack_has_one_foot() {
         .clone()
         .with_right_foot(pulse(Pulse::HalfSine, -0.8, 0.4));
     for (model, ends_early) in models {
-        let [end_s, safe_s] = [Until::End, Until::Safe].map(|until| {
+        let [end_s, safe_s] = [EndCondition::End, EndCondition::Safe].map(|until| {
             let of = |ground: &GroundMotion| {
                 let case = (ground.clone(), sampled(1.0, 0.01));
                 model.simulate_until(until, &case).unwrap()
@@ -501,7 +502,7 @@ fn scenarios_have_a_right_foot_in_three_ways() {
     let ground = own.ground_motion().clone();
     let due = ground
         .clone()
-        .with_right_foot(ground.late_by(0.05).unwrap());
+        .with_right_foot(ground.delayed_by(0.05).unwrap());
     assert_eq!(late.ground_motion(), &due);
     // The feet are the middles of the springings.
     let wave = foot("apparent_velocity_m_s = 200.0");

@@ -377,7 +377,7 @@ fn the_energy_closes_with_the_square_of_the_step() {
 /// A pulse that reaches the right foot late.
 fn late(amplitude_g: f64, lasts_s: f64, delay_s: f64) -> GroundMotion {
     let ground = pulse(Pulse::OneSine, amplitude_g, lasts_s);
-    let late = ground.late_by(delay_s).unwrap();
+    let late = ground.delayed_by(delay_s).unwrap();
     ground.with_right_foot(late)
 }
 
@@ -416,7 +416,7 @@ fn feet_that_move_alike_are_the_ground() {
         let cut = ground.cut_at(&[0.0123, 0.1234, 0.333]);
         for (right, same) in [
             (ground.clone(), true),
-            (ground.late_by(0.0).unwrap(), true),
+            (ground.delayed_by(0.0).unwrap(), true),
             (cut, false),
         ] {
             let both = ground.clone().with_right_foot(right);

@@ -13,7 +13,7 @@ use archrock::mechanics::friction::{least_coefficient, stands};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, Shape};
 use archrock::mechanics::stability::{falls, onset};
-use archrock::{Arch, Outcome, Sway, Until};
+use archrock::{Arch, EndCondition, Outcome, Sway};
 use std::f64::consts::PI;
 
 /// The least number from which a condition holds, to 1e-6.
@@ -184,7 +184,7 @@ fn the_failure_domain_of_the_page_is_that_of_the_command() {
             let scenario = parsed(&text);
             let model = scenario.model().unwrap();
             let case = (scenario.ground_motion().clone(), scenario.request());
-            let simulated = model.simulate_until(Until::Safe, &case);
+            let simulated = model.simulate_until(EndCondition::Safe, &case);
             matches!(simulated.unwrap().outcome, Outcome::Overturned(_))
         };
         assert!(!overturns(shown - reach), "{duration} {shown}");

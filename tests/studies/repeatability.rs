@@ -8,7 +8,7 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, State, Summary};
 use archrock::dynamics::model::Model;
 use archrock::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
-use archrock::dynamics::until::Until;
+use archrock::dynamics::until::EndCondition;
 use archrock::scenario::Scenario;
 use archrock::studies::ending::Ending;
 use archrock::{Contact, ElasticJoints, ElasticProperties, Request, Sway};
@@ -555,7 +555,7 @@ fn what_falls_slowly_is_not_safe() {
             ControlFlow::Continue(())
         };
         let whole = model.simulate(&ground, &request, Some(&mut watch));
-        let early = model.simulate_until(Until::Safe, &(ground.clone(), request));
+        let early = model.simulate_until(EndCondition::Safe, &(ground.clone(), request));
         let falls = |summary: &Summary| matches!(summary.outcome, Outcome::Overturned(_));
         let (whole, early) = (whole.unwrap(), early.unwrap());
         assert!(

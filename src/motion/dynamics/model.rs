@@ -11,7 +11,7 @@ pub use super::recorder::{Recorder, WithoutDemand};
 use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
 pub use super::request::{Initial, Request};
 use super::row::error::RowMotionError;
-use super::until::{Until, UntilSafe};
+use super::until::{EndCondition, SafetyMonitor};
 use crate::argument::ArgumentError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
@@ -79,12 +79,12 @@ pub trait Model: Debug + Send + Sync {
     ///
     /// # Errors
     /// Those of [`Model::simulate`].
-    fn simulate_until(&self, until: Until, case: &Case) -> Result<Summary, SimulationError> {
+    fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {
         let (ground, request) = case;
-        let mut until_safe = UntilSafe::new(until, ground, request);
-        let recorder = until_safe.as_mut().map(|recorder| recorder as _);
+        let mut monitor = SafetyMonitor::new(until, ground, request);
+        let recorder = monitor.as_mut().map(|recorder| recorder as _);
         let mut summary = self.simulate(ground, request, recorder)?;
-        if until_safe.is_some_and(|until_safe| until_safe.has_ended)
+        if monitor.is_some_and(|monitor| monitor.has_ended)
             && summary.outcome == Outcome::Incomplete
         {
             summary.outcome = Outcome::StillRocking;
@@ -94,22 +94,22 @@ pub trait Model: Debug + Send + Sync {
 
     /// Computes the motions of several cases, in their order.
     fn simulate_all(&self, cases: &[Case]) -> Vec<Result<Summary, SimulationError>> {
-        self.simulate_all_until(Until::End, cases)
+        self.simulate_all_until(EndCondition::End, cases)
     }
 
     /// Computes the motions of several cases, in their order, with the early end `until`.
     fn simulate_all_until(
         &self,
-        until: Until,
+        until: EndCondition,
         cases: &[Case],
     ) -> Vec<Result<Summary, SimulationError>> {
-        let mut all = All {
+        let mut queue = CaseQueue {
             until,
             waiting: 0..cases.len(),
             answers: vec![None; cases.len()],
         };
-        self.work(cases, &mut all);
-        let answers: Option<Vec<_>> = all.answers.into_iter().collect();
+        self.work(cases, &mut queue);
+        let answers: Option<Vec<_>> = queue.answers.into_iter().collect();
         answers.expect("all jobs have ended")
     }
 
@@ -173,12 +173,12 @@ pub struct Job {
     /// Index of the [repetition](Model::repetitions) of the model that computes it; `None` for the model itself.
     pub repetition: Option<usize>,
     /// Early end of its computation.
-    pub until: Until,
+    pub until: EndCondition,
 }
 
 impl Job {
     /// Returns the job of a model itself, without repetition, in a case.
-    pub(super) const fn of(case: usize, until: Until) -> Self {
+    pub(super) const fn of(case: usize, until: EndCondition) -> Self {
         Self {
             case,
             repetition: None,
@@ -210,13 +210,13 @@ pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mu
 }
 
 /// Queue of all cases with the same early end, with their results.
-struct All {
-    until: Until,
+struct CaseQueue {
+    until: EndCondition,
     waiting: Range<usize>,
     answers: Vec<Option<Result<Summary, SimulationError>>>,
 }
 
-impl Jobs for All {
+impl Jobs for CaseQueue {
     fn next(&mut self) -> Option<Job> {
         self.waiting.next().map(|case| Job::of(case, self.until))
     }

@@ -2,8 +2,8 @@
 //!
 //! If repetitions differ in whether the structure overturns, the outcome is **uncertain**: neither overturned nor survived. The side of overturning,
 //! and whether a survivor comes to rest, do not count. Most repetitions can be skipped for this question: those of motions whose outcome no later
-//! impact can change (`is_plain`). With rigid joints, a motion close to overturning is uncertain as well if a repetition differs before the largest
-//! rotation: other steps may then change the outcome ([`EarlyDifference`]).
+//! impact can change (`needs_no_repetition`). With rigid joints, a motion close to overturning is uncertain as well if a repetition differs before
+//! the largest rotation: other steps may then change the outcome ([`EarlyDifference`]).
 
 use std::collections::VecDeque;
 
@@ -13,8 +13,8 @@ use thiserror::Error;
 use super::ground::GroundMotion;
 use super::history::{Details, HalfCycle, Outcome, Summary};
 use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError};
-use super::until::Until;
-use super::variation::Running;
+use super::until::EndCondition;
+use super::variation::MotionThread;
 
 /// Relative tolerance within which a peak is certain.
 pub const SAME_PEAK_RATIO: f64 = 0.01;
@@ -255,7 +255,7 @@ fn early_difference(
 /// Repetitions of a motion, computed on separate threads in parallel with the motion. If the motion itself fails, nobody waits for them, and they end
 /// with the program.
 #[derive(Debug)]
-pub struct Repetitions(Vec<(&'static str, Running)>);
+pub struct Repetitions(Vec<(&'static str, MotionThread)>);
 
 /// Error if a repetition failed, so that the repeatability is unknown.
 #[derive(Clone, Debug, Error)]
@@ -271,7 +271,8 @@ impl Repetitions {
     /// Starts all repetitions.
     #[must_use]
     pub fn start(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Self {
-        let start = |Repetition { name, model }| (name, Running::start(model, ground, request));
+        let start =
+            |Repetition { name, model }| (name, MotionThread::start(model, ground, request));
         Self(model.repetitions().into_iter().map(start).collect())
     }
 
@@ -280,7 +281,7 @@ impl Repetitions {
     /// # Errors
     /// If a repetition failed.
     pub fn compare(self, own: &Summary) -> Result<Repeatability, RepeatabilityError> {
-        let ended = |(name, running): (_, Running)| match running.ended() {
+        let ended = |(name, running): (_, MotionThread)| match running.wait() {
             Ok(summary) => Ok((name, summary)),
             Err(error) => Err(RepeatabilityError { name, error }),
         };
@@ -360,13 +361,13 @@ pub struct Checked {
 }
 
 /// Computes the histories of cases, in their order, with repetitions where these may change the verdict. Histories with the early end
-/// [`Until::Settled`] count as come to rest.
-pub fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Checked> {
+/// [`EndCondition::Settled`] count as come to rest.
+pub fn checked(model: &dyn Model, cases: &[Case], until: EndCondition) -> Vec<Checked> {
     let mut checks = Checks::new(model, cases);
-    checks.settles = until == Until::Settled;
+    checks.settles = until == EndCondition::Settled;
     // Models without repetitions are faster up to the end: an early end needs samples.
     let repeats = !checks.names.is_empty();
-    let until = if repeats { until } else { Until::End };
+    let until = if repeats { until } else { EndCondition::End };
     checks.waiting = (0..cases.len()).map(|case| Job::of(case, until)).collect();
     model.work(cases, &mut checks);
     checks.answers()
@@ -416,7 +417,7 @@ impl<'a> Checks<'a> {
     /// Stores the history of a case, and queues its first repetition if that may change the verdict.
     fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
         let (_, request) = &self.cases[case];
-        let matters = |own: &Summary| !is_plain(self.model, request, own);
+        let matters = |own: &Summary| !needs_no_repetition(self.model, request, own);
         if own.as_ref().is_ok_and(matters) {
             self.repeat(case, 0);
         }
@@ -427,7 +428,7 @@ impl<'a> Checks<'a> {
     /// the end of the queue the last of them would run without other motions in parallel.
     fn repeat(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
-            let job = Job::of(case, Until::Safe);
+            let job = Job::of(case, EndCondition::Safe);
             let repetition = Some(repetition);
             self.waiting.push_front(Job { repetition, ..job });
         }
@@ -478,14 +479,14 @@ impl Jobs for Checks<'_> {
 }
 
 /// Energy dissipated by slip and crushing, over the barrier, above which the barrier of elastic joints is no longer valid.
-pub(super) const GONE: f64 = 0.01;
+pub(super) const LARGEST_LOSS_RATIO: f64 = 0.01;
 
 /// Largest energy, over the energy barrier of the first mechanism, below which survivors are not repeated.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
 /// Returns whether repetitions can be skipped: the history is incomplete, the structure never moved, it overturned before its first change of side,
 /// or it survived far from overturning. Up to the first change of side all settings agree.
-fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
+fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
         Outcome::NeverMoved | Outcome::Incomplete => true,
         Outcome::Overturned(_) => own.row().is_some_and(|row| row.half_cycles_with_fall <= 1),
@@ -497,7 +498,8 @@ fn is_plain(model: &dyn Model, request: &Request, own: &Summary) -> bool {
                 Details::Elastic(row, elastic) => {
                     let barrier_j = model.elastic_barrier_j(request.gravity_m_s2);
                     let gone_j = elastic.friction_j + elastic.crushed_j;
-                    let barrier_j = barrier_j.filter(|barrier_j| gone_j < GONE * barrier_j);
+                    let barrier_j =
+                        barrier_j.filter(|barrier_j| gone_j < LARGEST_LOSS_RATIO * barrier_j);
                     barrier_j.map(|barrier_j| row.largest_potential_j / barrier_j)
                 }
             };

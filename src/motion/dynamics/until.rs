@@ -10,7 +10,7 @@ use crate::mechanics::sway::Sway;
 
 /// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Until {
+pub enum EndCondition {
     /// The regular end of the history.
     End,
     /// The structure cannot overturn, no block exceeds its largest rotation, and it comes to rest before the end of the history.
@@ -32,7 +32,7 @@ const HALF_CYCLES_LEFT: f64 = 40.0;
 
 /// Recorder that ends a history once the structure cannot overturn.
 #[derive(Default)]
-pub(super) struct UntilSafe {
+pub(super) struct SafetyMonitor {
     /// Time from which on the ground is quiet, in seconds.
     quiet_s: f64,
     /// Time of the latest rest, in seconds; infinite without this condition.
@@ -47,13 +47,17 @@ pub(super) struct UntilSafe {
     pub(super) has_ended: bool,
 }
 
-impl UntilSafe {
+impl SafetyMonitor {
     /// Returns the recorder for a motion with this end; `None` for the regular end.
-    pub(super) fn new(until: Until, ground: &GroundMotion, request: &Request) -> Option<Self> {
+    pub(super) fn new(
+        until: EndCondition,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Option<Self> {
         let rest_by_s = match until {
-            Until::End => return None,
-            Until::Settled => request.end_s,
-            Until::Safe => f64::INFINITY,
+            EndCondition::End => return None,
+            EndCondition::Settled => request.end_s,
+            EndCondition::Safe => f64::INFINITY,
         };
         Some(Self {
             quiet_s: ground.end_s(),
@@ -79,7 +83,7 @@ impl UntilSafe {
     }
 }
 
-impl Recorder for UntilSafe {
+impl Recorder for SafetyMonitor {
     fn wants_demand(&self) -> bool {
         false
     }

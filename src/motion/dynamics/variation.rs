@@ -18,7 +18,7 @@ pub struct Variation {
 
 /// Result of a variation.
 #[derive(Clone, Debug)]
-pub struct Varied {
+pub struct VariationResult {
     /// Description of the difference.
     pub name: String,
     /// Summary of the motion, or the reason why there is none.
@@ -27,9 +27,9 @@ pub struct Varied {
 
 /// Motion that is computed on a separate thread. The thread ends with the program if nobody waits for the result.
 #[derive(Debug)]
-pub(super) struct Running(JoinHandle<Result<Summary, SimulationError>>);
+pub(super) struct MotionThread(JoinHandle<Result<Summary, SimulationError>>);
 
-impl Running {
+impl MotionThread {
     pub(super) fn start(model: Box<dyn Model>, ground: &GroundMotion, request: &Request) -> Self {
         let (ground, request) = (ground.clone(), *request);
         let simulate = move || model.simulate(&ground, &request, None);
@@ -37,7 +37,7 @@ impl Running {
     }
 
     /// Waits for the result. A panic of the thread continues in the caller.
-    pub(super) fn ended(self) -> Result<Summary, SimulationError> {
+    pub(super) fn wait(self) -> Result<Summary, SimulationError> {
         let joined = self.0.join();
         joined.unwrap_or_else(|panicked| panic::resume_unwind(panicked))
     }
@@ -45,23 +45,23 @@ impl Running {
 
 /// Motions of variations that are being computed.
 #[derive(Debug)]
-pub struct Variations(Vec<(String, Result<Running, String>)>);
+pub struct Variations(Vec<(String, Result<MotionThread, String>)>);
 
 impl Variations {
     /// Starts the computations.
     #[must_use]
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
-        let running = |model| Running::start(model, ground, request);
+        let running = |model| MotionThread::start(model, ground, request);
         let start = |variation: Variation| (variation.name, variation.model.map(running));
         Self(variations.into_iter().map(start).collect())
     }
 
     /// Waits for all results.
     #[must_use]
-    pub fn ended(self) -> Vec<Varied> {
-        let ended = |(name, running): (_, Result<Running, String>)| Varied {
+    pub fn wait(self) -> Vec<VariationResult> {
+        let ended = |(name, running): (_, Result<MotionThread, String>)| VariationResult {
             name,
-            result: running.and_then(|running| running.ended().map_err(|error| error.to_string())),
+            result: running.and_then(|running| running.wait().map_err(|error| error.to_string())),
         };
         self.0.into_iter().map(ended).collect()
     }

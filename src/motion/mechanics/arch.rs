@@ -275,7 +275,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arguments_out_of_range_are_named_with_what_is_allowed() {
+    fn errors_name_the_argument_and_its_allowed_range() {
         let message = |result: Result<Arch, ArgumentError>| result.unwrap_err().to_string();
         let arch = || Arch::new(5.0, 0.15, 180.0).unwrap();
         assert_eq!(

@@ -530,7 +530,7 @@ mod tests {
     /// the ground carries `1 - 3/4 sin^2` of the weight and pushes with `3/4 sin cos` of it. At rest the ground
     /// carries all of the weight, and pushes with its acceleration.
     #[test]
-    fn the_base_carries_what_it_has_to() {
+    fn base_forces_balance_weight_and_inertia() {
         let column = column(0.3, ImpactModel::MaxRestitution);
         for q_rad in [0.0, 0.1, 0.3, 0.5] {
             let (sin, cos) = (0.3_f64 - q_rad).sin_cos();
@@ -609,7 +609,7 @@ mod tests {
                     None => prop_assert!(normal < 1e-6),
                 }
             }
-            // A column that turns about its toe presses the ground there, whatever else it does.
+            // A column that turns about its toe always presses the ground at the toe.
             if let Some(base) = ratios[0] {
                 prop_assert!((base - 0.5).abs() < 1e-12 / -body_force_g.y.min(-1e-2));
             }

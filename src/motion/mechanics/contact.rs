@@ -29,8 +29,8 @@ use super::tie::{TieLine, pull_blocks};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::ring::MassMoments;
 
-use answer::Answer;
-use exchange::Wrong;
+use answer::PinSolution;
+use exchange::WrongCorner;
 use factor::Factor;
 
 /// Tolerance for tensile corner impulses, relative to the sum of all momenta; it matters for rows without compression.
@@ -115,14 +115,14 @@ pub struct Program {
     /// Active corners of every joint in the last solution: those with a compressive impulse.
     pub active: Vec<Corners>,
     factor: Factor,
-    answer: Answer,
+    answer: PinSolution,
     /// Response to a unit impulse at one corner.
-    response: Answer,
+    response: PinSolution,
     /// Velocities of the blocks in the last solution.
     pub velocities: Vec<Twist>,
     force_floor: f64,
     /// Corners that violate a condition: active ones that pull, or inactive ones that close.
-    wrong: Vec<Wrong>,
+    wrong: Vec<WrongCorner>,
     /// Active set before the last exchange.
     earlier: Vec<Corners>,
     /// Joint that closes although an impulse there makes no active corner pull.
@@ -137,8 +137,8 @@ impl Program {
         let mut program = Self {
             active: vec![[true; 2]; joints],
             factor: Factor::new(row),
-            answer: Answer::with_capacity(joints),
-            response: Answer::with_capacity(joints),
+            answer: PinSolution::with_capacity(joints),
+            response: PinSolution::with_capacity(joints),
             velocities: vec![Twist::ZERO; blocks],
             force_floor: 0.0,
             wrong: Vec::with_capacity(2 * joints),
@@ -251,7 +251,7 @@ impl Program {
     }
 
     /// Computes the velocities under another load with the active corners of the last solution, even if some of these pull.
-    pub(crate) fn solve_alike(&mut self, load: &Load) {
+    pub(crate) fn solve_with_last_corners(&mut self, load: &Load) {
         self.set_up(load);
         self.answer.take_load(&self.factor, None);
         self.set_velocities();

@@ -43,7 +43,7 @@ const LEAST_PART: f64 = 1e-6;
 
 /// Tangential mode of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Along {
+pub enum TangentialMode {
     /// Both ends are free, so there is no friction.
     Free,
     /// The joint sticks.
@@ -58,22 +58,22 @@ pub struct Mode {
     /// Flags of contact at the intrados and the extrados end.
     pub pressed: [bool; 2],
     /// Tangential mode.
-    pub along: Along,
+    pub tangential: TangentialMode,
 }
 
 impl Mode {
     /// Mode of a closed joint that sticks.
-    pub const WHOLE: Self = Self {
+    pub const STICKING: Self = Self {
         pressed: [true; 2],
-        along: Along::Stick,
+        tangential: TangentialMode::Stick,
     };
 
     /// Returns a consistent mode: a joint without contact has no friction, and a new contact sticks at first.
     fn settled(mut self) -> Self {
         if self.pressed == [false; 2] {
-            self.along = Along::Free;
-        } else if self.along == Along::Free {
-            self.along = Along::Stick;
+            self.tangential = TangentialMode::Free;
+        } else if self.tangential == TangentialMode::Free {
+            self.tangential = TangentialMode::Stick;
         }
         self
     }
@@ -89,16 +89,16 @@ pub struct Solution {
     /// Largest error of a friction bound, relative to the largest bound; zero if Coulomb's law holds exactly.
     pub bound_error: f64,
     /// Largest residual rate due to the proximal term, in m/s.
-    pub drawn_m_s: f64,
+    pub residual_m_s: f64,
 }
 
 /// Equation for one coordinate of a joint.
 #[derive(Clone, Copy, Debug)]
 enum Equation {
     /// The rate is zero.
-    Still,
+    ZeroRate,
     /// The impulse is given, in N s.
-    Given(f64),
+    GivenImpulse(f64),
     /// The impulse is this multiple of the sum of the impulses at both ends.
     Friction(f64),
 }
@@ -157,17 +157,17 @@ impl Program {
             own: vec![Matrix3::zeros(); joints],
             next: vec![Matrix3::zeros(); joints],
             drive: vec![Vector3::zeros(); joints],
-            modes: vec![Mode::WHOLE; joints],
+            modes: vec![Mode::STICKING; joints],
             impulses: vec![Vector3::zeros(); joints],
             before: vec![Vector3::zeros(); joints],
             rates: vec![Vector3::zeros(); joints],
             velocities: vec![Vector3::zeros(); blocks],
             free: vec![Vector3::zeros(); blocks],
             bounds: vec![0.0; joints],
-            equations: vec![[Equation::Still; 3]; joints],
+            equations: vec![[Equation::ZeroRate; 3]; joints],
             gains: vec![Matrix3::zeros(); joints],
             target: vec![Vector3::zeros(); joints],
-            modes_before: vec![Mode::WHOLE; joints],
+            modes_before: vec![Mode::STICKING; joints],
             kept: vec![Vector3::zeros(); joints],
         }
     }
@@ -266,8 +266,8 @@ impl Program {
             solution.bound_error = self.bounded(tolerance, &mut solution.passes);
         }
         solution.changed = self.modes != self.modes_before;
-        let drawn = (0..self.own.len()).map(|joint| self.drawn(joint).amax());
-        solution.drawn_m_s = drawn.fold(0.0, f64::max);
+        let proximal_rates = (0..self.own.len()).map(|joint| self.proximal_rates(joint).amax());
+        solution.residual_m_s = proximal_rates.fold(0.0, f64::max);
         self.set_velocities();
         solution
     }
@@ -287,14 +287,16 @@ impl Program {
     fn newton(&mut self, passes: usize, one: bool, tolerance: f64, count: &mut usize) -> bool {
         for _ in 0..passes {
             for (equations, mode) in self.equations.iter_mut().zip(&self.modes) {
-                let end = |pressed| [Equation::Given(0.0), Equation::Still][usize::from(pressed)];
+                let end = |pressed| {
+                    [Equation::GivenImpulse(0.0), Equation::ZeroRate][usize::from(pressed)]
+                };
                 *equations = [
                     end(mode.pressed[0]),
                     end(mode.pressed[1]),
-                    match mode.along {
-                        Along::Free => Equation::Given(0.0),
-                        Along::Stick => Equation::Still,
-                        Along::Slip(sign) => Equation::Friction(sign * self.coefficient),
+                    match mode.tangential {
+                        TangentialMode::Free => Equation::GivenImpulse(0.0),
+                        TangentialMode::Stick => Equation::ZeroRate,
+                        TangentialMode::Slip(sign) => Equation::Friction(sign * self.coefficient),
                     },
                 ];
             }
@@ -302,7 +304,7 @@ impl Program {
             *count += 1;
             std::mem::swap(&mut self.impulses, &mut self.target);
             self.find_rates();
-            if self.mend(one, tolerance) {
+            if self.correct_modes(one, tolerance) {
                 return true;
             }
         }
@@ -310,9 +312,9 @@ impl Program {
     }
 
     /// Changes the modes that contradict the impulses and rates. Returns true if there are none.
-    fn mend(&mut self, one: bool, tolerance: f64) -> bool {
+    fn correct_modes(&mut self, one: bool, tolerance: f64) -> bool {
         let mut right = true;
-        let mut worst = (0.0, 0, Mode::WHOLE);
+        let mut worst = (0.0, 0, Mode::STICKING);
         for joint in 0..self.modes.len() {
             let (impulse, rate) = (&self.impulses[joint], &self.rates[joint]);
             let compliance = self.own[joint].diagonal();
@@ -329,13 +331,13 @@ impl Program {
             }
             let bound = self.coefficient * (impulse.x + impulse.y).max(0.0);
             let beyond = (impulse.z.abs() - bound) * compliance.z;
-            let (wrong, along) = match mode.along {
-                Along::Free => (0.0, Along::Free),
-                Along::Stick => (beyond, Along::Slip(impulse.z.signum())),
-                Along::Slip(sign) => (sign * rate.z, Along::Stick),
+            let (wrong, tangential) = match mode.tangential {
+                TangentialMode::Free => (0.0, TangentialMode::Free),
+                TangentialMode::Stick => (beyond, TangentialMode::Slip(impulse.z.signum())),
+                TangentialMode::Slip(sign) => (sign * rate.z, TangentialMode::Stick),
             };
             if wrong > tolerance {
-                mode.along = along;
+                mode.tangential = tangential;
                 by = by.max(wrong);
             }
             let mode = mode.settled();
@@ -365,13 +367,13 @@ impl Program {
             };
             for row in 0..3 {
                 match program.equations[joint][row] {
-                    Equation::Still => {
+                    Equation::ZeroRate => {
                         let proximal = program.proximal(joint, row);
                         balance.matrix[(row, row)] += proximal;
                         balance.right[row] += proximal * program.before[joint][row];
                         continue;
                     }
-                    Equation::Given(value) => {
+                    Equation::GivenImpulse(value) => {
                         balance.matrix.set_row(row, &RowVector3::zeros());
                         balance.matrix[(row, row)] = 1.0;
                         balance.right[row] = value;
@@ -425,7 +427,7 @@ impl Program {
     fn find_rates(&mut self) {
         for joint in 0..self.rates.len() {
             let rate = self.drive[joint] + self.response(joint, &self.impulses);
-            self.rates[joint] = rate + self.drawn(joint);
+            self.rates[joint] = rate + self.proximal_rates(joint);
         }
     }
 
@@ -442,9 +444,9 @@ impl Program {
     }
 
     /// Returns the rates of a joint due to the proximal term.
-    fn drawn(&self, joint: usize) -> Vector3<f64> {
-        let drawn = self.impulses[joint] - self.before[joint];
-        self.own[joint].diagonal().component_mul(&drawn) * PROXIMAL
+    fn proximal_rates(&self, joint: usize) -> Vector3<f64> {
+        let change = self.impulses[joint] - self.before[joint];
+        self.own[joint].diagonal().component_mul(&change) * PROXIMAL
     }
 
     /// Solves problems with fixed bounds, until the modes converge or the bounds agree with the impulses. Returns the relative error of the bounds.
@@ -499,10 +501,10 @@ impl Program {
             let (impulse, bound) = (&self.impulses[joint], self.bounds[joint]);
             *mode = Mode {
                 pressed: [impulse.x > 0.0, impulse.y > 0.0],
-                along: if impulse.z.abs() < bound {
-                    Along::Stick
+                tangential: if impulse.z.abs() < bound {
+                    TangentialMode::Stick
                 } else {
-                    Along::Slip(impulse.z.signum())
+                    TangentialMode::Slip(impulse.z.signum())
                 },
             }
             .settled();
@@ -522,19 +524,19 @@ impl Program {
                 self.impulses[joint][row] = self.impulses[joint][row].clamp(least, most);
             }
         }
-        let mut height = self.height();
+        let mut objective = self.objective_j();
         for _ in 0..BOUNDED_STEPS {
-            // `height` has set the rates for these impulses.
+            // `objective_j` has set the rates for these impulses.
             let mut open = 0.0_f64;
             for joint in 0..self.impulses.len() {
                 for (row, (least, most)) in self.limits(joint).into_iter().enumerate() {
                     let (impulse, rate) = (self.impulses[joint][row], self.rates[joint][row]);
                     let held = (impulse <= least && rate > 0.0) || (impulse >= most && rate < 0.0);
                     self.equations[joint][row] = if held || least >= most {
-                        Equation::Given(impulse)
+                        Equation::GivenImpulse(impulse)
                     } else {
                         open = open.max(rate.abs());
-                        Equation::Still
+                        Equation::ZeroRate
                     };
                 }
             }
@@ -555,9 +557,9 @@ impl Program {
                         slope += slopes[joint][row] * (self.impulses[joint][row] - from);
                     }
                 }
-                let reached = self.height();
-                if reached <= height + DESCENT * slope || part < LEAST_PART {
-                    height = reached;
+                let reached = self.objective_j();
+                if reached <= objective + DESCENT * slope || part < LEAST_PART {
+                    objective = reached;
                     break;
                 }
                 part *= 0.5;
@@ -566,12 +568,12 @@ impl Program {
     }
 
     /// Returns the objective of the problem with fixed bounds, in J, and sets the rates.
-    fn height(&mut self) -> f64 {
+    fn objective_j(&mut self) -> f64 {
         self.find_rates();
         let mut twice = 0.0;
         for joint in 0..self.impulses.len() {
             let impulse = &self.impulses[joint];
-            let proximal = self.drawn(joint);
+            let proximal = self.proximal_rates(joint);
             twice += impulse.dot(&(self.rates[joint] + self.drive[joint] - proximal))
                 + (impulse - self.before[joint]).dot(&proximal);
         }

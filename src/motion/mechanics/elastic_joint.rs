@@ -15,7 +15,7 @@ mod structure;
 mod tie;
 
 pub use contact::{Contact, ElasticJoint, Fibre, Memory, NormalForces, ShearForce};
-pub use kinematics::{Action, Gap, Link, Place};
+pub use kinematics::{Action, BodyPosition, Gap, JointGeometry};
 pub use statics::{Rest, RestError};
 pub use structure::{ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness};
 pub use tie::BoundTie;

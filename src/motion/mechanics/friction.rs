@@ -23,11 +23,11 @@ const COEFFICIENT_TOLERANCE: f64 = 1e-7;
 /// Coefficient of friction that is assumed to prevent all slip.
 const LARGEST_COEFFICIENT: f64 = 100.0;
 /// Excess of friction over its bound, over the weight, that counts as zero.
-const LEAST_SHORTAGE: f64 = 1e-8;
+const LEAST_FRICTION_EXCESS: f64 = 1e-8;
 
 /// Joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Yield {
+pub struct YieldingJoint {
     /// Index of the joint.
     pub joint: usize,
     /// Flags of opening at the intrados and at the extrados, beyond the dilation due to slip.
@@ -42,7 +42,7 @@ pub struct FrictionOnset {
     /// Ground acceleration, without its sign, in multiples of gravity: upper bound by the associated flow rule.
     pub acceleration_g: f64,
     /// Joints that open or slip, from left to right.
-    pub yields: Vec<Yield>,
+    pub yields: Vec<YieldingJoint>,
 }
 
 impl FrictionOnset {
@@ -107,10 +107,10 @@ pub(crate) fn onset_of_standing(
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    let program = Program::new(row, stance, coefficient, Goal::Push);
+    let program = Program::new(row, stance, coefficient, Objective::Push);
     let found = program.solve(-sway.sign(), FrictionError::CannotStand(coefficient))?;
-    Ok(found.map(|(goal, yields)| FrictionOnset {
-        acceleration_g: sway.sign() * goal,
+    Ok(found.map(|(objective, yields)| FrictionOnset {
+        acceleration_g: sway.sign() * objective,
         yields,
     }))
 }
@@ -132,9 +132,9 @@ pub(crate) fn stands_at(
     stance: &Stance,
     coefficient: f64,
 ) -> Result<bool, FrictionError> {
-    let program = Program::new(row, stance, coefficient, Goal::Shortage);
+    let program = Program::new(row, stance, coefficient, Objective::FrictionExcess);
     let found = program.solve(1.0, FrictionError::NeverStands)?;
-    Ok(found.is_none_or(|(shortage, _)| shortage <= LEAST_SHORTAGE))
+    Ok(found.is_none_or(|(shortage, _)| shortage <= LEAST_FRICTION_EXCESS))
 }
 
 /// Returns the least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.
@@ -154,11 +154,11 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
 
 /// Objective of a linear program.
 #[derive(Clone, Copy, PartialEq)]
-enum Goal {
+enum Objective {
     /// Largest push, in multiples of gravity.
     Push,
     /// Least excess of friction over its bound, common to all joints, for which the row is stable; in units of the weight.
-    Shortage,
+    FrictionExcess,
 }
 
 /// Linear program. Unknowns: the objective, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: equilibrium of every block, zero
@@ -191,7 +191,7 @@ fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
 }
 
 impl Program {
-    fn new(row: &Row, stance: &Stance, coefficient: f64, goal: Goal) -> Self {
+    fn new(row: &Row, stance: &Stance, coefficient: f64, objective: Objective) -> Self {
         let placement = &stance.placement;
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let centres_m = &placement.centres_m;
@@ -200,7 +200,7 @@ impl Program {
         let mut entries = Vec::new();
         let mut put = |row, column, value: f64| entries.push((row, column, value));
         let mut right = loads(row, stance);
-        if goal == Goal::Push {
+        if objective == Objective::Push {
             for (index, block) in row.blocks.iter().enumerate() {
                 put(3 * index, 0, block.mass_kg / row.mass_kg());
             }
@@ -246,7 +246,7 @@ impl Program {
                 put(first + slip, intrados, -coefficient);
                 put(first + slip, extrados, -coefficient);
                 put(first + slip, along, sign);
-                if goal == Goal::Shortage {
+                if objective == Objective::FrictionExcess {
                     put(first + slip, 0, -1.0);
                 }
             }
@@ -269,7 +269,7 @@ impl Program {
         &self,
         factor: f64,
         unbalanced: FrictionError,
-    ) -> Result<Option<(f64, Vec<Yield>)>, FrictionError> {
+    ) -> Result<Option<(f64, Vec<YieldingJoint>)>, FrictionError> {
         let width = 1 + 3 * self.joints;
         let mut objective = vec![0.0; width];
         objective[0] = factor;
@@ -288,12 +288,15 @@ impl Program {
         let rates = &solution.z[self.equations..];
         let largest = rates.iter().copied().fold(0.0, f64::max);
         let moves = |rate: f64| rate > LEAST_RATE * largest;
-        let yields = rates.chunks(4).enumerate().map(|(joint, rates)| Yield {
-            joint,
-            opens: [moves(rates[0]), moves(rates[1])],
-            // Friction at its bound acts against the slip.
-            slips: Edge::only([moves(rates[2]), moves(rates[3])]),
-        });
+        let yields = rates
+            .chunks(4)
+            .enumerate()
+            .map(|(joint, rates)| YieldingJoint {
+                joint,
+                opens: [moves(rates[0]), moves(rates[1])],
+                // Friction at its bound acts against the slip.
+                slips: Edge::only([moves(rates[2]), moves(rates[3])]),
+            });
         let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());
         Ok(Some((solution.x[0], yields.collect())))
     }

@@ -41,7 +41,7 @@ const EVEN: f64 = 0.05;
 /// Longest step with ties, in the units of [`STEP`].
 const LONGEST_STEP: f64 = 0.064;
 /// Perturbations beyond an inadmissible state, in the units of [`STEP`], tried in turn until the row finds other hinges.
-const NUDGES: [f64; 3] = [1e-6, 1e-5, 1e-4];
+const PERTURBATIONS: [f64; 3] = [1e-6, 1e-5, 1e-4];
 /// Horizontal pushes, in multiples of gravity, that break the symmetry of a row; tried in turn.
 const TILTS_G: [f64; 3] = [0.0, 1e-6, 1e-4];
 /// Tolerance: relative to the weight for forces, in radians for rotations.
@@ -94,7 +94,7 @@ impl Movements {
     }
 
     /// Returns whether both supports have moved as one rigid body, within rounding error.
-    fn are_one_motion(&self, row: &Row) -> bool {
+    fn are_rigid_motion(&self, row: &Row) -> bool {
         let [left, right] = self.poses(row);
         let moved_m = left.translation.norm().max(row.size_m);
         (left.translation - right.translation).norm() <= ROUNDING * moved_m
@@ -172,7 +172,7 @@ pub enum SettlingError {
     Ties,
     /// No other hinges were found on which the row is in equilibrium, at this position along the path.
     #[error("its hinges give way, and no others were found on which it rests")]
-    Lost(f64),
+    NoEquilibrium(f64),
     /// The row comes to rest with a joint that is open at both edges.
     #[error(
         "its hinges give way, and joint {joint} (from 0 at the left springing) parts: blocks that do not touch are not followed"
@@ -190,7 +190,7 @@ impl SettlingError {
     #[must_use]
     pub const fn at(&self) -> Option<f64> {
         match self {
-            Self::Lost(at) | Self::Parted { at, .. } => Some(*at),
+            Self::NoEquilibrium(at) | Self::Parted { at, .. } => Some(*at),
             Self::OneSupport | Self::Stability(_) | Self::Contact(_) | Self::Ties => None,
         }
     }
@@ -276,7 +276,7 @@ impl<'a> Follower<'a> {
         if extent == 0.0 {
             return Ok(None);
         }
-        if self.hinges.is_none() && last.are_one_motion(row) {
+        if self.hinges.is_none() && last.are_rigid_motion(row) {
             return Ok(self.move_along(&movements, [from, to])?);
         }
         let path = |at: f64| Condition {
@@ -364,7 +364,7 @@ impl<'a> Follower<'a> {
     ) -> Result<Option<f64>, SettlingError> {
         let mut low = from;
         if self.hinges.is_none() {
-            match self.give_way(path, low, unit)? {
+            match self.exchange_hinges(path, low, unit)? {
                 Some(at) => low = at,
                 None => return Ok(Some(low)),
             }
@@ -386,7 +386,7 @@ impl<'a> Follower<'a> {
                 // The state of ties depends on the path.
                 if !self.row.ties.is_empty() {
                     rates = self.rates(&state, next - low).collect();
-                    self.stand(&condition, state);
+                    self.set_state(&condition, state);
                 }
                 if steady {
                     step = (2.0 * step).min(LONGEST_STEP);
@@ -399,14 +399,14 @@ impl<'a> Follower<'a> {
             let is_held = self.is_held_by_ties();
             let rounding = if is_held { self.slack } else { 0.0 };
             let (last, _) = falls_below_zero(low, (next, margin_there), rounding, margin);
-            self.stand_in(&path(last));
-            match self.give_way(path, last, unit)? {
+            self.move_to(&path(last));
+            match self.exchange_hinges(path, last, unit)? {
                 Some(at) => low = at,
                 None => return Ok(Some(last)),
             }
             (step, rates) = (STEP, Vec::new());
         }
-        self.stand_in(&path(to.max(low)));
+        self.move_to(&path(to.max(low)));
         Ok(None)
     }
 
@@ -435,14 +435,14 @@ impl<'a> Follower<'a> {
     }
 
     /// Moves the row to a loading that its hinges can carry.
-    fn stand_in(&mut self, condition: &Condition) {
+    fn move_to(&mut self, condition: &Condition) {
         if let Some(state) = self.state_in(condition) {
-            self.stand(condition, state);
+            self.set_state(condition, state);
         }
     }
 
     /// Moves the row to a loading, with a known state of its hinges.
-    fn stand(&mut self, condition: &Condition, state: State) {
+    fn set_state(&mut self, condition: &Condition, state: State) {
         self.condition = *condition;
         self.stance.placement.move_supports(condition.supports);
         self.stance.placement.turn(&state.rotations_rad);
@@ -458,7 +458,7 @@ impl<'a> Follower<'a> {
         let mut pins = self.hinges.clone()?;
         for _ in 0..MOST_EXCHANGES {
             let state = pins.state(self.row, condition, &self.stance)?;
-            let wrong = state.beyond(-self.slack);
+            let wrong = state.joints_below_margin(-self.slack);
             if wrong.is_empty() {
                 return Some((pins, state));
             }
@@ -468,7 +468,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Replaces hinges that become inadmissible. Returns the position along the path from which other hinges carry the row; `None` if it falls.
-    fn give_way(
+    fn exchange_hinges(
         &mut self,
         path: &impl Fn(f64) -> Condition,
         at: f64,
@@ -477,11 +477,12 @@ impl<'a> Follower<'a> {
         let before = self.hinges.clone();
         let last = path(at);
         let mut parted = None;
-        for nudge in NUDGES {
-            let beyond = at + nudge * unit;
+        for perturbation in PERTURBATIONS {
+            let beyond = at + perturbation * unit;
             let condition = path(beyond);
             let state = self.state_in(&condition);
-            let causes = state.map_or_else(Vec::new, |state| state.beyond(-self.slack));
+            let causes =
+                state.map_or_else(Vec::new, |state| state.joints_below_margin(-self.slack));
             let snap = |after: Option<&Pins>| Snap {
                 at,
                 before: before.as_ref().map(|hinges| hinges.hinges.to_vec()),
@@ -491,7 +492,7 @@ impl<'a> Follower<'a> {
             if let Some((hinges, state)) = self.exchanged(&condition) {
                 self.snaps.push(snap(Some(&hinges)));
                 self.hinges = Some(hinges);
-                self.stand(&condition, state);
+                self.set_state(&condition, state);
                 return Ok(Some(beyond));
             }
             for tilt_g in TILTS_G {
@@ -505,18 +506,18 @@ impl<'a> Follower<'a> {
                     continue;
                 };
                 let state = hinges.state(self.row, &condition, &stance);
-                if let Some(state) = state.filter(|state| state.holds(self.slack)) {
+                if let Some(state) = state.filter(|state| state.is_admissible(self.slack)) {
                     self.snaps.push(snap(Some(&hinges)));
                     self.hinges = Some(hinges);
                     self.stance = stance;
-                    self.stand(&condition, state);
+                    self.set_state(&condition, state);
                     return Ok(Some(beyond));
                 }
             }
         }
         Err(match parted {
             Some(joint) => SettlingError::Parted { at, joint },
-            None => SettlingError::Lost(at),
+            None => SettlingError::NoEquilibrium(at),
         })
     }
 }

@@ -22,7 +22,7 @@ const STANDSTILL: f64 = 1e-9;
 
 /// Joint that opens in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Opening {
+pub struct OpeningJoint {
     /// Index of the joint.
     pub joint: usize,
     /// Corner about which the joint opens; `None` if it opens at both edges.
@@ -37,7 +37,7 @@ pub struct RowOnset {
     /// Ground acceleration, without its sign, in units of gravity.
     pub acceleration_g: f64,
     /// Opening joints of the mechanism, from left to right.
-    pub openings: Vec<Opening>,
+    pub openings: Vec<OpeningJoint>,
     /// Velocities of the blocks from left to right, in metres up to a common factor, at the origin.
     pub velocities: Vec<Twist>,
     /// Rates at which the ties lengthen, in metres up to the same factor.
@@ -49,7 +49,7 @@ pub struct RowOnset {
 pub enum StabilityError {
     /// The row does not carry its own weight.
     #[error("the row cannot carry its own weight")]
-    CannotStand(Vec<Opening>),
+    CannotStand(Vec<OpeningJoint>),
     /// The velocities of a trial mechanism were not found.
     #[error(transparent)]
     Contact(#[from] ContactError),
@@ -59,7 +59,7 @@ pub enum StabilityError {
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
+pub fn falls(row: &Row) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
     falls_at(row, &Stance::undeformed(row))
 }
 
@@ -67,7 +67,7 @@ pub fn falls(row: &Row) -> Result<Option<Vec<Opening>>, ContactError> {
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn falls_at(row: &Row, stance: &Stance) -> Result<Option<Vec<Opening>>, ContactError> {
+pub fn falls_at(row: &Row, stance: &Stance) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
     let mut trial = Trial::new(row, stance);
     let moves = trial.moves(Vector2::new(0.0, -1.0), true)?;
     Ok(moves.map(|_| trial.openings()))
@@ -142,16 +142,16 @@ pub fn limit_with_yielding_ties(
     let pushed = |push_g: f64| Vector2::new(sway.sign() * push_g, -1.0);
     let weight_n = row.mass_kg() * row.gravity_m_s2;
     let ties = row.ties.iter();
-    let most = ties.map(|tie| (tie.yield_force_n / weight_n).min(STRONGEST));
+    let largest_forces = ties.map(|tie| (tie.yield_force_n / weight_n).min(LARGEST_TIE_FORCE));
     let undeformed = Stance::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
     let work_at_rest = work(row, &undeformed.placement, &at_rest.velocities);
-    let mut highest = Highest::new(most.collect());
+    let mut push_program = LargestPushProgram::new(largest_forces.collect());
     let at_rest = Plane::new(row, work_at_rest, &at_rest.lengthening, sway);
-    highest.planes.push(at_rest);
+    push_program.planes.push(at_rest);
     let (mut push_g, mut forces) = (f64::INFINITY, Vec::new());
     for _ in 0..MOST_TRIALS {
-        let Some((highest_g, next)) = highest.find() else {
+        let Some((highest_g, next)) = push_program.solve() else {
             break;
         };
         if (highest_g, &next) == (push_g, &forces) {
@@ -161,32 +161,33 @@ pub fn limit_with_yielding_ties(
         let ties_kg = forces.iter().map(|force| force * row.mass_kg());
         trial.ties_kg = ties_kg.collect();
         let mut lower_g = push_g;
-        let known = highest.planes.len();
+        let known = push_program.planes.len();
         // Reduce the push at the same tie forces, down to the one that is carried.
         while trial.moves(pushed(lower_g), true)?.is_some() {
             let plane = Plane::new(row, trial.work(), &trial.lengthening(), sway);
             let bound_g = plane.bound_g(&forces);
-            highest.planes.push(plane);
+            push_program.planes.push(plane);
             let falls = |bound_g: &f64| *bound_g >= 0.0 && *bound_g < lower_g * (1.0 - 1e-14);
             let Some(bound_g) = bound_g.filter(falls) else {
                 break;
             };
             lower_g = bound_g;
         }
-        if highest.planes.len() == known {
+        if push_program.planes.len() == known {
             break;
         }
     }
     // A push at the artificial limits of the linear program is unlimited.
     let mut strongest = row.ties.iter().zip(&forces);
     let unbounded = push_g >= 0.99 * LARGEST_PUSH
-        || strongest
-            .any(|(tie, force)| tie.yield_force_n > force * weight_n && *force >= 0.99 * STRONGEST);
+        || strongest.any(|(tie, force)| {
+            tie.yield_force_n > force * weight_n && *force >= 0.99 * LARGEST_TIE_FORCE
+        });
     if unbounded {
         return Ok(None);
     }
     // A slightly larger push shows the mechanism.
-    trial.moves(pushed(push_g * (1.0 + BEYOND)), true)?;
+    trial.moves(pushed(push_g * (1.0 + PUSH_INCREASE)), true)?;
     let ties = row.ties.iter().zip(&forces);
     let forces_n = ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n));
     let (onset, forces_n) = (trial.onset(push_g), forces_n.collect());
@@ -194,13 +195,13 @@ pub fn limit_with_yielding_ties(
 }
 
 /// Relative increase of the push at the limit that shows its mechanism.
-const BEYOND: f64 = 1e-6;
+const PUSH_INCREASE: f64 = 1e-6;
 /// Artificial limit of tie forces, in multiples of the weight.
-const STRONGEST: f64 = 1e3;
+const LARGEST_TIE_FORCE: f64 = 1e3;
 /// Artificial limit of the push, in multiples of gravity.
 const LARGEST_PUSH: f64 = 1e6;
 /// Small cost of tie forces in the objective, which selects the smallest forces among equivalent ones.
-const LESS_FORCE: f64 = 1e-9;
+const FORCE_COST: f64 = 1e-9;
 /// Maximum number of simplex steps.
 const MOST_EXCHANGES: usize = 10_000;
 /// Number of simplex steps between recomputations of the inverse of the basis.
@@ -210,10 +211,10 @@ const ROUNDING: f64 = 1e-14;
 /// Maximum number of tested tie forces.
 const MOST_TRIALS: usize = 200;
 
-/// Linear bound of push and tie forces, as from a mechanism: `slopes` times (push, forces) is at most `most`, in units of the weight.
+/// Linear bound of push and tie forces, as from a mechanism: `slopes` times (push, forces) is at most `bound`, in units of the weight.
 struct Plane {
     slopes: DVector<f64>,
-    most: f64,
+    bound: f64,
 }
 
 impl Plane {
@@ -227,7 +228,7 @@ impl Plane {
         let slopes = [push].into_iter().chain(tied);
         Self {
             slopes: DVector::from_iterator(1 + lengthening.len(), slopes) / largest,
-            most: weight / largest,
+            bound: weight / largest,
         }
     }
 
@@ -235,7 +236,7 @@ impl Plane {
     fn bound_g(&self, forces: &[f64]) -> Option<f64> {
         let (push, pulls) = (self.slopes[0], self.slopes.iter().skip(1));
         let held: f64 = pulls.zip(forces).map(|(pull, force)| -pull * force).sum();
-        (push > 0.0).then(|| (self.most + held) / push)
+        (push > 0.0).then(|| (self.bound + held) / push)
     }
 }
 
@@ -243,46 +244,50 @@ impl Plane {
 ///
 /// It is solved by the dual simplex method, from the corner of the artificial limits. Each step replaces one active constraint by the one that is
 /// violated most. After a new plane is added, the last corner is the start of the next search.
-struct Highest {
+struct LargestPushProgram {
     /// Largest tie forces.
-    most: Vec<f64>,
+    largest_forces: Vec<f64>,
     /// Constraints.
     planes: Vec<Plane>,
     /// Indices of the active constraints.
     basis: Vec<usize>,
     /// Inverse of the matrix with the slopes of the active constraints as rows.
     inverse: DMatrix<f64>,
-    goal: DVector<f64>,
+    objective: DVector<f64>,
 }
 
-impl Highest {
-    fn new(most: Vec<f64>) -> Self {
-        let width = 1 + most.len();
-        let axis = |index: usize, slope: f64, most: f64| {
+impl LargestPushProgram {
+    fn new(largest_forces: Vec<f64>) -> Self {
+        let width = 1 + largest_forces.len();
+        let axis = |index: usize, slope: f64, bound: f64| {
             let mut slopes = DVector::zeros(width);
             slopes[index] = slope;
-            Plane { slopes, most }
+            Plane { slopes, bound }
         };
         let mut planes = vec![axis(0, 1.0, LARGEST_PUSH)];
-        planes.extend((1..).zip(&most).map(|(tie, most)| axis(tie, 1.0, *most)));
+        planes.extend(
+            (1..)
+                .zip(&largest_forces)
+                .map(|(tie, bound)| axis(tie, 1.0, *bound)),
+        );
         planes.extend((0..width).map(|index| axis(index, -1.0, 0.0)));
         // Among equivalent forces, prefer the smallest.
-        let mut goal = DVector::repeat(width, -LESS_FORCE);
-        goal[0] = 1.0;
+        let mut objective = DVector::repeat(width, -FORCE_COST);
+        objective[0] = 1.0;
         // The first corner has the largest push and zero tie forces; its matrix is its own inverse.
         let mut inverse = -DMatrix::identity(width, width);
         inverse[(0, 0)] = 1.0;
         Self {
-            most,
+            largest_forces,
             basis: [0].into_iter().chain(width + 1..2 * width).collect(),
             planes,
             inverse,
-            goal,
+            objective,
         }
     }
 
     /// Returns the push and the tie forces; `None` if there are none.
-    fn find(&mut self) -> Option<(f64, Vec<f64>)> {
+    fn solve(&mut self) -> Option<(f64, Vec<f64>)> {
         for exchange in 1..=MOST_EXCHANGES {
             if exchange % EXACT_EXCHANGES == 0 {
                 let width = self.basis.len();
@@ -293,8 +298,8 @@ impl Highest {
             }
             let at = self.corner();
             let Some(entering) = self.most_violated(&at) else {
-                let ties = self.most.iter().enumerate();
-                let forces = ties.map(|(tie, most)| at[1 + tie].clamp(0.0, *most));
+                let ties = self.largest_forces.iter().enumerate();
+                let forces = ties.map(|(tie, bound)| at[1 + tie].clamp(0.0, *bound));
                 return Some((at[0], forces.collect()));
             };
             self.exchange(entering)?;
@@ -306,10 +311,10 @@ impl Highest {
     fn corner(&self) -> DVector<f64> {
         let basis = || self.basis.iter().map(|index| &self.planes[*index]);
         let width = self.basis.len();
-        let bounds = DVector::from_iterator(width, basis().map(|plane| plane.most));
+        let bounds = DVector::from_iterator(width, basis().map(|plane| plane.bound));
         let at = &self.inverse * bounds;
         // One step of iterative refinement, because updates of the inverse lose digits.
-        let left = basis().map(|plane| plane.most - plane.slopes.dot(&at));
+        let left = basis().map(|plane| plane.bound - plane.slopes.dot(&at));
         let left = DVector::from_iterator(width, left);
         at + &self.inverse * left
     }
@@ -318,7 +323,7 @@ impl Highest {
     fn most_violated(&self, at: &DVector<f64>) -> Option<usize> {
         let mut worst = (0.0, None);
         for (index, plane) in self.planes.iter().enumerate() {
-            let (mut sum, mut size) = (-plane.most, plane.most.abs());
+            let (mut sum, mut size) = (-plane.bound, plane.bound.abs());
             for (slope, place) in plane.slopes.iter().zip(at.iter()) {
                 sum += slope * place;
                 size += (slope * place).abs();
@@ -333,7 +338,7 @@ impl Highest {
 
     /// Adds a constraint to the active ones in place of another; `None` if none can leave.
     fn exchange(&mut self, entering: usize) -> Option<()> {
-        let multipliers = self.inverse.tr_mul(&self.goal);
+        let multipliers = self.inverse.tr_mul(&self.objective);
         let shares = self.inverse.tr_mul(&self.planes[entering].slopes);
         let (leaving, _) = (0..shares.len())
             .filter(|index| shares[*index] > 1e-11)
@@ -418,11 +423,11 @@ impl<'a> Trial<'a> {
         rates.collect()
     }
 
-    fn openings(&self) -> Vec<Opening> {
+    fn openings(&self) -> Vec<OpeningJoint> {
         let rates = || self.program.open_joints();
-        let most = rates().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
-        let opens = rates().filter(|(_, rates)| rates.iter().any(|rate| *rate > 1e-9 * most));
-        let openings = opens.map(|(joint, rates)| Opening {
+        let fastest = rates().flat_map(|(_, rates)| rates).fold(0.0, f64::max);
+        let opens = rates().filter(|(_, rates)| rates.iter().any(|rate| *rate > 1e-9 * fastest));
+        let openings = opens.map(|(joint, rates)| OpeningJoint {
             joint,
             hinge: Edge::only(self.program.active[joint]),
             rates,

@@ -11,7 +11,7 @@ use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Case, Model, Request};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{Checked, checked};
-use crate::dynamics::until::Until;
+use crate::dynamics::until::EndCondition;
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,16 +142,20 @@ impl Ending {
     /// instead.
     #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
-        Self::checked(model, cases, Until::End)
+        Self::checked(model, cases, EndCondition::End)
     }
 
     /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
     #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
-        Self::checked(model, cases, Until::Settled)
+        Self::checked(model, cases, EndCondition::Settled)
     }
 
-    fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Result<Self, String>> {
+    fn checked(
+        model: &dyn Model,
+        cases: &[Case],
+        until: EndCondition,
+    ) -> Vec<Result<Self, String>> {
         let ending = |checked: Checked| {
             let summary = checked.own.map_err(|error| error.to_string())?;
             Self::from_summary(&summary, checked.safe_from_s, checked.doubt)

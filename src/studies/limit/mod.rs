@@ -128,7 +128,7 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
 fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
     let sides = Sides::try_of(|sway| {
         let onset = friction::onset(row, coefficient, sway)?;
-        let joint = |joint: &friction::Yield| YieldingJoint {
+        let joint = |joint: &friction::YieldingJoint| YieldingJoint {
             joint: joint.joint,
             opens_intrados: joint.opens[0],
             opens_extrados: joint.opens[1],

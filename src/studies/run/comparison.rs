@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::{OneModel, Run};
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::variation::Varied;
+use crate::dynamics::variation::VariationResult;
 use crate::scenario::Hinges;
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
@@ -90,22 +90,24 @@ fn believed(runs: &[OneModel<'_>]) -> String {
 }
 
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.
-pub(super) fn otherwise(own: &Summary, varied: &[Varied]) -> Option<String> {
+pub(super) fn otherwise(own: &Summary, varied: &[VariationResult]) -> Option<String> {
     let (opposite, otherwise) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),
         Verdict::Survives => (Verdict::Overturns, "overturns"),
         Verdict::Incomplete | Verdict::Uncertain => return None,
     };
-    let others = varied.iter().filter_map(|Varied { name, result }| {
-        let other = Verdict::from(result.as_ref().ok()?.outcome);
-        (other == opposite).then_some(name.as_str())
-    });
+    let others = varied
+        .iter()
+        .filter_map(|VariationResult { name, result }| {
+            let other = Verdict::from(result.as_ref().ok()?.outcome);
+            (other == opposite).then_some(name.as_str())
+        });
     let others: Vec<&str> = others.collect();
     (!others.is_empty()).then(|| format!("{otherwise} with {}", others.join(" and with ")))
 }
 
 /// Returns true if the motion was computed with other properties, and all outcomes agree.
-fn all_agree(own: &Summary, varied: &[Varied]) -> bool {
+fn all_agree(own: &Summary, varied: &[VariationResult]) -> bool {
     let own = Verdict::from(own.outcome);
     let ends = varied.iter().map(|one| one.result.as_ref());
     let mut agree = ends.map(|end| end.is_ok_and(|other| Verdict::from(other.outcome) == own));

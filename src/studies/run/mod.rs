@@ -45,7 +45,7 @@ use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::variation::{Variations, Varied};
+use crate::dynamics::variation::{VariationResult, Variations};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::summary::summary_of;
@@ -114,7 +114,7 @@ struct OneModel<'r> {
     /// The summary of the motion.
     history: History,
     /// The motions with other properties that are equally likely.
-    varied: Vec<Varied>,
+    varied: Vec<VariationResult>,
     curves: Curves,
 }
 
@@ -277,7 +277,7 @@ impl<'a> Run<'a> {
             let _ = watch(Progress { done: all, all });
             repetitions.compare(&history)
         });
-        let varied = variations.ended();
+        let varied = variations.wait();
         let evidence = Evidence {
             scenario,
             model,

@@ -10,7 +10,7 @@ use crate::dynamics::history::{ElasticSummary, HalfCycle, RowSummary, Summary as
 use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Verdict, key};
 use crate::dynamics::thrust::ThrustRecord;
-use crate::dynamics::variation::Varied;
+use crate::dynamics::variation::VariationResult;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::output::OutputError;
@@ -30,7 +30,7 @@ pub struct Evidence<'a> {
     /// The comparison with its repetitions; `None` if the history was not repeated.
     pub repeated: Option<&'a Result<Repeatability, RepeatabilityError>>,
     /// The histories with other stiffness and contact, and with rigid joints.
-    pub varied: &'a [Varied],
+    pub varied: &'a [VariationResult],
 }
 
 impl<'a> Evidence<'a> {
@@ -363,7 +363,7 @@ impl<'a> Repeated<'a> {
 }
 
 impl<'a> OneVariation<'a> {
-    fn of(Varied { name, result }: &'a Varied) -> Self {
+    fn of(VariationResult { name, result }: &'a VariationResult) -> Self {
         Self {
             with: name,
             end: match result {

@@ -305,7 +305,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
         Some((first_g, found(Push::Capacity, sway, capacity_g)))
     });
     let open = |state: &State| {
-        let hinges = state.hinges.iter().zip(&state.turns_rad);
+        let hinges = state.hinges.iter().zip(&state.hinge_rotations_rad);
         let open = hinges.map(|(hinge, rotation_rad)| OpenHinge {
             hinge: *hinge,
             rotation_rad: *rotation_rad,

@@ -32,7 +32,7 @@ use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::repeatability::{Checked, checked};
-use crate::dynamics::until::Until;
+use crate::dynamics::until::EndCondition;
 use crate::output::Figure;
 use crate::scenario::Scenario;
 
@@ -298,7 +298,7 @@ impl Shaking<'_> {
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
         let endings = answered(cases, |cases| {
-            let checked = checked(self.models[model].1, cases, Until::End).into_iter();
+            let checked = checked(self.models[model].1, cases, EndCondition::End).into_iter();
             let ending = |case: Checked| {
                 let ending = Ending::from_summary(&case.own?, None, case.doubt);
                 ending.map_err(NoHistory::Failed)

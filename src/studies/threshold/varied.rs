@@ -9,7 +9,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::until::Until;
+use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
 use crate::studies::runner::{Progress, Runner, RunnerError};
 
@@ -92,7 +92,7 @@ fn lowest(
             .collect::<Result<Vec<_>, SimulationError>>()?;
         for (factor, history) in factors
             .iter()
-            .zip(model.simulate_all_until(Until::Safe, &cases))
+            .zip(model.simulate_all_until(EndCondition::Safe, &cases))
         {
             if !falls(history)? {
                 survived = Some(*factor);
@@ -103,7 +103,7 @@ fn lowest(
             };
             let width = Width::Relative(EDGE_WIDTH);
             let (_, lowest) = try_bisect(survived, *factor, width, |factor| {
-                falls(model.simulate_until(Until::Safe, &(ground.scaled(factor)?, *request)))
+                falls(model.simulate_until(EndCondition::Safe, &(ground.scaled(factor)?, *request)))
             })?;
             return Ok(Some(lowest));
         }

@@ -16,7 +16,7 @@ use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
 use crate::dynamics::row::task::Task;
-use crate::dynamics::until::Until;
+use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::{GRAVITY_M_S2, Row};
 use crate::mechanics::elastic_joint::{
@@ -272,7 +272,7 @@ impl ElasticJoints {
         ground: &GroundMotion,
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
-        until: Until,
+        until: EndCondition,
     ) -> Result<Summary, SimulationError> {
         let gravity_m_s2 = request.gravity_m_s2;
         let task = self.task(ground, request)?;
@@ -390,7 +390,7 @@ impl Model for ElasticJoints {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        self.alone(ground, request, recorder, Until::End)
+        self.alone(ground, request, recorder, EndCondition::End)
     }
 
     fn elastic_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
@@ -410,7 +410,7 @@ impl Model for ElasticJoints {
         true
     }
 
-    fn simulate_until(&self, until: Until, case: &Case) -> Result<Summary, SimulationError> {
+    fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {
         let (ground, request) = case;
         self.alone(ground, request, None, until)
     }

@@ -4,7 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::mechanics::blocks::Block;
 use crate::mechanics::elastic_joint::{
-    ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Place, Rest,
+    BodyPosition, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Rest,
 };
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 use crate::mechanics::tie::TieMemory;
@@ -12,7 +12,7 @@ use crate::mechanics::tie::TieMemory;
 /// Moving body.
 #[derive(Clone, Copy)]
 pub struct BodyState<R> {
-    pub place: Place<R>,
+    pub place: BodyPosition<R>,
     pub angle_rad: R,
     /// Velocity of the centre half a step before, in m/s, and rotation rate.
     velocity_m_s: [R; 2],
@@ -22,7 +22,7 @@ pub struct BodyState<R> {
     moment_n_m: R,
 }
 
-remembered!(BodyState { angle_rad, rate_rad_s, moment_n_m; velocity_m_s, force_n; place: Place });
+remembered!(BodyState { angle_rad, rate_rad_s, moment_n_m; velocity_m_s, force_n; place: BodyPosition });
 
 impl<R: Real> BodyState<R> {
     /// Adds a force and a moment.
@@ -38,7 +38,7 @@ impl<R: Real> BodyState<R> {
 #[inline(always)]
 pub fn joint_bodies(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     let right = structure.bodies.len() + 1;
-    both!(end: joint.link.bodies[end].min(right))
+    both!(end: joint.geometry.bodies[end].min(right))
 }
 
 /// Parallel motions, one per lane. Lanes do not affect each other.
@@ -294,7 +294,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             for (joint, forces) in joints.iter().zip(forces.iter_mut()) {
                 let [one, other] = joint_bodies(structure, joint);
                 let (one, other) = (&self.bodies[one].place, &self.bodies[other].place);
-                forces.gap = joint.link.gap(one, other);
+                forces.gap = joint.geometry.gap(one, other);
             }
             let each_joint = joints.iter().zip(memories.iter_mut()).zip(&mut *forces);
             for (index, ((joint, memory), forces)) in each_joint.enumerate() {
@@ -316,7 +316,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             }
             for (joint, forces) in joints.iter().zip(&*forces) {
                 let (gap, edges_n) = (&forces.gap, forces.edges_n);
-                let action = joint.link.action(gap, edges_n, forces.shear_n);
+                let action = joint.geometry.action(gap, edges_n, forces.shear_n);
                 let [one, other] = joint_bodies(structure, joint);
                 self.bodies[one].add_force(both!(i: -action.force_n[i]), action.moments_n_m[0]);
                 self.bodies[other].add_force(action.force_n, action.moments_n_m[1]);
@@ -389,7 +389,7 @@ impl<'a, const L: usize> Motion<'a, L> {
             observation.sway_kg_m += x * mass;
             let mut nearest = Lanes([f64::INFINITY; L]);
             for slide in supports {
-                let along = structure.joints[slide.joint].link.along;
+                let along = structure.joints[slide.joint].geometry.along;
                 let slid = self.memories[slide.joint].permanent_slip_m * slide.sense;
                 let of_support = self.support_displacement_m(usize::from(slide.joint > 0));
                 let beside = [
@@ -472,12 +472,12 @@ impl<'a> Motion<'a, 1> {
     fn at_rest(structure: &'a ElasticStructure, gravity_m_s2: f64, rest: &Rest) -> Self {
         let mut motion = Self::new(structure, gravity_m_s2);
         for (body, moved) in motion.bodies.iter_mut().zip(&rest.moved) {
-            body.place = Place::at(moved);
+            body.place = BodyPosition::at(moved);
             body.angle_rad = Lanes([moved[2]]);
         }
         let supports = motion.bodies.iter_mut().skip(rest.moved.len());
         for (support, moved) in supports.zip(structure.supports) {
-            support.place = Place::at(&moved);
+            support.place = BodyPosition::at(&moved);
         }
         motion.memories.copy_from_slice(&rest.memories);
         motion.fibres.copy_from_slice(&rest.fibres);

@@ -10,13 +10,13 @@ use crate::dynamics::history::{
     EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
 };
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::repeatability::GONE;
+use crate::dynamics::repeatability::LARGEST_LOSS_RATIO;
 use crate::dynamics::row::clock::Marks;
 use crate::dynamics::row::course::{Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
 use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::{Stepper, equal_step, open_hinge};
 use crate::dynamics::row::task::Task;
-use crate::dynamics::until::Until;
+use crate::dynamics::until::EndCondition;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::elastic_joint::{ElasticStructure, Rest};
@@ -45,7 +45,7 @@ const HINGE_RATIO: f64 = 0.5;
 /// One motion of a group.
 struct Lane<'a> {
     course: Course<'a>,
-    until: Until,
+    until: EndCondition,
     velocity: GroundVelocity<'a>,
     /// Relative motion of the feet, and their current relative displacement; `None` if both feet move alike.
     feet: Option<FeetApart<'a>>,
@@ -106,7 +106,7 @@ pub struct Group<'a, const L: usize> {
 }
 
 impl<'a> Lane<'a> {
-    fn new(task: Task<'a>, until: Until, recorder: Option<&'a mut dyn Recorder>) -> Self {
+    fn new(task: Task<'a>, until: EndCondition, recorder: Option<&'a mut dyn Recorder>) -> Self {
         let velocity = GroundVelocity::new(task.ground);
         let start_s = task.ground.start_s();
         Self {
@@ -228,7 +228,7 @@ impl<'a> Lane<'a> {
             let on_support = |support: &&SlidingSupport| support.joint == joint && support.extends;
             match supports.iter().find(on_support) {
                 Some(support) => slid += permanent_slip_m * support.along_x,
-                None => course.overturned |= permanent_slip_m.abs() >= with_joint.link.length_m,
+                None => course.overturned |= permanent_slip_m.abs() >= with_joint.geometry.length_m,
             }
         }
         slid
@@ -252,14 +252,17 @@ impl<'a> Lane<'a> {
             return false;
         }
         // A row beyond its barrier falls to that side, with any damping.
-        if self.until == Until::End || self.course.time < self.quiet_s || !self.monitor.moves_back {
+        if self.until == EndCondition::End
+            || self.course.time < self.quiet_s
+            || !self.monitor.moves_back
+        {
             return false;
         }
         let (quiet_s, quiet_j) = *self
             .monitor
             .quiet
             .get_or_insert((self.course.time, energy_j));
-        if self.until == Until::Settled {
+        if self.until == EndCondition::Settled {
             // Assume that the energy decays `SLOWER` times more slowly from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
             let rests_s = SLOWER * (energy_j / self.monitor.rest_limit_j).ln().max(0.0) / rate;
@@ -270,8 +273,9 @@ impl<'a> Lane<'a> {
             }
         }
         let gone_j = self.course.elastic.friction_j + self.course.elastic.crushed_j;
-        barrier_j()
-            .is_some_and(|barrier_j| energy_j < SAFE * barrier_j && gone_j < GONE * barrier_j)
+        barrier_j().is_some_and(|barrier_j| {
+            energy_j < SAFE * barrier_j && gone_j < LARGEST_LOSS_RATIO * barrier_j
+        })
     }
 }
 
@@ -312,7 +316,7 @@ impl<'a, const L: usize> Group<'a, L> {
         &mut self,
         lane: usize,
         task: Task<'a>,
-        until: Until,
+        until: EndCondition,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
         self.motion.start(lane, self.rest);
@@ -608,12 +612,12 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
     }
 
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64> {
-        let link = &self.structure.joints[joint].link;
+        let geometry = &self.structure.joints[joint].geometry;
         let blocks = &self.row.blocks;
         // The face of the block, or of the first of two.
-        let end = usize::from(link.bodies[0] >= blocks.len());
+        let end = usize::from(geometry.bodies[0] >= blocks.len());
         let corner_m = self.row.joints[joint].corner_m(edge);
-        self.pose(link.bodies[end]).of(corner_m)
+        self.pose(geometry.bodies[end]).of(corner_m)
     }
 
     fn momentum(&self) -> Vector2<f64> {

@@ -30,7 +30,7 @@ use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper::Stepper as _;
 use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::contact::closing::Closer;
+use crate::mechanics::contact::closing::ClosureSolver;
 use crate::mechanics::contact::{Corners, Load, Program};
 use crate::mechanics::geometry::field::{Twist, turned};
 use crate::mechanics::geometry::pose::Pose;
@@ -106,7 +106,7 @@ pub struct LandingStepper<'a> {
     program: Program,
     /// Copy for solutions that must not change the active set.
     auxiliary: Program,
-    closer: Closer,
+    closure_solver: ClosureSolver,
     ties: Ties<'a>,
     pieces: Vec<Piece>,
     next_pieces: Vec<Piece>,
@@ -170,7 +170,7 @@ impl<'a> LandingStepper<'a> {
             rest,
             auxiliary: program.clone(),
             program,
-            closer: Closer::new(row),
+            closure_solver: ClosureSolver::new(row),
             ties: Ties::new(row, standing),
             pieces: vec![Piece::default()],
             next_pieces: Vec::with_capacity(blocks),
@@ -212,7 +212,7 @@ impl<'a> LandingStepper<'a> {
                  with which it stays closed; a smaller `rotation_rad` in [initial] may do"
             )));
         }
-        self.closer.close(&mut self.placement);
+        self.closure_solver.close(&mut self.placement);
         let active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
         let is_open = |corners: &&Corners| **corners != [true; 2];
         let open = active.iter().filter(is_open).count();
@@ -460,7 +460,7 @@ impl<'a> LandingStepper<'a> {
         self.open_gaps(self.course.time + step.length_s);
         self.adopt_pieces();
         self.course.time += step.length_s;
-        self.closer.close(&mut self.placement);
+        self.closure_solver.close(&mut self.placement);
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         self.program.place(&self.placement);
@@ -693,7 +693,7 @@ mod tests {
     }
 
     #[test]
-    fn every_program_is_solved_like_by_an_interior_point_method() {
+    fn velocities_are_those_of_an_interior_point_method() {
         let arch = |degrees: f64, voussoirs, radius_m| {
             let ring = Ring::new(0.15, degrees.to_radians()).unwrap();
             Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap()

@@ -27,7 +27,7 @@ use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step};
 use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::coulomb::{Along, Mode, Program};
+use crate::mechanics::coulomb::{Mode, Program, TangentialMode};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
@@ -144,7 +144,7 @@ impl<'a> SlidingStepper<'a> {
             last_step: task.settings.longest_step_s,
             auxiliary: program.clone(),
             program,
-            modes_before: vec![Mode::WHOLE; joints],
+            modes_before: vec![Mode::STICKING; joints],
             initial_coordinates_m: stood.iter().map(|c| c.coordinates_m).collect(),
             rest,
             right: RightSupport::new(row, ground),
@@ -207,7 +207,7 @@ impl<'a> SlidingStepper<'a> {
             let mut error = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
             // A joint between blocks that move as one has no curvature; linear motion would produce some.
             let mut right = None;
-            if self.program.modes[joint] != Mode::WHOLE {
+            if self.program.modes[joint] != Mode::STICKING {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 error += then.coordinates_m - now - self.program.joint_rate(joint) * step;
@@ -271,7 +271,8 @@ impl<'a> SlidingStepper<'a> {
         if again {
             self.update_position_errors(step);
         }
-        if again || solution.drawn_m_s > LARGEST_RESIDUAL_RATE * (self.gravity * step + fastest) {
+        if again || solution.residual_m_s > LARGEST_RESIDUAL_RATE * (self.gravity * step + fastest)
+        {
             solution = self
                 .program
                 .solve(|joint| self.position_errors[joint], tolerance);
@@ -315,7 +316,7 @@ impl<'a> SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             let contact = contact(&self.faces, &self.supports, &self.positions, joint);
             let offset_m = contact.coordinates_m.z;
-            if self.program.modes[joint].along != Along::Stick {
+            if self.program.modes[joint].tangential != TangentialMode::Stick {
                 self.stuck[joint] = offset_m;
             }
             let offset_m = self.stuck[joint].abs();
@@ -600,7 +601,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         } else {
             (0..self.faces.len()).all(touches)
         };
-        let slips = |mode: &Mode| matches!(mode.along, Along::Slip(_));
+        let slips = |mode: &Mode| matches!(mode.tangential, TangentialMode::Slip(_));
         (lies && !self.program.modes.iter().any(slips))
             || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }

@@ -157,7 +157,7 @@ mod tests {
     /// A triangle of peak A and base T from time t on: velocity A T / 2 at its end, displacement A T^2 / 4 there by
     /// symmetry, squares A^2 T / 3, of which 5 % are reached after T / 2 times the cube root of 0.1.
     #[test]
-    fn a_triangle_has_what_its_closed_form_has() {
+    fn intensities_of_a_triangle_are_its_closed_forms() {
         let (a, base, start) = (-2.5, 0.8, 3.0);
         let triangle = [(start, 0.0), (start + base / 2.0, a), (start + base, 0.0)];
         let intensity = Intensity::of(&triangle, 9.81);
@@ -193,7 +193,7 @@ mod tests {
     /// A full sine of amplitude A and period T: velocity A T / pi, displacement A T^2 / (2 pi), squares A^2 T / 2; lines
     /// between 2000 samples err by about 1e-6.
     #[test]
-    fn a_sampled_sine_has_what_a_sine_has() {
+    fn intensities_of_a_sampled_sine_are_its_closed_forms() {
         let (a, period) = (3.0, 0.5);
         let count = 2000;
         let samples: Vec<_> = (0..=count)

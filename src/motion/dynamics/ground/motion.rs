@@ -83,10 +83,10 @@ impl GroundMotion {
     /// When the delay is out of range.
     pub fn with_delayed_right_foot(self, delay_s: f64) -> Result<Self, GroundError> {
         let right = if delay_s >= 0.0 {
-            self.late_by(delay_s)?
+            self.delayed_by(delay_s)?
         } else {
             within("-delay_s", -delay_s, TIME_S)?;
-            self.earlier_by(-delay_s)
+            self.advanced_by(-delay_s)
         };
         Ok(self.with_right_foot(right))
     }
@@ -144,22 +144,22 @@ impl GroundMotion {
     ///
     /// # Errors
     /// When the delay is out of range.
-    pub fn late_by(&self, delay_s: f64) -> Result<Self, GroundError> {
+    pub fn delayed_by(&self, delay_s: f64) -> Result<Self, GroundError> {
         within("delay_s", delay_s, TIME_S)?;
-        let right = self.right_foot().map(|right| right.late_by(delay_s));
-        let mut late = self.moved_by(delay_s, self.start_s());
-        late.right = right.transpose()?.map(Arc::new);
-        Ok(late)
+        let right = self.right_foot().map(|right| right.delayed_by(delay_s));
+        let mut delayed = self.shifted_by(delay_s, self.start_s());
+        delayed.right = right.transpose()?.map(Arc::new);
+        Ok(delayed)
     }
 
     /// Returns the motion of this foot, earlier by a time in seconds. The motion starts at its first acceleration if this is before time zero.
-    fn earlier_by(&self, lead_s: f64) -> Self {
+    fn advanced_by(&self, lead_s: f64) -> Self {
         let begins = self.pieces.iter().find(|piece| !piece.is_quiet());
-        self.moved_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
+        self.shifted_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
     }
 
     /// Returns the pieces from `from_s` on, with all times changed by a delay.
-    fn moved_by(&self, delay_s: f64, from_s: f64) -> Self {
+    fn shifted_by(&self, delay_s: f64, from_s: f64) -> Self {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(|piece| !piece.stays_still() && piece.start_s >= from_s);
         let moved = moving.map(|piece| {

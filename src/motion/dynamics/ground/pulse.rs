@@ -267,7 +267,7 @@ mod tests {
     use super::super::Piece;
     use super::*;
 
-    /// Wave trains with all sorts of parameters.
+    /// Returns wave trains with various numbers of cycles and phases.
     fn trains() -> impl Iterator<Item = (Pulse, WaveTrain)> {
         let kinds = Pulse::ALL.iter().copied().filter(|p| p.is_wave_train());
         kinds.flat_map(|pulse| {
@@ -315,7 +315,7 @@ mod tests {
     }
 
     #[test]
-    fn wave_trains_reach_their_amplitude_and_not_more() {
+    fn the_largest_acceleration_of_a_wave_train_is_its_amplitude() {
         for (pulse, train) in trains() {
             let amplitude = Vector2::new(2.0, 0.0);
             let ground = pulse
@@ -325,7 +325,7 @@ mod tests {
                 .inclined_m_s2(amplitude)
                 .unwrap();
             assert!((ground.peaks_m_s2(f64::INFINITY).x - 2.0).abs() < 1e-12);
-            // The pieces end at the extrema, which bound what is between.
+            // Pieces end at the extrema, so their ends bound all values between them.
             let moving = ground.pieces.iter().filter(|p| !p.stays_still());
             let inside = moving.flat_map(|piece| {
                 let width = piece.end_s - piece.start_s;
@@ -346,7 +346,7 @@ mod tests {
         piece.unwrap().acceleration_m_s2(time_s)
     }
 
-    /// The formulas as they are published, up to the factor of the amplitude.
+    /// Compares accelerations with the published formulas, up to the factor of the amplitude.
     #[test]
     fn wave_trains_are_the_published_formulas() {
         for (pulse, train) in trains() {
@@ -455,7 +455,7 @@ mod tests {
     }
 
     #[test]
-    fn pulses_reach_their_amplitude_where_they_say() {
+    fn pulses_reach_their_amplitude_at_their_peak_time() {
         let peak = |pulse: Pulse, at: f64| {
             let ground = pulse
                 .lasting_s(0.3)
@@ -476,7 +476,7 @@ mod tests {
         assert!((peak(Pulse::Triangular, 0.15) - 2.0).abs() < 1e-12);
         assert!((peak(Pulse::Ricker, 0.6) - 2.0).abs() < 1e-12);
         assert!((peak(Pulse::StepPair, 0.5) + 1.0).abs() < 1e-12);
-        // A tiny pulse keeps its piece, however long the time before it.
+        // A very short pulse keeps its piece, also after a long time.
         let short = Pulse::Rectangular
             .lasting_s(1e-12)
             .starting_at_s(100.0)

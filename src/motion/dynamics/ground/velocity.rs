@@ -197,7 +197,7 @@ mod tests {
     /// Closed forms: `a t^2 / 2` while a constant acceleration lasts, then a constant velocity; and a sine of
     /// frequency `w`, `a/w (t - sin(w t)/w)`.
     #[test]
-    fn the_ground_is_where_its_velocity_brings_it() {
+    fn the_displacement_is_the_integral_of_the_velocity() {
         let ground = Pulse::Rectangular
             .lasting_s(0.3)
             .starting_at_s(0.1)

@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hop_that_starts_at_zero_fires_where_it_lands() {
+    fn a_guard_that_starts_at_zero_and_rises_fires_when_it_returns_to_zero() {
         let hop = |t: f64| (t * (1.0 - t), 1.0 - 2.0 * t);
         assert!(is_at(crossing(1.1, hop), 1.0));
         assert!(is_at(crossing(100.0, hop), 1.0));
@@ -444,7 +444,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dip_between_two_positive_ends_is_seen() {
+    fn a_dip_below_zero_between_two_positive_ends_fires() {
         let dip = |floor: f64| move |t: f64| ((t - 0.3).powi(2) + floor, 2.0 * (t - 0.3));
         assert!(is_at(crossing(1.0, dip(-0.01)), 0.2));
         assert!(crossing(1.0, dip(-1e-10)).is_some());
@@ -453,7 +453,7 @@ mod tests {
     }
 
     #[test]
-    fn a_level_that_is_negative_at_the_start_has_to_rise_first() {
+    fn a_guard_that_starts_negative_fires_only_after_it_has_risen() {
         assert!(crossing(1.0, |t| (-1.0 - t, -1.0)).is_none());
         assert!(crossing(1.0, |t| (t - 0.5, 1.0)).is_none());
         let wave = |t: f64| (-(4.0 * t).cos(), 4.0 * (4.0 * t).sin());
@@ -461,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_of_several_crossings_counts() {
+    fn the_first_of_several_crossings_fires() {
         let wave = |t: f64| ((5.0 * t).cos(), -5.0 * (5.0 * t).sin());
         assert!(is_at(crossing(1.0, wave), 0.1 * std::f64::consts::PI));
     }

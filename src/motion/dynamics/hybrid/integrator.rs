@@ -188,7 +188,7 @@ mod tests {
 
     // A million steps are slow without the optimisation of this package.
     #[test]
-    fn a_slope_that_jumps_without_end_cannot_meet_a_tolerance() {
+    fn a_slope_that_jumps_forever_cannot_meet_a_tolerance() {
         let noise = |time_s: f64, _: &State<1>| {
             let up = (time_s.to_bits() >> 3).is_multiple_of(2);
             State::<1>::new(if up { 1e9 } else { -1e9 })

@@ -145,8 +145,8 @@ pub(super) fn side_of(value: f64) -> Sway {
 }
 
 impl<'a> Course<'a> {
-    /// Returns the record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if the stepper
-    /// uses other criteria.
+    /// Returns the record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if
+    /// the stepper uses other criteria.
     pub fn new(
         task: Task<'a>,
         overturned_below_j: Option<f64>,

@@ -72,7 +72,7 @@ impl Pin {
 
 /// Impulse at one corner of an open joint, on both its bodies.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Press {
+pub(super) struct CornerImpulse {
     pub pin: usize,
     pub edge: usize,
     pub impulse: f64,
@@ -80,7 +80,7 @@ pub(super) struct Press {
 
 /// Solution of a pin system for a load, or for a unit impulse.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Answer {
+pub(super) struct PinSolution {
     pub motions: Vec<Motion>,
     /// Impulses on the right body at the open joints, along and normal to the joint.
     pub pins: Vec<Vector2<f64>>,
@@ -90,7 +90,7 @@ pub(super) struct Answer {
     pub rates: Vec<[f64; 2]>,
 }
 
-impl Answer {
+impl PinSolution {
     pub fn with_capacity(joints: usize) -> Self {
         Self {
             motions: Vec::with_capacity(joints + 1),
@@ -101,7 +101,7 @@ impl Answer {
     }
 
     /// Solves for the load, with an optional impulse at one corner.
-    pub fn take_load(&mut self, factor: &Factor, press: Option<Press>) {
+    pub fn take_load(&mut self, factor: &Factor, press: Option<CornerImpulse>) {
         self.free_motions(factor);
         self.complete(factor, press, None, true);
     }
@@ -112,7 +112,12 @@ impl Answer {
         let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
         self.motions.extend(factor.bodies.iter().map(still));
         let impulse = 1.0;
-        self.complete(factor, Some(Press { pin, edge, impulse }), None, false);
+        self.complete(
+            factor,
+            Some(CornerImpulse { pin, edge, impulse }),
+            None,
+            false,
+        );
     }
 
     /// Solves for the load and the closure error of an arch.
@@ -142,11 +147,11 @@ impl Answer {
     fn complete(
         &mut self,
         factor: &Factor,
-        press: Option<Press>,
+        press: Option<CornerImpulse>,
         closure: Option<&Closure>,
         loaded: bool,
     ) {
-        if let Some(Press { pin, edge, impulse }) = press {
+        if let Some(CornerImpulse { pin, edge, impulse }) = press {
             let frame = &factor.row.frames[factor.pins[pin].joint];
             let (corner, impulse) = (frame.corner_m(Edge::ALL[edge]), frame.normal * impulse);
             self.motions[pin].push(&factor.bodies[pin], corner, -impulse);
@@ -220,7 +225,7 @@ impl Answer {
     }
 
     /// Computes the corner impulses: at hinges from the pins, at closed joints from the running sum of momentum changes.
-    fn press_corners(&mut self, factor: &Factor, press: Option<Press>, loaded: bool) {
+    fn press_corners(&mut self, factor: &Factor, press: Option<CornerImpulse>, loaded: bool) {
         let row = &factor.row;
         for body in 0..factor.bodies.len() {
             let joints = factor.shut_joints(body);
@@ -249,7 +254,13 @@ impl Answer {
 
     /// Returns the resultant impulse at a joint of a body plus the change of momentum before that joint. This sum is constant along the body. A hinge
     /// or the free end gives its value.
-    fn start(&self, factor: &Factor, body: usize, press: Option<Press>, loaded: bool) -> Momentum {
+    fn start(
+        &self,
+        factor: &Factor,
+        body: usize,
+        press: Option<CornerImpulse>,
+        loaded: bool,
+    ) -> Momentum {
         let row = &factor.row;
         let twist = self.motions[body].twist();
         let index = body.saturating_sub(1);

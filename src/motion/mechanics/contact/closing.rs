@@ -9,7 +9,7 @@ const CLOSURE_RATIO: f64 = 1e-13;
 
 /// Solver that removes closure errors, with its work space.
 #[derive(Clone, Debug)]
-pub struct Closer {
+pub struct ClosureSolver {
     program: Program,
     none: Load,
     change: Vec<[f64; 2]>,
@@ -17,7 +17,7 @@ pub struct Closer {
     thinnest_m: f64,
 }
 
-impl Closer {
+impl ClosureSolver {
     /// Returns a solver for placements of a row.
     #[must_use]
     pub fn new(row: &Row) -> Self {

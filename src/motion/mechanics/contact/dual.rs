@@ -1,6 +1,6 @@
 //! Active-set search by the dual method of Goldfarb and Idnani, one corner at a time.
 
-use super::answer::Press;
+use super::answer::CornerImpulse;
 use super::{ContactError, Corners, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
 
 /// Loosest tolerance of closing rates; beyond it a program counts as unsolved.
@@ -29,7 +29,7 @@ impl Program {
             let Some((pin, edge)) = self.fastest_closing(touching, tolerance) else {
                 return true;
             };
-            if !self.stop(pin, edge, iterations, cap) {
+            if !self.activate(pin, edge, iterations, cap) {
                 self.factor.update(&self.active);
                 self.answer.take_load(&self.factor, None);
                 *iterations += 1;
@@ -91,7 +91,13 @@ impl Program {
     }
 
     /// Adds a closing corner to the active set, and releases those that would pull as its impulse grows. Returns false if no corner can be released.
-    fn stop(&mut self, mut pin: usize, edge: usize, iterations: &mut usize, cap: usize) -> bool {
+    fn activate(
+        &mut self,
+        mut pin: usize,
+        edge: usize,
+        iterations: &mut usize,
+        cap: usize,
+    ) -> bool {
         let joint = self.factor.pins[pin].joint;
         let mut impulse = 0.0;
         loop {
@@ -127,7 +133,7 @@ impl Program {
                 return false;
             };
             pin = found;
-            let press = Press { pin, edge, impulse };
+            let press = CornerImpulse { pin, edge, impulse };
             self.answer.take_load(&self.factor, Some(press));
             *iterations += 1;
             if *iterations > cap {

@@ -9,7 +9,7 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 
 /// Corner that pulls or closes, and the range of joints whose corners change with it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Wrong {
+pub(super) struct WrongCorner {
     joint: usize,
     edge: usize,
     /// Impulse or closing rate of the corner, below zero.
@@ -18,7 +18,7 @@ pub(super) struct Wrong {
     last: usize,
 }
 
-impl Wrong {
+impl WrongCorner {
     fn new(joint: usize, edge: usize, by: f64) -> Self {
         Self {
             joint,
@@ -64,7 +64,7 @@ impl Program {
             }
             self.keep_worst(worst_only);
             if !worst_only {
-                self.go_on(touching);
+                self.extend_runs(touching);
             }
             self.flip_wrong();
             if !exceeds(self.factor.update(&self.active), DEPENDENCE) {
@@ -90,7 +90,8 @@ impl Program {
             for (pin, rates) in self.factor.pins.iter().zip(&self.answer.rates) {
                 let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
                 if free && rates[edge] < -tolerance {
-                    self.wrong.push(Wrong::new(pin.joint, edge, rates[edge]));
+                    self.wrong
+                        .push(WrongCorner::new(pin.joint, edge, rates[edge]));
                 }
             }
         }
@@ -100,7 +101,8 @@ impl Program {
     pub(super) fn find_pulling(&mut self, edge: usize, limit: f64) {
         for (joint, impulses) in self.answer.corners.iter().enumerate() {
             if impulses[edge] < limit {
-                self.wrong.push(Wrong::new(joint, edge, impulses[edge]));
+                self.wrong
+                    .push(WrongCorner::new(joint, edge, impulses[edge]));
             }
         }
     }
@@ -124,7 +126,7 @@ impl Program {
 
     /// Extends each run of joints by as many joints as the last exchange changed next to it in the same way: openings and closings propagate along
     /// the row.
-    fn go_on(&mut self, touching: &[Corners]) {
+    fn extend_runs(&mut self, touching: &[Corners]) {
         let (active, earlier) = (&self.active, &self.earlier);
         for wrong in &mut self.wrong {
             let (joint, edge) = (wrong.joint, wrong.edge);

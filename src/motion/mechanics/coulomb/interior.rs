@@ -11,11 +11,11 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-use super::{Along, Balance, Mode, PASSES, Program};
+use super::{Balance, Mode, PASSES, Program, TangentialMode};
 
 const STEPS: usize = 60;
 /// Mean products, relative to the first one, at which the modes are tested.
-const TRIED: [f64; 3] = [1e-4, 1e-7, 1e-10];
+const TESTED_PRODUCTS: [f64; 3] = [1e-4, 1e-7, 1e-10];
 /// Initial impulses relative to the expected ones, tried in turn.
 const STARTS: [f64; 3] = [1.0, 3.0, 10.0];
 /// Initial rates relative to the largest rate for unchanged impulses.
@@ -130,15 +130,15 @@ impl Pairs {
     }
 
     /// Returns the largest fraction of a change that keeps all variables positive.
-    fn room(&self, change: &Self) -> f64 {
+    fn largest_part(&self, change: &Self) -> f64 {
         let own = self.own.iter().zip(&change.own);
         let pairs = own.chain(self.other.iter().zip(&change.other));
         let falling = pairs.filter(|(_, change)| **change < 0.0);
-        let rooms = falling.map(|(value, change)| -value / change);
-        rooms.fold(f64::INFINITY, f64::min)
+        let parts = falling.map(|(value, change)| -value / change);
+        parts.fold(f64::INFINITY, f64::min)
     }
 
-    fn go(&mut self, change: &Self, part: f64) {
+    fn advance(&mut self, change: &Self, part: f64) {
         for pair in 0..5 {
             self.own[pair] += part * change.own[pair];
             self.other[pair] += part * change.other[pair];
@@ -153,12 +153,16 @@ impl Pairs {
     fn mode(&self, compliance: &Vector3<f64>) -> Mode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
-        let along = if own[4] < other[4] * compliance.z {
-            Along::Stick
+        let tangential = if own[4] < other[4] * compliance.z {
+            TangentialMode::Stick
         } else {
-            Along::Slip((own[2] - own[3]).signum())
+            TangentialMode::Slip((own[2] - own[3]).signum())
         };
-        Mode { pressed, along }.settled()
+        Mode {
+            pressed,
+            tangential,
+        }
+        .settled()
     }
 }
 
@@ -191,7 +195,7 @@ impl Program {
         // Mean product and residual at the start.
         let mut first: Option<[f64; 2]> = None;
         let mut centring = 0.5;
-        let mut tried = TRIED.iter().peekable();
+        let mut tried = TESTED_PRODUCTS.iter().peekable();
         for _ in 0..STEPS {
             for (impulse, pairs) in self.impulses.iter_mut().zip(&pairs) {
                 *impulse = pairs.impulse();
@@ -227,7 +231,7 @@ impl Program {
             let floor = FLOOR * mean_first * (wrong / wrong_first).min(1.0);
             let target = (centring * mean).max(floor).min(2.0 * mean);
             *passes += 1;
-            let part = self.go_towards(target, &errors, &mut pairs);
+            let part = self.step_towards(target, &errors, &mut pairs);
             centring = match part {
                 0.9.. => 0.03,
                 0.5.. => 0.2,
@@ -239,7 +243,7 @@ impl Program {
     }
 
     /// Takes the largest fraction of a Newton step that keeps all variables positive, and returns this fraction.
-    fn go_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
+    fn step_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
         let eliminated =
@@ -266,11 +270,11 @@ impl Program {
             pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
         });
         let changes: Vec<Pairs> = changes.collect();
-        let rooms = pairs.iter().zip(&changes);
-        let parts = rooms.map(|(pairs, change)| REACH * pairs.room(change));
+        let parts = pairs.iter().zip(&changes);
+        let parts = parts.map(|(pairs, change)| REACH * pairs.largest_part(change));
         let part = parts.fold(1.0, f64::min);
         for (pairs, change) in pairs.iter_mut().zip(&changes) {
-            pairs.go(change, part);
+            pairs.advance(change, part);
         }
         part
     }
@@ -285,10 +289,12 @@ impl Program {
                     impulse[end] = 0.0;
                 }
             }
-            match mode.along {
-                Along::Free => impulse.z = 0.0,
-                Along::Stick => {}
-                Along::Slip(sign) => impulse.z = sign * self.coefficient * (impulse.x + impulse.y),
+            match mode.tangential {
+                TangentialMode::Free => impulse.z = 0.0,
+                TangentialMode::Stick => {}
+                TangentialMode::Slip(sign) => {
+                    impulse.z = sign * self.coefficient * (impulse.x + impulse.y)
+                }
             }
             self.modes[joint] = mode;
             self.kept[joint] = impulse;
@@ -304,7 +310,7 @@ mod tests {
     use crate::mechanics::slip::{Contact, Faces, Position};
 
     /// Returns the largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
-    fn breach(program: &Program) -> f64 {
+    fn largest_violation(program: &Program) -> f64 {
         let joints = program
             .impulses
             .iter()
@@ -329,7 +335,7 @@ mod tests {
     /// independent, finds the same velocities within rounding error and the proximal term, 1e-6. With friction the law may have several solutions;
     /// both methods may then find different ones.
     #[test]
-    fn it_finds_what_lemkes_method_finds() {
+    fn velocities_are_those_of_lemkes_method() {
         let mut state = 1_u64;
         let mut random = || {
             state = state
@@ -368,10 +374,18 @@ mod tests {
             let mut other = program.clone();
             assert!(program.interior(1e-9, &mut 0), "{case}");
             assert!(other.complement(), "{case}");
-            assert!(breach(&program) < 1e-8, "{case} {}", breach(&program));
+            assert!(
+                largest_violation(&program) < 1e-8,
+                "{case} {}",
+                largest_violation(&program)
+            );
             other.impulses.copy_from_slice(&other.kept);
             other.find_rates();
-            assert!(breach(&other) < 1e-6, "{case} {}", breach(&other));
+            assert!(
+                largest_violation(&other) < 1e-6,
+                "{case} {}",
+                largest_violation(&other)
+            );
             program.set_velocities();
             other.set_velocities();
             let miss = |block| (program.velocity(block) - other.velocity(block)).norm();
@@ -380,7 +394,7 @@ mod tests {
             let modes = program.modes;
             slipping += modes
                 .iter()
-                .filter(|mode| matches!(mode.along, Along::Slip(_)))
+                .filter(|mode| matches!(mode.tangential, TangentialMode::Slip(_)))
                 .count();
             open += modes
                 .iter()

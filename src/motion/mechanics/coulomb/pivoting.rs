@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::{Along, Mode, PASSES, PROXIMAL, Program};
+use super::{Mode, PASSES, PROXIMAL, Program, TangentialMode};
 use crate::mechanics::complementarity;
 
 /// Maximum number of joints for Lemke's method; its effort grows with their cube.
@@ -78,14 +78,14 @@ impl Program {
             return false;
         };
         for (joint, found) in solution.chunks(SIZE).enumerate() {
-            let along = match (found[4] > 0.0, found[2] > found[3]) {
-                (false, _) => Along::Stick,
-                (true, true) => Along::Slip(1.0),
-                (true, false) => Along::Slip(-1.0),
+            let tangential = match (found[4] > 0.0, found[2] > found[3]) {
+                (false, _) => TangentialMode::Stick,
+                (true, true) => TangentialMode::Slip(1.0),
+                (true, false) => TangentialMode::Slip(-1.0),
             };
             self.modes[joint] = Mode {
                 pressed: [found[0] > 0.0, found[1] > 0.0],
-                along,
+                tangential,
             }
             .settled();
             let impulse = Vector3::new(found[0], found[1], found[2] - found[3]);

@@ -82,7 +82,7 @@ impl Banded {
 mod tests {
     use super::*;
 
-    /// Checked against the matrix times a known answer; zeros on the diagonal need exchanges of rows.
+    /// The right-hand sides are the matrix times a known solution. Zeros on the diagonal require row exchanges.
     #[test]
     fn equations_with_a_band_are_solved() {
         let (size, width) = (30, 4);

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use super::kinematics::{Gap, Link};
+use super::kinematics::{Gap, JointGeometry};
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
 /// Method to integrate the stress over a joint.
@@ -163,7 +163,7 @@ pub struct ShearForce<R> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElasticJoint {
     /// Geometry of the joint.
-    pub link: Link,
+    pub geometry: JointGeometry,
     /// Normal stiffness of the closed joint, in N/m.
     pub normal_n_m: f64,
     /// Shear stiffness of the closed joint, in N/m.

@@ -4,16 +4,16 @@ use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 
 /// Position of a body: displacement of its centre, and rotation.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<R> {
+pub struct BodyPosition<R> {
     /// Displacement of the centre, in m.
     pub moved_m: [R; 2],
     /// Cosine minus one, and sine, of half the rotation. This form is accurate for small rotations.
     pub half_turn: [R; 2],
 }
 
-remembered!(Place { ; moved_m, half_turn });
+remembered!(BodyPosition { ; moved_m, half_turn });
 
-impl<R: Real> Place<R> {
+impl<R: Real> BodyPosition<R> {
     /// Returns the position for displacements in m and a rotation in rad.
     #[must_use]
     pub fn at(moved: &[f64; 3]) -> Self {
@@ -38,7 +38,7 @@ impl<R: Real> Place<R> {
 
 /// Geometry of an undeformed joint between a first body, before the joint, and a second body after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Link {
+pub struct JointGeometry {
     /// Indices of the two bodies.
     pub bodies: [usize; 2],
     /// Vectors from the centres of the bodies to the middle of the joint, in m.
@@ -84,7 +84,7 @@ pub struct Action<R> {
 
 remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, along, half });
 
-impl Link {
+impl JointGeometry {
     /// Returns a joint between the bodies with these indices.
     ///
     /// - `arms_m`: vectors from the centres of the bodies to the middle of the joint, in m.
@@ -122,7 +122,7 @@ impl Link {
     /// `R(m) (cos d (b - a) + sin d J (a + b)) - (b - a)`, where `J` is a quarter turn. The components along `e = R(m) e_0` and `J e` are sums of
     /// terms that are small for small rotations, without cancellation.
     #[inline(always)]
-    pub fn gap<R: Real>(&self, first: &Place<R>, second: &Place<R>) -> Gap<R> {
+    pub fn gap<R: Real>(&self, first: &BodyPosition<R>, second: &BodyPosition<R>) -> Gap<R> {
         let apart = both!(i: second.moved_m[i] - first.moved_m[i]);
         // Cosines and sines of `m` and `d` follow from those of the half rotations without a square root.
         let ([cos_a, sin_a], [cos_b, sin_b]) = (first.half_turn, second.half_turn);

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::banded::Banded;
 use super::contact::{Fibre, Memory};
-use super::kinematics::{Action, Place};
+use super::kinematics::{Action, BodyPosition};
 use super::structure::ElasticStructure;
 use crate::mechanics::lanes::{Dual, Lanes, Real};
 use crate::mechanics::tie::TieMemory;
@@ -98,7 +98,10 @@ impl Rest {
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
         let joints = structure.joints.iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
-            let [first, second] = joint.link.bodies.map(|body| Place::at(moved(body)));
+            let [first, second] = joint
+                .geometry
+                .bodies
+                .map(|body| BodyPosition::at(moved(body)));
             let mut fibres = self.fibres[index * each..(index + 1) * each].to_vec();
             let memory = &self.memories[index];
             let places = [&first, &second];
@@ -371,12 +374,12 @@ impl<'a> Search<'a> {
         let joints = &structure.joints;
         let bodies = structure.bodies.len();
         let ties = structure.ties.iter().map(|tie| tie.bodies);
-        let pairs = joints.iter().map(|joint| joint.link.bodies).chain(ties);
+        let pairs = joints.iter().map(|joint| joint.geometry.bodies).chain(ties);
         let reach = pairs.map(|pair| match pair {
             [one, other] if one < bodies && other < bodies => one.abs_diff(other),
             _ => 0,
         });
-        let lengths: f64 = joints.iter().map(|joint| joint.link.length_m).sum();
+        let lengths: f64 = joints.iter().map(|joint| joint.geometry.length_m).sum();
         Self {
             structure,
             load_m_s2,
@@ -434,7 +437,7 @@ impl<'a> Search<'a> {
     fn act<R: Real>(
         &self,
         bonded: bool,
-        place: impl Fn(usize, usize) -> Place<R>,
+        place: impl Fn(usize, usize) -> BodyPosition<R>,
         mut found: impl FnMut(usize, [usize; 2], R),
     ) {
         let bodies = self.structure.bodies.len();
@@ -451,15 +454,15 @@ impl<'a> Search<'a> {
             }
         };
         for joint in &self.structure.joints {
-            let pair = joint.link.bodies;
+            let pair = joint.geometry.bodies;
             let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let section = &self.structure.law.section;
             let action = if bonded {
-                let gap = joint.link.gap(&first, &second);
+                let gap = joint.geometry.gap(&first, &second);
                 let edges = section.bonded(gap.penetrations_m);
                 let edges_n = edges.map(|edge| edge * joint.normal_n_m);
                 let shear_n = gap.slip_m * joint.shear_n_m;
-                joint.link.action(&gap, edges_n, shear_n)
+                joint.geometry.action(&gap, edges_n, shear_n)
             } else {
                 let (mut memory, mut fibres) = (Memory::none(), [Fibre::none(); MOST_FIBRES]);
                 let fibres = &mut fibres[..section.fibres()];
@@ -482,14 +485,14 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the position of a body or a support.
-    fn place(&self, moved: &[[f64; 3]], body: usize) -> Place<SingleLane> {
-        Place::at(moved.get(body).unwrap_or(self.structure.support(body)))
+    fn place(&self, moved: &[[f64; 3]], body: usize) -> BodyPosition<SingleLane> {
+        BodyPosition::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
     /// Returns the position of the first or second body of a pair, with the derivatives by the coordinates of both.
-    fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> Place<Dual<6>> {
+    fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> BodyPosition<Dual<6>> {
         let Some(at) = moved.get(body) else {
-            return Place::at(self.structure.support(body));
+            return BodyPosition::at(self.structure.support(body));
         };
         let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
         let angle = variable(2);
@@ -499,7 +502,7 @@ impl<'a> Search<'a> {
             angle.chained(-2.0 * quarter * quarter, -0.5 * sin),
             angle.chained(sin, 0.5 * cos),
         ];
-        Place {
+        BodyPosition {
             moved_m: [variable(0), variable(1)],
             half_turn,
         }
@@ -660,7 +663,7 @@ impl<'a> Search<'a> {
         });
         let ties = ties.collect();
         for (index, joint) in joints.iter().enumerate() {
-            let [one, other] = joint.link.bodies.map(place);
+            let [one, other] = joint.geometry.bodies.map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];
             let memory = &mut memories[index];
             (self.structure).act(joint, [&one, &other], None, memory, fibres);

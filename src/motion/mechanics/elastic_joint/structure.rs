@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use super::contact::{
     Contact, ContactLaw, ElasticJoint, Fibre, Memory, NormalForces, Section, ShearForce,
 };
-use super::kinematics::{Action, Link, Place};
+use super::kinematics::{Action, BodyPosition, JointGeometry};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::blocks::{Block, Joint, Row, Supports};
@@ -205,7 +205,7 @@ impl ElasticStructure {
             let arms_m = arms_m.map(|arm| [arm.x, arm.y]);
             let along = [along.x, along.y];
             Ok(ElasticJoint {
-                link: Link::new(pair, arms_m, along, row.handedness, length_m),
+                geometry: JointGeometry::new(pair, arms_m, along, row.handedness, length_m),
                 normal_n_m: stiffness.normal_pa_m * area_m2,
                 shear_n_m: stiffness.shear_pa_m * area_m2,
                 crushing_penetration_m: strength_pa
@@ -346,17 +346,17 @@ impl ElasticStructure {
     pub fn act<R: Real>(
         &self,
         joint: &ElasticJoint,
-        places: [&Place<R>; 2],
+        places: [&BodyPosition<R>; 2],
         damping: Option<R>,
         memory: &mut Memory<R>,
         fibres: &mut [Fibre<R>],
     ) -> (Action<R>, NormalForces<R>, ShearForce<R>) {
-        let gap = joint.link.gap(places[0], places[1]);
+        let gap = joint.geometry.gap(places[0], places[1]);
         let normal = self.law.normal_forces(joint, damping, &gap, memory, fibres);
         let shear = self
             .law
             .shear_force(joint, damping, &gap, normal.edges_n, memory);
-        let action = joint.link.action(&gap, normal.edges_n, shear.shear_n);
+        let action = joint.geometry.action(&gap, normal.edges_n, shear.shear_n);
         (action, normal, shear)
     }
 
@@ -365,7 +365,7 @@ impl ElasticStructure {
     pub(crate) fn elastic_n(
         &self,
         joint: &ElasticJoint,
-        places: [&Place<Lanes<1>>; 2],
+        places: [&BodyPosition<Lanes<1>>; 2],
         memory: &Memory<Lanes<1>>,
         fibres: &mut [Fibre<Lanes<1>>],
     ) -> ([f64; 2], f64) {
@@ -394,7 +394,7 @@ impl ElasticStructure {
     pub(crate) fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
         for joint in &self.joints {
-            for body in joint.link.bodies {
+            for body in joint.geometry.bodies {
                 if let Some(held) = held_n_m.get_mut(body) {
                     *held += joint.normal_n_m;
                 }
@@ -402,10 +402,10 @@ impl ElasticStructure {
         }
         let squares = self.joints.iter().map(|joint| {
             let mut flexibility = Matrix3::zeros();
-            let link = &joint.link;
-            let along = Vector2::from(link.along);
-            let normal = Vector2::new(-along.y, along.x) * link.handedness;
-            for (body, arm_m) in link.bodies.into_iter().zip(link.arms_m) {
+            let geometry = &joint.geometry;
+            let along = Vector2::from(geometry.along);
+            let normal = Vector2::new(-along.y, along.x) * geometry.handedness;
+            for (body, arm_m) in geometry.bodies.into_iter().zip(geometry.arms_m) {
                 let Some(of_body) = self.bodies.get(body) else {
                     continue;
                 };
@@ -419,7 +419,7 @@ impl ElasticStructure {
                 flexibility += (by_x * by_x.transpose() + by_y * by_y.transpose()) / mass;
                 flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);
             }
-            let turning = self.law.section.second_moment() * link.length_m.powi(2);
+            let turning = self.law.section.second_moment() * geometry.length_m.powi(2);
             let (normal, shear) = (joint.normal_n_m, joint.shear_n_m);
             let roots = Vector3::new(normal.sqrt(), shear.sqrt(), (normal * turning).sqrt());
             let scaled = flexibility.component_mul(&(roots * roots.transpose()));

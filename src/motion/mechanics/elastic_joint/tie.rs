@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::kinematics::{Action, Place, cross};
+use super::kinematics::{Action, BodyPosition, cross};
 use crate::mechanics::blocks::Block;
 use crate::mechanics::lanes::{Real, both};
 use crate::mechanics::tie::{Tie, TieSpan};
@@ -46,7 +46,7 @@ impl BoundTie {
     /// Returns length, stretch and direction of the tie for given positions of its bodies.
     #[inline(always)]
     #[must_use]
-    pub fn span<R: Real>(&self, places: [&Place<R>; 2]) -> TieSpan<R> {
+    pub fn span<R: Real>(&self, places: [&BodyPosition<R>; 2]) -> TieSpan<R> {
         let swings = both!(end: places[end].swing(self.arms_m[end]));
         let first = both!(i: places[0].moved_m[i] + swings[0][i]);
         let second = both!(i: places[1].moved_m[i] + swings[1][i]);
@@ -58,7 +58,7 @@ impl BoundTie {
     #[must_use]
     pub fn action<R: Real>(
         &self,
-        places: [&Place<R>; 2],
+        places: [&BodyPosition<R>; 2],
         span: &TieSpan<R>,
         force_n: R,
     ) -> Action<R> {

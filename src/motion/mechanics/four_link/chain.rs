@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn the_order_of_asking_does_not_matter() {
+    fn links_do_not_depend_on_the_order_of_calls() {
         let (forwards, at_once) = (
             chain(0.15, 180.0, HingeSites::Anywhere),
             chain(0.15, 180.0, HingeSites::Anywhere),

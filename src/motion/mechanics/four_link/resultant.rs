@@ -172,7 +172,7 @@ impl ResultantLine {
         let near_tops = (1..samples.len()).filter(|i| is_top(i - 1) || is_top(*i));
         let refined = near_tops.map(|i| {
             let (from, to) = (samples[i - 1].angle_rad, samples[i].angle_rad);
-            climb(from, to, TOP_ACCURACY_RAD, &at)
+            find_maximum(from, to, TOP_ACCURACY_RAD, &at)
         });
         top(refined.chain(samples.iter().copied()))
     }
@@ -212,7 +212,7 @@ fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
 }
 
 /// Returns the maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by golden section.
-pub(super) fn climb(
+pub(super) fn find_maximum(
     mut from: f64,
     mut to: f64,
     accuracy_rad: f64,

@@ -185,20 +185,20 @@ fn ascend(
     start: [f64; 4],
     objective: &impl Objective,
 ) -> Option<(f64, FourLink)> {
-    let mut climber = Climber {
+    let mut ascent = Ascent {
         profile,
         objective,
         cells: start.map(|angle| Cell::containing(ends, angle)),
     };
     let mut mechanism = FourLink::new(profile, start)?;
     for _ in 0..MAX_NEWTON_STEPS {
-        match climber.step(&mechanism) {
+        match ascent.step(&mechanism) {
             Some(better) => mechanism = better,
-            None if climber.cross_kinks(&mechanism, ends) => {}
+            None if ascent.cross_kinks(&mechanism, ends) => {}
             None => break,
         }
     }
-    Some((climber.evaluate(&mechanism).0, mechanism))
+    Some((ascent.evaluate(&mechanism).0, mechanism))
 }
 
 /// Runs [`ascend`], then searches from the reflections of the maximum at nearby kinks. If the slope jumps up at a kink, there is a maximum on both
@@ -263,13 +263,13 @@ impl Cell {
     }
 }
 
-struct Climber<'a, O> {
+struct Ascent<'a, O> {
     profile: &'a dyn Profile,
     objective: &'a O,
     cells: [Cell; 4],
 }
 
-impl<O: Objective> Climber<'_, O> {
+impl<O: Objective> Ascent<'_, O> {
     fn evaluate(&self, mechanism: &FourLink) -> (f64, [f64; 4]) {
         let angles = mechanism.hinges_rad;
         // At the lower end of its cell a hinge uses the derivative above, at the upper end the one below.

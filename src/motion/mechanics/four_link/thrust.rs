@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 
 use super::limit::Incipient;
 use super::mechanism::HingeSites;
-use super::resultant::{Extremum, SectionResultant, climb};
+use super::resultant::{Extremum, SectionResultant, find_maximum};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::chain::{Demand, LEAST_LOAD};
 use crate::mechanics::geometry::field::{Momentum, Twist, turned};
@@ -317,5 +317,5 @@ fn top_near(
         value: of(&at(angle_rad)),
         angle_rad,
     };
-    Some(climb(samples[before].0, samples[after].0, TOP_ACCURACY_RAD, &at).value)
+    Some(find_maximum(samples[before].0, samples[after].0, TOP_ACCURACY_RAD, &at).value)
 }

@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn the_quadrature_is_that_of_gauss() {
-        // Exact for powers up to 15, and for each panel: the nodes and weights have all their digits.
+        // The rule is exact for powers up to 15 on each panel, so its nodes and weights are correct to the last digit.
         let axis = line(Vector2::zeros(), Vector2::new(1.0, 0.0));
         for power in 0..16 {
             let value = axis.integral(|point, _| point.x.powi(power));

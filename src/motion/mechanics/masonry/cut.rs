@@ -11,7 +11,7 @@ const DRAWN_POINTS: u32 = 4;
 
 /// Point of an edge: index of the piece, and fraction of its parameter.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct EdgePosition {
     pub piece: usize,
     pub part: f64,
 }
@@ -22,7 +22,7 @@ pub(super) struct CutArch {
     pub intrados: Vec<Curve>,
     pub extrados: Vec<Curve>,
     /// Points of every joint on the intrados and on the extrados, springings included.
-    pub joints: Vec<[Place; 2]>,
+    pub joints: Vec<[EdgePosition; 2]>,
 }
 
 impl CutArch {
@@ -33,7 +33,7 @@ impl CutArch {
 
     /// Returns its joints, springings included.
     pub fn joints(&self) -> Vec<Joint> {
-        let point = |edge: &[Curve], place: Place| edge[place.piece].point(place.part);
+        let point = |edge: &[Curve], place: EdgePosition| edge[place.piece].point(place.part);
         let joints = self.joints.iter().map(|[intrados, extrados]| Joint {
             intrados_m: point(&self.intrados, *intrados),
             extrados_m: point(&self.extrados, *extrados),
@@ -104,7 +104,7 @@ pub(super) fn top(piece: &Curve) -> f64 {
     }
 }
 
-fn pieces_between(edge: &[Curve], [from, to]: [Place; 2]) -> Vec<Curve> {
+fn pieces_between(edge: &[Curve], [from, to]: [EdgePosition; 2]) -> Vec<Curve> {
     let pieces = (from.piece..=to.piece).filter_map(|piece| {
         let start = if piece == from.piece { from.part } else { 0.0 };
         let end = if piece == to.piece { to.part } else { 1.0 };

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 
-use super::cut::{CutArch, Place};
+use super::cut::{CutArch, EdgePosition};
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
@@ -143,7 +143,7 @@ impl GivenBlocks {
                 true => (joint, 0.0),
                 false => (joint - 1, 1.0),
             };
-            [Place { piece, part }; 2]
+            [EdgePosition { piece, part }; 2]
         };
         CutArch {
             intrados: edge(|joint| joint.intrados_m),

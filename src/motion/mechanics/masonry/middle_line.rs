@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::cut::{CutArch, Place};
+use super::cut::{CutArch, EdgePosition};
 use super::{Dimensions, Material};
 use crate::argument::{ArgumentError, above, allow};
 use crate::mechanics::arch::Arch;
@@ -36,7 +36,7 @@ fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {
         } else {
             middle[piece].part_at(left_m.max(0.0))
         };
-        [Place { piece, part }; 2]
+        [EdgePosition { piece, part }; 2]
     };
     CutArch {
         intrados: edge(-0.5 * thickness_m),

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 use super::Dimensions;
-use super::cut::{CutArch, Place};
+use super::cut::{CutArch, EdgePosition};
 use super::middle_line::part;
 use crate::argument::{ArgumentError, allow};
 use crate::mechanics::geometry::curve::Curve;
@@ -49,7 +49,10 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
             0 => part * shorter,
             _ => 1.0 - (1.0 - part) * shorter,
         };
-        [Place { piece, part }, Place { piece, part: outer }]
+        [
+            EdgePosition { piece, part },
+            EdgePosition { piece, part: outer },
+        ]
     };
     Ok(CutArch {
         intrados: halves(inner_m),

@@ -16,18 +16,18 @@ impl Masonry {
     /// Returns the change that makes masonry stable that falls under its own weight.
     #[must_use]
     pub fn remedy(&self) -> Remedy {
-        let arch_stands = || self.stands_as(self.shape.clone(), Piers::default());
+        let arch_stands = || self.is_stable_with(self.shape.clone(), Piers::default());
         if !self.piers.are_none() && arch_stands() == Some(true) {
             return Remedy::WiderPiers(least_factor(|factor| {
-                self.stands_as(self.shape.clone(), self.piers.widened(factor))
+                self.is_stable_with(self.shape.clone(), self.piers.widened(factor))
             }));
         }
         Remedy::ThickerArch(least_factor(|factor| {
-            self.stands_as(self.shape.thickened(factor)?, Piers::default())
+            self.is_stable_with(self.shape.thickened(factor)?, Piers::default())
         }))
     }
 
-    fn stands_as(&self, shape: Shape, piers: Piers) -> Option<bool> {
+    fn is_stable_with(&self, shape: Shape, piers: Piers) -> Option<bool> {
         let masonry = Self::new(shape, piers, self.fill, self.loads.clone()).ok()?;
         masonry.stands().ok()
     }

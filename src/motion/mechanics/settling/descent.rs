@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{Condition, Pins, ROUNDING, SettlingError};
 use crate::mechanics::blocks::Row;
-use crate::mechanics::contact::closing::{Closer, FirstShut};
+use crate::mechanics::contact::closing::{ClosureSolver, FirstShut};
 use crate::mechanics::contact::{ContactError, Corners, Load, Program};
 use crate::mechanics::geometry::field::Twist;
 use crate::mechanics::geometry::pose::Pose;
@@ -38,15 +38,15 @@ const MOST_STEPS: usize = 20_000;
 /// An equilibrium held by ties is near if no block turns by more than this on the way to it, in radians.
 const NEAR_RAD: f64 = 1e-2;
 /// Tolerance of tie forces, over the weight.
-const FORCE: f64 = 1e-11;
+const FORCE_TOLERANCE: f64 = 1e-11;
 /// Lengths below this part of the movement under gravity alone in a step are rounding errors.
-const LEVEL: f64 = 1e-14;
+const ROUNDING_LENGTH: f64 = 1e-14;
 /// Limit of the number of Newton steps for the tie forces.
 const MOST_ROUNDS: usize = 100;
 /// Limit of the number of trials of a line search.
 const MOST_TRIALS: usize = 20;
 /// A line search ends when the slope of the energy is below this part of its initial slope.
-const FLAT: f64 = 0.1;
+const LINE_SEARCH_SLOPE: f64 = 0.1;
 /// Responses to tie forces below this part of those of free blocks are rounding errors.
 const NO_MOTION: f64 = 1e-9;
 /// Shortest step after tie forces were not found, over the original step.
@@ -63,10 +63,10 @@ struct Step<'a> {
     bounds_kg: Vec<[f64; 2]>,
     force_g: Vector2<f64>,
     length: f64,
-    /// Closed corners for which `lengthen` was computed; empty before that.
-    pressing: Vec<Corners>,
-    /// The matrix of [`Descent::lengthen`].
-    lengthen: DMatrix<f64>,
+    /// Closed corners for which `elongation_rates` was computed; empty before that.
+    closed_corners: Vec<Corners>,
+    /// The matrix of [`Descent::elongation_rates`].
+    elongation_rates: DMatrix<f64>,
 }
 
 impl<'a> Step<'a> {
@@ -82,8 +82,8 @@ impl<'a> Step<'a> {
             bounds_kg: most_kg.map(|most_kg| [0.0, most_kg]).collect(),
             force_g,
             length: 0.0,
-            pressing: Vec::new(),
-            lengthen: DMatrix::zeros(0, 0),
+            closed_corners: Vec::new(),
+            elongation_rates: DMatrix::zeros(0, 0),
         }
     }
 }
@@ -94,7 +94,7 @@ pub(super) struct Descent<'a> {
     row: &'a Row,
     program: Program,
     load: Load,
-    closer: Closer,
+    closure_solver: ClosureSolver,
     /// Force of each tie over gravity.
     ties_kg: Vec<f64>,
     /// Flexibility of each tie, in m/kg.
@@ -109,7 +109,7 @@ impl<'a> Descent<'a> {
             row,
             program: Program::new(row),
             load: Load::none(row),
-            closer: Closer::new(row),
+            closure_solver: ClosureSolver::new(row),
             ties_kg: vec![0.0; row.ties.len()],
             ties_m_kg: m_kg.collect(),
         }
@@ -131,7 +131,7 @@ impl<'a> Descent<'a> {
         self.ties_kg = forces.collect();
         self.program.reset();
         self.program.place(&stance.placement);
-        let mut lines = self.nudge(stance, from, to, force_g)?;
+        let mut lines = self.move_supports(stance, from, to, force_g)?;
         self.load.jumps.fill(Twist::ZERO);
         let start_m = stance.placement.centres_m.to_vec();
         let turns = |stance: &Stance| {
@@ -149,7 +149,7 @@ impl<'a> Descent<'a> {
                 stayed = if pins.hinges == hinges { stayed + 1 } else { 0 };
                 hinges = pins.hinges.to_vec();
                 let due = step == 0 || stayed.is_power_of_two() && !accelerates;
-                if due && self.rests_near(&pins, stance, to) {
+                if due && self.is_near_equilibrium(&pins, stance, to) {
                     return Ok(true);
                 }
             }
@@ -164,7 +164,7 @@ impl<'a> Descent<'a> {
                 return Ok(true);
             }
             let first_shut = self.program.first_shut(&stance.placement, longest);
-            lines = self.go_on(stance, first_shut);
+            lines = self.move_blocks(stance, first_shut);
             let allowed = (2.0 * longest).min(LONGEST * size_m);
             longest = (0.9 * farthest_m / fastest).min(allowed);
             let centres = start_m.iter().zip(&stance.placement.centres_m);
@@ -186,18 +186,18 @@ impl<'a> Descent<'a> {
     }
 
     /// Returns true if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
-    fn rests_near(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
+    fn is_near_equilibrium(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
             let pairs = state.rotations_rad.iter().zip(&stance.placement.poses);
             let mut turns = pairs.map(|(there, here)| (there - here.rotation_rad()).abs());
-            state.holds(ROUNDING) && turns.all(|turn_rad| turn_rad < NEAR_RAD)
+            state.is_admissible(ROUNDING) && turns.all(|turn_rad| turn_rad < NEAR_RAD)
         })
     }
 
     /// Moves the supports, and the row with them: of all admissible velocities the load selects those nearest to it. Each part of the
     /// movement ends when a joint closes. Returns the lines of the ties.
-    fn nudge(
+    fn move_supports(
         &mut self,
         stance: &mut Stance,
         from: &Condition,
@@ -223,7 +223,7 @@ impl<'a> Descent<'a> {
                 Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
             };
             stance.placement.move_supports(here);
-            lines = self.go_on(stance, (part, shut));
+            lines = self.move_blocks(stance, (part, shut));
         }
         Ok(lines)
     }
@@ -284,90 +284,94 @@ impl<'a> Descent<'a> {
         }
         let mut fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
         for _ in 0..MOST_ROUNDS {
-            let lacks_m = self.lacks_m(step);
+            let residuals_m = self.residuals_m(step);
             // A tie alone would change its force by more than together with the others, so this bounds the errors.
-            let least_kg = FORCE * self.row.mass_kg();
-            let mut each = lacks_m.iter().zip(&self.ties_m_kg);
-            if each.all(|(lacks_m, m_kg)| lacks_m.abs() <= least_kg * m_kg) {
+            let least_kg = FORCE_TOLERANCE * self.row.mass_kg();
+            let mut each = residuals_m.iter().zip(&self.ties_m_kg);
+            if each.all(|(residuals_m, m_kg)| residuals_m.abs() <= least_kg * m_kg) {
                 return Ok(fastest);
             }
-            let responded = self.learn_to_lengthen(step);
-            let Some(way_kg) = self.way_kg(step, &lacks_m) else {
+            let responded = self.update_elongation_rates(step);
+            let Some(newton_step_kg) = self.newton_step_kg(step, &residuals_m) else {
                 break;
             };
-            let pairs = way_kg.iter().zip(&lacks_m);
-            let wrong = pairs.filter(|(_, lacks_m)| lacks_m.abs() > LEVEL * step.length);
+            let pairs = newton_step_kg.iter().zip(&residuals_m);
+            let wrong =
+                pairs.filter(|(_, residuals_m)| residuals_m.abs() > ROUNDING_LENGTH * step.length);
             let left_kg = wrong.fold(0.0, |most: f64, (kg, _)| kg.abs().max(most));
-            if left_kg <= FORCE * self.row.mass_kg() {
+            if left_kg <= FORCE_TOLERANCE * self.row.mass_kg() {
                 if responded {
                     // The computation of responses overwrote the velocities.
                     fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
                 }
                 return Ok(fastest);
             }
-            fastest = self.go_along(step, &way_kg, lacks_m.dot(&way_kg))?;
+            fastest = self.search_line(step, &newton_step_kg, residuals_m.dot(&newton_step_kg))?;
         }
         Err(SettlingError::Ties)
     }
 
     /// Residual of each tie with the last velocities, in m: its length at the end of the step less the length under its force.
-    fn lacks_m(&self, step: &Step<'_>) -> DVector<f64> {
+    fn residuals_m(&self, step: &Step<'_>) -> DVector<f64> {
         let velocities = &self.program.velocities;
-        let lacks_m = step.lines.iter().enumerate().map(|(tie, line)| {
+        let residuals_m = step.lines.iter().enumerate().map(|(tie, line)| {
             let then_m = line.stretch_m + step.length * line.lengthening(velocities);
             let elastic_m = self.ties_kg[tie] * self.ties_m_kg[tie];
             then_m - step.stance.ties[tie].yielded_m.0[0] - elastic_m
         });
-        DVector::from_iterator(self.ties_kg.len(), lacks_m)
+        DVector::from_iterator(self.ties_kg.len(), residuals_m)
     }
 
     /// Returns the Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
     /// step would exceed it. `None` if the step is not determined.
     ///
     /// The unknowns are the speeds of the few degrees of freedom of the row. The forces of many ties follow from them.
-    fn way_kg(&self, step: &Step<'_>, lacks_m: &DVector<f64>) -> Option<DVector<f64>> {
-        let lengthen = &step.lengthen;
-        let modes = lengthen.ncols();
+    fn newton_step_kg(&self, step: &Step<'_>, residuals_m: &DVector<f64>) -> Option<DVector<f64>> {
+        let elongation_rates = &step.elongation_rates;
+        let modes = elongation_rates.ncols();
         let kg_m = self.ties_m_kg.iter().map(|m_kg| 1.0 / m_kg);
-        let mut kg_m = DVector::from_iterator(lacks_m.len(), kg_m);
-        let (mut way_kg, mut found) = (lacks_m.clone(), false);
+        let mut kg_m = DVector::from_iterator(residuals_m.len(), kg_m);
+        let (mut newton_step_kg, mut found) = (residuals_m.clone(), false);
         loop {
             let mut all_go = true;
             for (tie, kg_m) in kg_m.iter_mut().enumerate() {
-                if *kg_m != 0.0 && !self.may_go(step, tie, way_kg[tie]) {
+                if *kg_m != 0.0 && !self.may_change(step, tie, newton_step_kg[tie]) {
                     *kg_m = 0.0;
                     all_go = false;
                 }
             }
             if found && all_go {
-                return way_kg.iter().all(|kg| kg.is_finite()).then_some(way_kg);
+                return newton_step_kg
+                    .iter()
+                    .all(|kg| kg.is_finite())
+                    .then_some(newton_step_kg);
             }
-            let mut pulls = lengthen.clone();
+            let mut pulls = elongation_rates.clone();
             for mut mode in pulls.column_iter_mut() {
                 mode.component_mul_assign(&kg_m);
             }
             let mut equations = DMatrix::identity(modes, modes);
-            equations.gemm_tr(step.length, &pulls, lengthen, 1.0);
-            let speeds = equations.cholesky()?.solve(&pulls.tr_mul(lacks_m));
-            way_kg.copy_from(lacks_m);
-            way_kg.gemv(-step.length, lengthen, &speeds, 1.0);
-            way_kg.component_mul_assign(&kg_m);
+            equations.gemm_tr(step.length, &pulls, elongation_rates, 1.0);
+            let speeds = equations.cholesky()?.solve(&pulls.tr_mul(residuals_m));
+            newton_step_kg.copy_from(residuals_m);
+            newton_step_kg.gemv(-step.length, elongation_rates, &speeds, 1.0);
+            newton_step_kg.component_mul_assign(&kg_m);
             found = true;
         }
     }
 
     /// Returns true if the bounds of the force of a tie allow this change.
-    fn may_go(&self, step: &Step<'_>, tie: usize, change: f64) -> bool {
+    fn may_change(&self, step: &Step<'_>, tie: usize, change: f64) -> bool {
         let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
         (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0
     }
 
-    /// Updates `step.lengthen` if the set of closed corners has changed. Returns true if it has; the velocities are then lost.
-    fn learn_to_lengthen(&mut self, step: &mut Step<'_>) -> bool {
-        let unknown = step.pressing != self.program.active;
+    /// Updates `step.elongation_rates` if the set of closed corners has changed. Returns true if it has; the velocities are then lost.
+    fn update_elongation_rates(&mut self, step: &mut Step<'_>) -> bool {
+        let unknown = step.closed_corners != self.program.active;
         if unknown {
-            step.pressing = self.program.active.to_vec();
-            step.lengthen = self.lengthen(step);
+            step.closed_corners = self.program.active.to_vec();
+            step.elongation_rates = self.elongation_rates(step);
         }
         unknown
     }
@@ -377,7 +381,7 @@ impl<'a> Descent<'a> {
     ///
     /// The response to tie forces is the projection of the free motion on the admissible motions. So responses to arbitrary forces span
     /// all these motions: the basis is complete once a response lies in it, or it has as many motions as there are degrees of freedom.
-    fn lengthen(&mut self, step: &Step<'_>) -> DMatrix<f64> {
+    fn elongation_rates(&mut self, step: &Step<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
         let centres_m = &step.stance.placement.centres_m;
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
@@ -423,20 +427,20 @@ impl<'a> Descent<'a> {
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
         (self.load).push(self.row, &step.stance.placement, Vector2::zeros(), ties);
-        self.program.solve_alike(&self.load);
+        self.program.solve_with_last_corners(&self.load);
     }
 
-    /// Line search: changes the tie forces along `way_kg`, each up to its bound, until the energy of the step is close to its minimum.
+    /// Line search: changes the tie forces along `newton_step_kg`, each up to its bound, until the energy of the step is close to its minimum.
     /// `falls` is the initial slope of the energy. Returns the largest velocity.
-    fn go_along(
+    fn search_line(
         &mut self,
         step: &mut Step<'_>,
-        way_kg: &DVector<f64>,
+        newton_step_kg: &DVector<f64>,
         falls: f64,
     ) -> Result<f64, ContactError> {
         let from_kg = self.ties_kg.clone();
         // Part of the way at which the force of each tie reaches its bound.
-        let bounds = from_kg.iter().zip(way_kg).zip(&step.bounds_kg);
+        let bounds = from_kg.iter().zip(newton_step_kg).zip(&step.bounds_kg);
         let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
             let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
             match *change_kg {
@@ -451,18 +455,18 @@ impl<'a> Descent<'a> {
         for _ in 0..MOST_TRIALS {
             for (tie, from_kg) in from_kg.iter().enumerate() {
                 self.ties_kg[tie] = if part >= ends[tie] {
-                    step.bounds_kg[tie][usize::from(way_kg[tie] > 0.0)]
+                    step.bounds_kg[tie][usize::from(newton_step_kg[tie] > 0.0)]
                 } else {
-                    from_kg + part * way_kg[tie]
+                    from_kg + part * newton_step_kg[tie]
                 };
             }
             let fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
-            let falls_on = self.lacks_m(step).component_mul(way_kg);
+            let falls_on = self.residuals_m(step).component_mul(newton_step_kg);
             // A force at its bound stays there, unless the slope points inwards.
             let goes = falls_on.iter().zip(&ends);
             let goes = goes.filter(|(falls, end)| part <= **end || **falls < 0.0);
             let left: f64 = goes.map(|(falls, _)| falls).sum();
-            if left.abs() <= FLAT * falls || (part >= all && left > 0.0) {
+            if left.abs() <= LINE_SEARCH_SLOPE * falls || (part >= all && left > 0.0) {
                 return Ok(fastest);
             }
             if part > all {
@@ -475,10 +479,11 @@ impl<'a> Descent<'a> {
                 far = part;
             }
             // Newton's method: the slope changes abruptly near forces at which the row stands still.
-            self.learn_to_lengthen(step);
-            let elastic = self.ties_m_kg.iter().zip(way_kg);
+            self.update_elongation_rates(step);
+            let elastic = self.ties_m_kg.iter().zip(newton_step_kg);
             let elastic: f64 = elastic.map(|(m_kg, kg)| kg * kg * m_kg).sum();
-            let slope = elastic + step.length * step.lengthen.tr_mul(way_kg).norm_squared();
+            let slope =
+                elastic + step.length * step.elongation_rates.tr_mul(newton_step_kg).norm_squared();
             let next = part + left / slope;
             let (middle, lies_between) = (0.5 * (near + far), near < next && next < far);
             part = if lies_between { next } else { middle };
@@ -487,12 +492,12 @@ impl<'a> Descent<'a> {
     }
 
     /// Moves the blocks with the last velocities for the given time, and closes the given corner. Returns the lines of the ties.
-    fn go_on(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
+    fn move_blocks(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
         let placement = &mut stance.placement;
         let mut change = vec![[0.0; 2]; placement.gaps_m.len()];
         (self.program).open_until(placement, first_shut, &mut change);
         placement.open(|joint| change[joint]);
-        self.closer.close(placement);
+        self.closure_solver.close(placement);
         self.program.place(placement);
         stance.stretch_ties(self.row)
     }
@@ -576,7 +581,7 @@ mod tests {
             let kg = descent.ties_kg[index];
             assert!(kg > 0.01 * row.mass_kg(), "{kg}");
             assert!(
-                (kg - then_kg).abs() < FORCE * row.mass_kg(),
+                (kg - then_kg).abs() < FORCE_TOLERANCE * row.mass_kg(),
                 "{kg} {then_kg}"
             );
         }
@@ -592,9 +597,13 @@ mod tests {
         let force_g = Vector2::new(2.0, -1.0);
         let mut step = step(&row, &stance, force_g, 0.01);
         descent.balance_ties(&mut step).unwrap();
-        let lengthen = descent.lengthen(&step);
-        assert!((1..=5).contains(&lengthen.ncols()), "{}", lengthen.ncols());
-        let found = &lengthen * lengthen.transpose();
+        let elongation_rates = descent.elongation_rates(&step);
+        assert!(
+            (1..=5).contains(&elongation_rates.ncols()),
+            "{}",
+            elongation_rates.ncols()
+        );
+        let found = &elongation_rates * elongation_rates.transpose();
         for pulling in 0..4 {
             descent.respond(&step, |tie| f64::from(u8::from(tie == pulling)));
             for (lacking, line) in step.lines.iter().enumerate() {

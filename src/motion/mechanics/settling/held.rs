@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Vector2, Vector3};
 use thiserror::Error;
 
-use super::pins::{Pins, Pulls, side, two_bodies};
+use super::pins::{Pins, TieLoads, side, two_bodies};
 use super::{Condition, Pin};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::blocks::{Row, Supports};
@@ -118,7 +118,7 @@ impl<'a> Held<'a> {
             q_rad,
             // A breaking tie may remove all strength at once, so the computed push may not be zero here.
             acceleration_g: if part == 1.0 { 0.0 } else { push_g },
-            hinges_m: self.pins.at_m(&poses),
+            hinges_m: self.pins.positions_m(&poses),
             poses: poses[1..=self.bodies()].to_vec(),
             friction: state.map_or(0.0, |state| state.friction),
         }
@@ -177,7 +177,7 @@ impl<'a> Held<'a> {
     }
 
     /// Returns the states, forces and lines of the ties at a rotation of the first body.
-    fn pulls(&self, q_rad: f64, poses: &[Pose]) -> Pulls {
+    fn pulls(&self, q_rad: f64, poses: &[Pose]) -> TieLoads {
         let built = [Pose::UNDEFORMED; 2];
         self.pins.pulls(self.row, &built, poses, self.before(q_rad))
     }
@@ -195,7 +195,7 @@ impl<'a> Held<'a> {
         let (push, weight) = (Vector2::new(self.sway.sign(), 0.0), Vector2::new(0.0, -1.0));
         let held = self.pins.loads(row, &poses, weight, &pulls);
         let pushed = self.pins.loads(row, &poses, push, &[]);
-        let pins_m = self.pins.at_m(&poses);
+        let pins_m = self.pins.positions_m(&poses);
         let joint = |hinge: usize| self.pins.hinges[hinge].joint;
         if row.supports == Supports::Left {
             let blocks = row.blocks.len();

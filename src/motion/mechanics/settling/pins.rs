@@ -50,7 +50,7 @@ pub struct Pins {
 }
 
 /// States of the ties, and their forces in N with the lines of action.
-pub(super) type Pulls = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
+pub(super) type TieLoads = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 
 /// Positions and forces of a row on hinges.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub struct State {
     /// Joint and edge of every hinge.
     pub hinges: Vec<Pin>,
     /// Rotation of the part after each hinge relative to the part before it, anticlockwise.
-    pub turns_rad: Vec<f64>,
+    pub hinge_rotations_rad: Vec<f64>,
     /// Opening of each hinge, in radians; negative if the blocks would overlap.
     pub openings_rad: Vec<f64>,
     /// Rotations of the blocks.
@@ -78,7 +78,7 @@ impl State {
     /// if the margin is not negative.
     #[must_use]
     pub fn margin(&self) -> f64 {
-        let forces = self.pressing().map(|(_, force)| force);
+        let forces = self.compressive_forces().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
         // NaN stays, so that a margin with NaN is never admissible.
         let lower = |least: f64, next: f64| match next < least || next.is_nan() {
@@ -89,14 +89,16 @@ impl State {
     }
 
     /// Returns whether the state is admissible within a tolerance.
-    pub(super) fn holds(&self, slack: f64) -> bool {
+    pub(super) fn is_admissible(&self, slack: f64) -> bool {
         self.margin() >= -slack
     }
 
     /// Returns the joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
     #[must_use]
-    pub fn beyond(&self, margin: f64) -> Vec<Pin> {
-        let pull = self.pressing().filter(|(_, force)| *force < margin);
+    pub fn joints_below_margin(&self, margin: f64) -> Vec<Pin> {
+        let pull = self
+            .compressive_forces()
+            .filter(|(_, force)| *force < margin);
         // If one corner would pull, the thrust line is beyond the opposite one.
         let pull = pull.map(|(hinge, _)| Pin {
             edge: hinge.edge.opposite(),
@@ -108,7 +110,7 @@ impl State {
     }
 
     /// Returns all normal forces that must be compressive, with their corners.
-    fn pressing(&self) -> impl Iterator<Item = (Pin, f64)> + '_ {
+    fn compressive_forces(&self) -> impl Iterator<Item = (Pin, f64)> + '_ {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
             let hinge = self.hinges.iter().find(|hinge| hinge.joint == joint);
@@ -164,7 +166,7 @@ impl Pins {
                 let side = side(&self.pins_in(before));
                 two_bodies([left, middle, right], &condition.supports, side)
             }
-            _ => Chain::new(self, row, condition, before).rest(),
+            _ => Chain::new(self, row, condition, before).find_equilibrium(),
         }
     }
 
@@ -188,7 +190,7 @@ impl Pins {
     }
 
     /// Returns the positions of the pins, in metres, for given poses of the parts before, between and after the pins.
-    pub(super) fn at_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
+    pub(super) fn positions_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
         let pins = self.pins_m.iter().zip(&poses[1..]);
         pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
     }
@@ -215,8 +217,8 @@ impl Pins {
     ) -> Option<State> {
         let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
         let turn = |pair: &[Pose]| pair[1].rotation_rad() - pair[0].rotation_rad();
-        let turns_rad: Vec<f64> = poses.windows(2).map(turn).collect();
-        let mut openings_rad = turns_rad.clone();
+        let hinge_rotations_rad: Vec<f64> = poses.windows(2).map(turn).collect();
+        let mut openings_rad = hinge_rotations_rad.clone();
         for (opening, hinge) in openings_rad.iter_mut().zip(&self.hinges) {
             let inside = hinge.edge == Edge::Intrados;
             *opening *= row.handedness * if inside { 1.0 } else { -1.0 };
@@ -228,7 +230,7 @@ impl Pins {
             // The end of a stack is free.
             Supports::Left => loads[blocks] * -1.0,
             Supports::Both => {
-                let pins_m = self.at_m(poses);
+                let pins_m = self.positions_m(poses);
                 let between = |last: usize| loads[joints[last]] - loads[joints[0]];
                 // Moment equilibrium of the loads about two other pins gives the force at the first pin.
                 let others = [joints.len() / 2, joints.len() - 1];
@@ -249,7 +251,8 @@ impl Pins {
             let mut along = pose.turned(joint.along());
             if let Some(index) = hinge {
                 // Direction of the joint: mean of the directions of its two faces.
-                along = Pose::new(-0.5 * turns_rad[index], Vector2::zeros()).turned(along);
+                along =
+                    Pose::new(-0.5 * hinge_rotations_rad[index], Vector2::zeros()).turned(along);
             }
             let normal = turned(along) * row.handedness;
             let pressed = force.linear.dot(&normal);
@@ -269,7 +272,7 @@ impl Pins {
         let rotations = (self.parts(row)).map(|part| poses[part].rotation_rad());
         Some(State {
             hinges: self.hinges.clone(),
-            turns_rad,
+            hinge_rotations_rad,
             openings_rad,
             rotations_rad: rotations.collect(),
             corners,
@@ -286,7 +289,7 @@ impl Pins {
         supports: &[Pose; 2],
         poses: &[Pose],
         before: &[TieMemory<Lanes<1>>],
-    ) -> Pulls {
+    ) -> TieLoads {
         let parts: Vec<usize> = self.parts(row).collect();
         let lines = lines(row, supports, |block| poses[parts[block]]);
         let ties = row.ties.iter().zip(lines).zip(before);
@@ -410,7 +413,7 @@ impl Bar {
 /// Gradient and Hessian of the energy of all ties between two bodies. The coordinates of a body are the position of its first pin and its rotation.
 /// Signs are as if a tie pulled both bodies in the same direction.
 #[derive(Default)]
-struct Between {
+struct PairDerivatives {
     force: Vector2<f64>,
     moments: Vector2<f64>,
     along: Vector2<f64>,
@@ -420,7 +423,7 @@ struct Between {
     rotations: Matrix2<f64>,
 }
 
-impl Between {
+impl PairDerivatives {
     /// Sums the ties between two bodies at these poses; `pins_m` are the first pins of the bodies.
     fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
         let mut all = Self::default();
@@ -465,18 +468,18 @@ impl Between {
 }
 
 /// Residuals of the equilibrium equations of a chain, and their derivatives.
-struct Unbalanced {
+struct Residuals {
     /// Derivatives of the energy by the rotations.
     slopes: DVector<f64>,
     curvature: DMatrix<f64>,
     /// Gap between the last pin and its position on the support, and its derivatives.
-    parted: Vector2<f64>,
+    gap_m: Vector2<f64>,
     reach: DMatrix<f64>,
 }
 
-impl Unbalanced {
+impl Residuals {
     /// Adds the force of the right support on the last pin.
-    fn held_by(mut self, reaction: Vector2<f64>) -> Self {
+    fn with_reaction(mut self, reaction: Vector2<f64>) -> Self {
         for (body, reach) in self.reach.column_iter().enumerate() {
             self.slopes[body] -= reach[0] * reaction.x + reach[1] * reaction.y;
             self.curvature[(body, body)] += reach[1] * reaction.x - reach[0] * reaction.y;
@@ -540,7 +543,7 @@ impl<'a> Chain<'a> {
     }
 
     /// Returns gradient and Hessian of the energy, without the force of the right support.
-    fn unbalanced(&self) -> Unbalanced {
+    fn residuals(&self) -> Residuals {
         let count = self.rotations_rad.len();
         let poses = self.poses();
         let mut slopes = DVector::zeros(count);
@@ -556,10 +559,10 @@ impl<'a> Chain<'a> {
         self.add_ties(&poses, &mut slopes, &mut curvature);
         let last = self.pins.pins_m.len() - 1;
         let there = poses[count - 1].of(self.pins.pins_m[last]);
-        Unbalanced {
+        Residuals {
             slopes,
             curvature,
-            parted: there - self.condition.supports[1].of(self.pins.pins_m[last]),
+            gap_m: there - self.condition.supports[1].of(self.pins.pins_m[last]),
             reach,
         }
     }
@@ -570,7 +573,7 @@ impl<'a> Chain<'a> {
         let count = poses.len();
         let supports = &self.condition.supports;
         let parts = [&supports[..1], poses, &supports[1..]].concat();
-        let pins_m = self.pins.at_m(&parts);
+        let pins_m = self.pins.positions_m(&parts);
         let mut forces = DVector::zeros(3 * count);
         let mut stiffnesses = DMatrix::zeros(3 * count, 3 * count);
         let alike = self.bars.chunk_by(|one, next| one.parts == next.parts);
@@ -579,7 +582,7 @@ impl<'a> Chain<'a> {
             let body = tied.map(|part| part.checked_sub(1).filter(|body| *body < count));
             // Supports have no first pin and do not turn.
             let pins_m = body.map(|body| body.map_or(Vector2::zeros(), |body| pins_m[body]));
-            let all = Between::new(bars, tied.map(|part| &parts[part]), pins_m);
+            let all = PairDerivatives::new(bars, tied.map(|part| &parts[part]), pins_m);
             for (one, first) in body.iter().enumerate() {
                 let Some(first) = first else { continue };
                 let on_body = Vector3::new(all.force.x, all.force.y, all.moments[one]);
@@ -614,31 +617,31 @@ impl<'a> Chain<'a> {
 
     /// Finds the stable equilibrium by Newton's method and returns the poses of the bodies. `None` if a body turns by more than a radian, an
     /// equilibrium is unstable, or the iteration does not converge.
-    fn rest(mut self) -> Option<Vec<Pose>> {
+    fn find_equilibrium(mut self) -> Option<Vec<Pose>> {
         let count = self.rotations_rad.len();
         let size_m = self.row.size_m;
         // Start with the least-squares force of the support.
-        let mut free = self.unbalanced();
+        let mut free = self.residuals();
         let squares = &free.reach * free.reach.transpose();
         let force = squares.lu().solve(&(&free.reach * &free.slopes))?;
         let mut reaction = Vector2::new(force[0], force[1]);
         let start_rad = self.rotations_rad.clone();
         for _ in 0..MOST_STEPS {
-            let left = free.held_by(reaction);
+            let left = free.with_reaction(reaction);
             // Stability: the Hessian is positive definite in all directions in which the pins still meet.
             let pins = left.reach.transpose() * &left.reach;
             let held = STIFFER * left.curvature.amax() / pins.amax();
             (&left.curvature + pins * held).cholesky()?;
             let slopes = left.slopes.amax() / size_m;
             let rounding = BALANCED + 8.0 * f64::EPSILON * left.curvature.amax() / size_m;
-            if slopes < rounding && left.parted.amax() < BALANCED * size_m {
+            if slopes < rounding && left.gap_m.amax() < BALANCED * size_m {
                 return Some(self.poses());
             }
             let mut matrix = left.curvature.resize(count + 2, count + 2, 0.0);
             (matrix.view_mut((count, 0), (2, count))).copy_from(&left.reach);
             (matrix.view_mut((0, count), (count, 2))).copy_from(&-left.reach.transpose());
-            let unbalanced = left.slopes.iter().chain(&left.parted).map(|part| -part);
-            let right = DVector::from_iterator(count + 2, unbalanced);
+            let residuals = left.slopes.iter().chain(&left.gap_m).map(|part| -part);
+            let right = DVector::from_iterator(count + 2, residuals);
             let step = matrix.lu().solve(&right)?;
             for (rotation_rad, by) in self.rotations_rad.iter_mut().zip(step.iter()) {
                 *rotation_rad += by;
@@ -652,7 +655,7 @@ impl<'a> Chain<'a> {
             if turns.any(|(start, now)| (now - start).abs() > FAR_RAD) {
                 return None;
             }
-            free = self.unbalanced();
+            free = self.residuals();
         }
         None
     }
@@ -667,7 +670,7 @@ mod tests {
 
     /// The Hessian of the energy equals central differences of its gradient: for a chain on five hinges, with ties between bodies and to the ground.
     #[test]
-    fn curvatures_are_slopes_of_slopes() {
+    fn the_hessian_is_the_derivative_of_the_gradient() {
         let ring = Ring::new(0.15, PI).unwrap();
         let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
         let weight_n = row.mass_kg() * 9.81;
@@ -703,13 +706,13 @@ mod tests {
         let mut chain = Chain::new(&pins, &row, &condition, &before);
         chain.rotations_rad = vec![0.02, -0.03, 0.01, 0.04];
         let reaction = Vector2::new(-0.2, 0.5);
-        let found = chain.unbalanced().held_by(reaction).curvature;
+        let found = chain.residuals().with_reaction(reaction).curvature;
         let step = 1e-5;
         for body in 0..4 {
             let mut slopes_at = |by: f64| {
                 let own = chain.rotations_rad[body];
                 chain.rotations_rad[body] = own + by;
-                let slopes = chain.unbalanced().held_by(reaction).slopes;
+                let slopes = chain.residuals().with_reaction(reaction).slopes;
                 chain.rotations_rad[body] = own;
                 slopes
             };

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::{APART_RATIO, SlidingStepper};
 use crate::dynamics::row::stepper::Stepper as _;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::coulomb::{Along, Mode};
+use crate::mechanics::coulomb::{Mode, TangentialMode};
 use crate::mechanics::geometry::ring::Edge;
 
 /// Impact that began in the last step. Its energy is complete after the next step.
@@ -105,7 +105,7 @@ impl SlidingStepper<'_> {
             }
             let part = &mut parts[usize::from(late == [false; 2])];
             part.total_j -= by_row.z;
-            let slips = |modes: &[Mode]| modes[joint].along != Along::Stick;
+            let slips = |modes: &[Mode]| modes[joint].tangential != TangentialMode::Stick;
             if slips(&self.modes_before) || slips(&self.program.modes) {
                 // Below the tolerance of the rates the sign is a rounding error.
                 part.friction_j += (-by_row.z).max(0.0);
@@ -118,7 +118,7 @@ impl SlidingStepper<'_> {
     pub(super) fn step_friction_j(&self) -> f64 {
         let mut step_friction_j = 0.0;
         for (joint, impulse) in self.program.impulses.iter().enumerate() {
-            if let Along::Slip(_) = self.program.modes[joint].along {
+            if let TangentialMode::Slip(_) = self.program.modes[joint].tangential {
                 let rate = self.program.joint_rate(joint).z + self.position_errors[joint].z;
                 // Below the tolerance of the rates the sign is a rounding error.
                 step_friction_j += (-impulse.z * rate).max(0.0);
@@ -147,7 +147,7 @@ impl SlidingStepper<'_> {
         };
         self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
         self.course.shut = landing.shut;
-        let sticks = |mode: &Mode| mode.along == Along::Stick;
+        let sticks = |mode: &Mode| mode.tangential == TangentialMode::Stick;
         let moves = !(self.has_initial_contacts() && self.program.modes.iter().all(sticks));
         let stood = self
             .rotations_and_rates()
