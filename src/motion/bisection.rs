@@ -197,7 +197,7 @@ mod tests {
                 x >= change
             });
             assert_eq!(ends, (low, high));
-            // Ten steps, or nine if the relative width at the upper end allows twice the interval.
+            // Nine steps if the change is near 2, where the allowed width is twice that near 1; otherwise ten.
             assert!(
                 calls == [7, 7, 7, 1] || calls == [7, 7, 7],
                 "{change}: {calls:?}"

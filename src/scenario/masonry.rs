@@ -24,7 +24,7 @@ use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError, Material, Pier,
     Piers, PlacedLoad, Remedy, Shape,
 };
-use crate::mechanics::stability::falls;
+use crate::mechanics::stability::collapse_mechanism;
 
 const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 
@@ -228,7 +228,7 @@ impl Additions {
         let ties = tie::placed(table, &self.ties, on)?;
         let tied = masonry.with_ties(ties, gravity_m_s2);
         let masonry = tied.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
-        match falls(&masonry.row) {
+        match collapse_mechanism(&masonry.row) {
             Ok(None) => Ok(masonry),
             Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
             Ok(Some(openings)) => {
@@ -271,7 +271,7 @@ impl Additions {
 
 fn stands_without_ties(masonry: &Masonry) -> bool {
     let row = &masonry.row;
-    !row.ties.is_empty() && matches!(falls(&row.clone().without_ties()), Ok(None))
+    !row.ties.is_empty() && matches!(collapse_mechanism(&row.clone().without_ties()), Ok(None))
 }
 
 /// Reads `[piers]`. Its keys hold for both piers; `[piers.left]` and `[piers.right]` may override them.

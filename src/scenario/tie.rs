@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 use super::prelude::*;
 use crate::mechanics::blocks::{MAX_BLOCKS, Row};
 use crate::mechanics::column::Column;
-use crate::mechanics::stability::falls;
+use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::tie::{Anchor, Tie, TieError};
 
 const COORDINATE_M: Number = within(&(-1e6..=1e6));
@@ -296,7 +296,7 @@ pub(super) fn tied_column(
     let column = column.with_ties(ties, gravity_m_s2);
     let column = column.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
     let row = column.row().map_err(|error| error.to_string());
-    let falls = row.and_then(|row| falls(&row).map_err(|error| error.to_string()));
+    let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
     let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
     let falls = table.accept("column", falls)?.is_some();
     table.refuse(falls, "tie", PULLS_OVER)?;

@@ -17,7 +17,7 @@ use archrock::mechanics::masonry::{
     PlacedLoad, Shape,
 };
 use archrock::mechanics::settling::Follower;
-use archrock::mechanics::stability::falls;
+use archrock::mechanics::stability::collapse_mechanism;
 use archrock::{
     Arch, FourLinks, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Scenario,
     Sway,
@@ -410,7 +410,7 @@ pub fn noise(random: &mut Random, peak_g: [f64; 2], length_s: f64) -> GroundMoti
 pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, GroundMotion) {
     let row = loop {
         let row = random_row(random, most);
-        if falls(&row).unwrap().is_none() {
+        if collapse_mechanism(&row).unwrap().is_none() {
             break row;
         }
     };

@@ -8,7 +8,7 @@ use archrock::mechanics::four_link::certificate::project;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, PlacedLoad, Shape};
-use archrock::mechanics::stability::{falls, onset};
+use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::{
     Arch, FourLinkError, FourLinks, GroundMotion, ImpactLaw, ImpactModel, Initial, Model as _,
     Outcome, Pulse, Request, Sample, Sway,
@@ -153,7 +153,7 @@ fn static_and_kinematic_theorem_agree_on_random_shapes() {
             continue;
         };
         let row = &masonry.row;
-        if falls(row).unwrap().is_some() {
+        if collapse_mechanism(row).unwrap().is_some() {
             continue;
         }
         standing += 1;
@@ -291,7 +291,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
 #[test]
 fn the_thrust_line_in_motion_passes_through_the_hinges() {
     let (_, row) = circular(180.0, 18);
-    let row = row.carrying(
+    let row = row.with_body(
         12,
         &Block {
             mass_kg: 900.0,
@@ -392,7 +392,7 @@ fn an_uneven_row_is_released_and_overturns_by_side() {
         centre_m: Vector2::new(2.5, 5.0),
         inertia_kg_m2: 0.0,
     };
-    let model = rocking(&row.carrying(13, &load));
+    let model = rocking(&row.with_body(13, &load));
     let [right, left] = SIDES.map(|sway| model.incipient_towards_g(sway));
     assert!((right / left - 1.0).abs() > 0.05);
     // A pulse between the two moves it only to the weaker side.

@@ -17,7 +17,7 @@ use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::field::{Side, Twist};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::stability::{StabilityError, falls, onset};
+use archrock::mechanics::stability::{StabilityError, collapse_mechanism, onset};
 use archrock::mechanics::sway::Sway;
 use archrock::{Column, Model, Request, RockingColumn, RowMotionError};
 use clarabel::algebra::CscMatrix;
@@ -104,7 +104,7 @@ fn the_onset_is_that_of_the_static_programme() {
     assert!((found.acceleration_g - 0.193_286).abs() < 1e-6);
     let thin = arch(180.0, 0.10, 36, 5.0);
     assert!(
-        falls(&thin)
+        collapse_mechanism(&thin)
             .unwrap()
             .is_some_and(|openings| openings.len() >= 4)
     );
@@ -218,7 +218,7 @@ fn the_onset_of_random_rows_is_that_of_linear_programming() {
     while rows < 100 {
         let row = random_row(&mut random, 25);
         rows += 1;
-        if falls(&row).unwrap().is_some() {
+        if collapse_mechanism(&row).unwrap().is_some() {
             continue;
         }
         for sway in [Sway::Right, Sway::Left] {

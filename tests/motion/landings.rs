@@ -14,7 +14,7 @@ use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::stability::{falls, onset};
+use archrock::mechanics::stability::{collapse_mechanism, onset};
 
 fn peaks_rad(run: &Summary) -> Vec<f64> {
     run.half_cycles()
@@ -88,7 +88,7 @@ fn shaken_arch(random: &mut Random, least: usize, most: usize) -> (Ring, usize, 
         let duration = between(0.1, 0.5) * (radius_m / 10.0).sqrt();
         let side = if between(0.0, 1.0) < 0.5 { -1.0 } else { 1.0 };
         let row = Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap();
-        if falls(&row).unwrap().is_some() {
+        if collapse_mechanism(&row).unwrap().is_some() {
             continue;
         }
         let Some(onset) = onset(&row, Sway::Right).unwrap() else {

@@ -12,7 +12,7 @@ use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::friction::{least_coefficient, stands};
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, Shape};
-use archrock::mechanics::stability::{falls, onset};
+use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::{Arch, EndCondition, Outcome, Sway};
 use std::f64::consts::PI;
 
@@ -39,7 +39,7 @@ fn least_thickness_of_a_semicircle() {
         least(0.05, 0.2, |ratio| {
             let ring = Ring::new(ratio, PI).unwrap();
             let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).unwrap();
-            falls(&row).unwrap().is_none()
+            collapse_mechanism(&row).unwrap().is_none()
         })
     };
     let (coarse, fine) = (row(20), row(160));
@@ -105,7 +105,9 @@ fn least_thickness_of_a_semicircle_against_friction() {
         }
     }
     // With more friction than that, the thickness for no sliding is enough; with less than this, no thickness is.
-    let without = least(0.05, 0.2, |ratio| falls(&row(ratio)).unwrap().is_none());
+    let without = least(0.05, 0.2, |ratio| {
+        collapse_mechanism(&row(ratio)).unwrap().is_none()
+    });
     assert!((without - 0.1068).abs() < 5e-5, "{without}");
     let ratios = (0..40).map(|step| 0.11 + 0.01 * f64::from(step));
     let coefficients = ratios.map(|ratio| least_coefficient(&row(ratio)).unwrap());

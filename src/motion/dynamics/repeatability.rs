@@ -350,7 +350,7 @@ pub fn objection(
 }
 
 /// History with the results that studies of many cases need.
-pub struct Checked {
+pub struct CheckedHistory {
     /// Summary of the history.
     pub own: Result<Summary, SimulationError>,
     /// Time in seconds at which the history was ended early, because the structure cannot overturn and comes to rest in time; `None` for complete
@@ -362,7 +362,7 @@ pub struct Checked {
 
 /// Computes the histories of cases, in their order, with repetitions where these may change the verdict. Histories with the early end
 /// [`EndCondition::Settled`] count as come to rest.
-pub fn checked(model: &dyn Model, cases: &[Case], until: EndCondition) -> Vec<Checked> {
+pub fn checked(model: &dyn Model, cases: &[Case], until: EndCondition) -> Vec<CheckedHistory> {
     let mut checks = Checks::new(model, cases);
     checks.settles = until == EndCondition::Settled;
     // Models without repetitions are faster up to the end: an early end needs samples.
@@ -378,10 +378,10 @@ pub fn repeated(
     model: &dyn Model,
     cases: &[Case],
     own: Vec<Result<Summary, SimulationError>>,
-) -> Vec<Checked> {
+) -> Vec<CheckedHistory> {
     let mut checks = Checks::new(model, cases);
     for (case, own) in own.into_iter().enumerate() {
-        checks.keep(case, own);
+        checks.store_result(case, own);
     }
     model.work(cases, &mut checks);
     checks.answers()
@@ -415,18 +415,18 @@ impl<'a> Checks<'a> {
     }
 
     /// Stores the history of a case, and queues its first repetition if that may change the verdict.
-    fn keep(&mut self, case: usize, own: Result<Summary, SimulationError>) {
+    fn store_result(&mut self, case: usize, own: Result<Summary, SimulationError>) {
         let (_, request) = &self.cases[case];
         let matters = |own: &Summary| !needs_no_repetition(self.model, request, own);
         if own.as_ref().is_ok_and(matters) {
-            self.repeat(case, 0);
+            self.queue_repetition(case, 0);
         }
         self.own[case] = Some(own);
     }
 
     /// Queues a repetition, if there is one with this index. It goes to the front of the queue: the repetitions of a case follow each other, and at
     /// the end of the queue the last of them would run without other motions in parallel.
-    fn repeat(&mut self, case: usize, repetition: usize) {
+    fn queue_repetition(&mut self, case: usize, repetition: usize) {
         if repetition < self.names.len() {
             let job = Job::of(case, EndCondition::Safe);
             let repetition = Some(repetition);
@@ -434,7 +434,7 @@ impl<'a> Checks<'a> {
         }
     }
 
-    fn answers(self) -> Vec<Checked> {
+    fn answers(self) -> Vec<CheckedHistory> {
         let each = self.own.into_iter().zip(self.doubts).zip(self.cases);
         each.map(|((own, doubt), (_, request))| {
             let mut own = own.expect("every case was a job");
@@ -449,7 +449,7 @@ impl<'a> Checks<'a> {
                     own.outcome = Outcome::Rest;
                 }
             }
-            Checked {
+            CheckedHistory {
                 own,
                 safe_from_s,
                 doubt,
@@ -467,13 +467,13 @@ impl Jobs for Checks<'_> {
     fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         let case = job.case;
         let Some(repetition) = job.repetition else {
-            return self.keep(case, answer);
+            return self.store_result(case, answer);
         };
         if let Some(Ok(own)) = &self.own[case] {
             self.doubts[case] = objection(own, self.names[repetition], &answer);
         }
         if self.doubts[case].is_none() {
-            self.repeat(case, repetition + 1);
+            self.queue_repetition(case, repetition + 1);
         }
     }
 }

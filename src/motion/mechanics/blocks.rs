@@ -232,7 +232,7 @@ impl Row {
 
     /// Returns this row with a body fixed to a block.
     #[must_use]
-    pub fn carrying(mut self, block: usize, body: &Block) -> Self {
+    pub fn with_body(mut self, block: usize, body: &Block) -> Self {
         if let Some(block) = self.blocks.get_mut(block) {
             *block = block.with(body);
         }

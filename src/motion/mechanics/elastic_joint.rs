@@ -16,6 +16,6 @@ mod tie;
 
 pub use contact::{Contact, ElasticJoint, Fibre, Memory, NormalForces, ShearForce};
 pub use kinematics::{Action, BodyPosition, Gap, JointGeometry};
-pub use statics::{Rest, RestError};
+pub use statics::{Equilibrium, RestError};
 pub use structure::{ElasticProperties, ElasticStructure, JointStiffness, Materials, Stiffness};
 pub use tie::BoundTie;

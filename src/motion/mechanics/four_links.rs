@@ -19,7 +19,7 @@ use super::four_link::mechanism::HingeSites;
 use super::four_link::thrust::ThrustLine;
 use super::geometry::profile::Profile as _;
 use super::sides::Sides;
-use super::stability::falls;
+use super::stability::collapse_mechanism;
 use super::sway::Sway;
 use crate::argument::{ArgumentError, within};
 
@@ -116,7 +116,7 @@ impl FourLinks {
         let [Some(own), Some(mirrored)] = profiles else {
             return Err(FourLinkError::Stack);
         };
-        if falls(row)?.is_some() {
+        if collapse_mechanism(row)?.is_some() {
             return Err(LimitError::CannotStand.into());
         }
         let sections = own.sections(0);

@@ -184,7 +184,7 @@ impl Placement {
             let at = |block: usize| rotations_rad.get(block).copied();
             let left = joint.checked_sub(1).and_then(at).unwrap_or(first);
             let opening = self.handedness * (at(joint).unwrap_or(last) - left);
-            self.gaps_m[joint] = hinged(opening * self.faces[joint].thickness, 0.0);
+            self.gaps_m[joint] = hinge_gaps_m(opening * self.faces[joint].thickness, 0.0);
         }
         self.place();
     }
@@ -193,7 +193,7 @@ impl Placement {
     pub fn open(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
         for joint in 0..self.faces.len() {
             for (gap, change) in self.gaps_m[joint].iter_mut().zip(change_m(joint)) {
-                *gap = shut(*gap + change, &self.faces[joint]);
+                *gap = closed_gap(*gap + change, &self.faces[joint]);
             }
         }
         self.place();
@@ -214,8 +214,8 @@ impl Placement {
                 // The rotation of the closing joint follows from the rotation of the right support.
                 let opening = self.handedness * (last.rotation_rad() - left.rotation_rad());
                 let [intrados, extrados] = self.gaps_m[joint];
-                let gaps = hinged(opening * face.thickness, intrados.min(extrados));
-                self.gaps_m[joint] = gaps.map(|gap| shut(gap, face));
+                let gaps = hinge_gaps_m(opening * face.thickness, intrados.min(extrados));
+                self.gaps_m[joint] = gaps.map(|gap| closed_gap(gap, face));
                 last
             } else if self.gaps_m[joint] == [0.0; 2] {
                 left
@@ -285,12 +285,12 @@ impl Placement {
 
 /// Returns the gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), with an additional gap `nearer_m` at both
 /// corners.
-fn hinged(width_m: f64, nearer_m: f64) -> [f64; 2] {
+fn hinge_gaps_m(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
 /// Returns the gap, or zero if it is below [`SHUT_RATIO`].
-fn shut(gap: f64, face: &Face) -> f64 {
+fn closed_gap(gap: f64, face: &Face) -> f64 {
     let least = SHUT_RATIO * face.thickness;
     if gap < least { 0.0 } else { gap }
 }

@@ -22,13 +22,13 @@ use thiserror::Error;
 
 use self::descent::Descent;
 pub use self::held::{Held, HeldError};
-pub use self::pins::{Pin, Pins, State};
+pub use self::pins::{HingeState, Pin, Pins};
 use super::blocks::{Row, Supports};
 use super::contact::ContactError;
 use super::geometry::pose::Pose;
 use super::geometry::rigid::linear;
 use super::lanes::Lanes;
-use super::stability::{StabilityError, falls_at, onset_at};
+use super::stability::{StabilityError, collapse_mechanism_at, onset_at};
 use super::stance::Stance;
 use super::sway::Sway;
 use super::tie::TieMemory;
@@ -223,7 +223,7 @@ impl<'a> Follower<'a> {
         if row.supports == Supports::Left {
             return Err(SettlingError::OneSupport);
         }
-        if let Some(openings) = super::stability::falls(row)? {
+        if let Some(openings) = super::stability::collapse_mechanism(row)? {
             return Err(StabilityError::CannotStand(openings).into());
         }
         Ok(Self {
@@ -249,12 +249,12 @@ impl<'a> Follower<'a> {
 
     /// Returns the present forces and rotations; `None` while the row is undeformed, where the forces are indeterminate.
     #[must_use]
-    pub fn state(&self) -> Option<State> {
+    pub fn state(&self) -> Option<HingeState> {
         self.state_in(&self.condition)
     }
 
     /// Returns forces and rotations under another loading, on the present hinges.
-    fn state_in(&self, condition: &Condition) -> Option<State> {
+    fn state_in(&self, condition: &Condition) -> Option<HingeState> {
         let hinges = self.hinges.as_ref()?;
         hinges.state(self.row, condition, &self.stance)
     }
@@ -300,7 +300,7 @@ impl<'a> Follower<'a> {
             stance.placement.open(|_| [0.0; 2]);
             stance
         };
-        let falls = |part: f64| Ok(falls_at(row, &there(part))?.is_some());
+        let falls = |part: f64| Ok(collapse_mechanism_at(row, &there(part))?.is_some());
         if falls(to)? {
             let (last, _) = try_bisect(from, to, Width::Rounding, falls)?;
             return Ok(Some(last));
@@ -376,7 +376,7 @@ impl<'a> Follower<'a> {
             let state = self.state_in(&condition);
             let margin_there = self.margin(state.as_ref());
             let held = state.filter(|_| margin_there >= 0.0);
-            let is_steady = |state: &State| self.is_steady(state, &rates, next - low);
+            let is_steady = |state: &HingeState| self.is_steady(state, &rates, next - low);
             let steady = held.as_ref().is_some_and(is_steady);
             if step > STEP && !steady {
                 step = (0.25 * step).max(STEP);
@@ -411,7 +411,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns the rotation rates of the blocks between here and another state, over `distance` along the path.
-    fn rates(&self, there: &State, distance: f64) -> impl Iterator<Item = f64> {
+    fn rates(&self, there: &HingeState, distance: f64) -> impl Iterator<Item = f64> {
         let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);
         turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / distance)
@@ -419,7 +419,7 @@ impl<'a> Follower<'a> {
 
     /// Returns whether all blocks turn as fast as in the step `before`, and no tie yields or breaks. Returns false without a step before, as without
     /// ties.
-    fn is_steady(&self, there: &State, before: &[f64], distance: f64) -> bool {
+    fn is_steady(&self, there: &HingeState, before: &[f64], distance: f64) -> bool {
         let most = before.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         let alike =
             |(before, now): (&f64, f64)| (before - now).abs() <= EVEN * most + ROUNDING / distance;
@@ -430,7 +430,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns the margin of a state plus the tolerance; NaN without a state.
-    fn margin(&self, state: Option<&State>) -> f64 {
+    fn margin(&self, state: Option<&HingeState>) -> f64 {
         state.map_or(f64::NAN, |state| state.margin() + self.slack)
     }
 
@@ -442,7 +442,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Moves the row to a loading, with a known state of its hinges.
-    fn set_state(&mut self, condition: &Condition, state: State) {
+    fn set_state(&mut self, condition: &Condition, state: HingeState) {
         self.condition = *condition;
         self.stance.placement.move_supports(condition.supports);
         self.stance.placement.turn(&state.rotations_rad);
@@ -451,7 +451,7 @@ impl<'a> Follower<'a> {
 
     /// Returns other hinges, and their state, that carry a loading beyond the present one. Inadmissible joints become hinges and closing hinges
     /// leave, as is possible only with ties; `None` without ties, or if no such hinges are found.
-    fn exchanged(&self, condition: &Condition) -> Option<(Pins, State)> {
+    fn exchanged(&self, condition: &Condition) -> Option<(Pins, HingeState)> {
         if self.row.ties.is_empty() {
             return None;
         }

@@ -59,15 +59,18 @@ pub enum StabilityError {
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn falls(row: &Row) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
-    falls_at(row, &Stance::undeformed(row))
+pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
+    collapse_mechanism_at(row, &Stance::undeformed(row))
 }
 
 /// Returns the mechanism in which a row falls under its own weight from a given state; `None` if it is in equilibrium.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn falls_at(row: &Row, stance: &Stance) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
+pub fn collapse_mechanism_at(
+    row: &Row,
+    stance: &Stance,
+) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
     let mut trial = Trial::new(row, stance);
     let moves = trial.moves(Vector2::new(0.0, -1.0), true)?;
     Ok(moves.map(|_| trial.openings()))

@@ -10,7 +10,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Case, Model, Request};
 pub use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::repeatability::{Checked, checked};
+use crate::dynamics::repeatability::{CheckedHistory, checked};
 use crate::dynamics::until::EndCondition;
 
 /// The steps of a history.
@@ -156,7 +156,7 @@ impl Ending {
         cases: &[Case],
         until: EndCondition,
     ) -> Vec<Result<Self, String>> {
-        let ending = |checked: Checked| {
+        let ending = |checked: CheckedHistory| {
             let summary = checked.own.map_err(|error| error.to_string())?;
             Self::from_summary(&summary, checked.safe_from_s, checked.doubt)
         };

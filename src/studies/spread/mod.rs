@@ -16,7 +16,9 @@ pub use self::report::{FILES, report};
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::parts::Parts as _;
-use crate::mechanics::settling::{Follower, Movement, Movements, Pin, SettlingError, Snap, State};
+use crate::mechanics::settling::{
+    Follower, HingeState, Movement, Movements, Pin, SettlingError, Snap,
+};
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::output::template::filters;
@@ -106,7 +108,7 @@ pub struct Stage {
     pub not_found: Vec<NotFound>,
     /// Forces and rotations; `None` before the first movement.
     #[serde(skip)]
-    pub state: Option<State>,
+    pub state: Option<HingeState>,
     /// Positions of the blocks.
     #[serde(skip)]
     pub poses: Vec<Pose>,
@@ -304,7 +306,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
         let capacity_g = capacity_g.map_err(|error| error.to_string());
         Some((first_g, found(Push::Capacity, sway, capacity_g)))
     });
-    let open = |state: &State| {
+    let open = |state: &HingeState| {
         let hinges = state.hinges.iter().zip(&state.hinge_rotations_rad);
         let open = hinges.map(|(hinge, rotation_rad)| OpenHinge {
             hinge: *hinge,

@@ -31,7 +31,7 @@ use super::runner::{Progress, Runner, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::repeatability::{Checked, checked};
+use crate::dynamics::repeatability::{CheckedHistory, checked};
 use crate::dynamics::until::EndCondition;
 use crate::output::Figure;
 use crate::scenario::Scenario;
@@ -299,7 +299,7 @@ impl Shaking<'_> {
         });
         let endings = answered(cases, |cases| {
             let checked = checked(self.models[model].1, cases, EndCondition::End).into_iter();
-            let ending = |case: Checked| {
+            let ending = |case: CheckedHistory| {
                 let ending = Ending::from_summary(&case.own?, None, case.doubt);
                 ending.map_err(NoHistory::Failed)
             };

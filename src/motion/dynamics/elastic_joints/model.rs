@@ -20,7 +20,7 @@ use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
 use crate::mechanics::blocks::{GRAVITY_M_S2, Row};
 use crate::mechanics::elastic_joint::{
-    Contact, ElasticProperties, ElasticStructure, JointStiffness, Rest, Stiffness,
+    Contact, ElasticProperties, ElasticStructure, Equilibrium, JointStiffness, Stiffness,
 };
 use crate::mechanics::settling::Movements;
 use crate::mechanics::sway::Sway;
@@ -40,7 +40,7 @@ pub struct ElasticJoints {
     /// Bodies and joints.
     pub structure: ElasticStructure,
     /// Gravity, and the equilibrium under it.
-    rest: (f64, Rest),
+    rest: (f64, Equilibrium),
     /// Gravity, and the energy barrier under it, computed at the first request.
     barrier_j: Arc<OnceLock<(f64, Option<f64>)>>,
     /// True in a study of many cases, with longer default steps.
@@ -144,7 +144,7 @@ impl ElasticJoints {
     ///
     /// # Errors
     /// If there is no equilibrium, with the reason.
-    pub fn rest(&self, gravity_m_s2: f64) -> Result<Rest, RowMotionError> {
+    pub fn rest(&self, gravity_m_s2: f64) -> Result<Equilibrium, RowMotionError> {
         let (known_m_s2, rest) = &self.rest;
         if gravity_m_s2 == *known_m_s2 {
             return Ok(rest.clone());
@@ -267,7 +267,7 @@ impl ElasticJoints {
         Ok(self.rigid.task(ground, request.gravity_m_s2, settings))
     }
 
-    fn alone(
+    fn simulate_one(
         &self,
         ground: &GroundMotion,
         request: &Request,
@@ -287,7 +287,13 @@ impl ElasticJoints {
     }
 
     /// Computes jobs on cases under one gravity, several in parallel.
-    fn together(&self, rest: &Rest, gravity_m_s2: f64, cases: &[Case], jobs: &mut dyn Jobs) {
+    fn simulate_group(
+        &self,
+        rest: &Equilibrium,
+        gravity_m_s2: f64,
+        cases: &[Case],
+        jobs: &mut dyn Jobs,
+    ) {
         let repeated: Vec<Self> = self.other_steps().map(|(_, model)| model).into();
         let model_of = |job: Job| job.repetition.map_or(self, |index| &repeated[index]);
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
@@ -336,7 +342,7 @@ impl ElasticJoints {
     fn checked_summary(
         &self,
         mut summary: Summary,
-        rest: &Rest,
+        rest: &Equilibrium,
         gravity_m_s2: f64,
     ) -> Result<Summary, SimulationError> {
         let Details::Elastic(row, elastic) = &mut summary.details else {
@@ -390,7 +396,7 @@ impl Model for ElasticJoints {
         request: &Request,
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError> {
-        self.alone(ground, request, recorder, EndCondition::End)
+        self.simulate_one(ground, request, recorder, EndCondition::End)
     }
 
     fn elastic_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
@@ -412,7 +418,7 @@ impl Model for ElasticJoints {
 
     fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {
         let (ground, request) = case;
-        self.alone(ground, request, None, until)
+        self.simulate_one(ground, request, None, until)
     }
 
     fn work(&self, cases: &[Case], jobs: &mut dyn Jobs) {
@@ -423,7 +429,7 @@ impl Model for ElasticJoints {
             && cases.iter().all(alike)
             && let Ok(rest) = self.rest(gravity_m_s2)
         {
-            self.together(&rest, gravity_m_s2, cases, jobs);
+            self.simulate_group(&rest, gravity_m_s2, cases, jobs);
             return;
         }
         one_by_one(self, cases, jobs);

@@ -4,7 +4,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::mechanics::blocks::Block;
 use crate::mechanics::elastic_joint::{
-    BodyPosition, ElasticJoint, ElasticStructure, Fibre, Gap, Memory, Rest,
+    BodyPosition, ElasticJoint, ElasticStructure, Equilibrium, Fibre, Gap, Memory,
 };
 use crate::mechanics::lanes::{Lanes, Real, both, remembered};
 use crate::mechanics::tie::TieMemory;
@@ -182,7 +182,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Starts the motion of a lane from rest.
-    pub fn start(&mut self, lane: usize, rest: &Rest) {
+    pub fn start(&mut self, lane: usize, rest: &Equilibrium) {
         let alone = Motion::at_rest(self.structure, self.gravity_m_s2, rest);
         if self.structure.has_settled() {
             self.datum.clone_from(&rest.moved);
@@ -469,7 +469,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 }
 
 impl<'a> Motion<'a, 1> {
-    fn at_rest(structure: &'a ElasticStructure, gravity_m_s2: f64, rest: &Rest) -> Self {
+    fn at_rest(structure: &'a ElasticStructure, gravity_m_s2: f64, rest: &Equilibrium) -> Self {
         let mut motion = Self::new(structure, gravity_m_s2);
         for (body, moved) in motion.bodies.iter_mut().zip(&rest.moved) {
             body.place = BodyPosition::at(moved);

@@ -19,7 +19,7 @@ use crate::dynamics::row::task::Task;
 use crate::dynamics::until::EndCondition;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::elastic_joint::{ElasticStructure, Rest};
+use crate::mechanics::elastic_joint::{ElasticStructure, Equilibrium};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::lanes::Lanes;
@@ -94,7 +94,7 @@ pub struct Group<'a, const L: usize> {
     row: &'a Row,
     structure: &'a ElasticStructure,
     /// Equilibrium from which all motions start.
-    rest: &'a Rest,
+    rest: &'a Equilibrium,
     /// Computes the least energy above that at rest at which the structure overturns without slip, if known. This takes time.
     find_barrier_j: &'a dyn Fn() -> Option<f64>,
     motion: Motion<'a, L>,
@@ -282,7 +282,7 @@ impl<'a> Lane<'a> {
 impl<'a, const L: usize> Group<'a, L> {
     pub fn new(
         row: &'a Row,
-        (structure, rest): (&'a ElasticStructure, &'a Rest),
+        (structure, rest): (&'a ElasticStructure, &'a Equilibrium),
         gravity_m_s2: f64,
         find_barrier_j: &'a dyn Fn() -> Option<f64>,
     ) -> Self {

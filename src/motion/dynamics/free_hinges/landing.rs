@@ -20,7 +20,7 @@ use std::ops::Range;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-use super::rest::{Rest, touching};
+use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
@@ -97,7 +97,7 @@ pub struct LandingStepper<'a> {
     velocity: GroundVelocity<'a>,
     gravity: f64,
     thinnest: f64,
-    rest: Rest<'a>,
+    rest: InitialPosition<'a>,
     right: RightSupport<'a>,
     course: Course<'a>,
     /// Time up to which gravity and ground have been applied to the velocities.
@@ -148,7 +148,7 @@ impl<'a> LandingStepper<'a> {
     ) -> Result<Self, RowMotionError> {
         let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
-        let rest = Rest::new(row, &standing.placement);
+        let rest = InitialPosition::new(row, &standing.placement);
         let mut program = Program::new(row);
         program.place(&standing.placement);
         if rest.is_on_hinges() {
@@ -361,7 +361,7 @@ impl<'a> LandingStepper<'a> {
         if self.right.moves()
             && let Some(last) = self.load.jumps.last_mut()
         {
-            *last = *last - Twist::translation(self.right.next_m_s);
+            *last = *last - Twist::translation(self.right.solution_m_s);
         }
     }
 
@@ -495,13 +495,13 @@ impl<'a> LandingStepper<'a> {
         self.ties.supports = poses;
         self.placement.open(|joint| change[joint]);
         if was_open || self.placement.open_corners() > 0 {
-            self.right.followed_m = self.right.displacement_m;
+            self.right.joint_displacement_m = self.right.displacement_m;
         }
     }
 
     /// Replaces the pieces of the motion by those of the solution, and stores the corners about which joints turn.
     fn adopt_pieces(&mut self) {
-        self.right.velocity_m_s = self.right.next_m_s;
+        self.right.velocity_m_s = self.right.solution_m_s;
         std::mem::swap(&mut self.pieces, &mut self.next_pieces);
         self.turning.fill(None);
         for (joint, _) in self.program.open_joints() {
@@ -593,7 +593,7 @@ impl<'a> LandingStepper<'a> {
         self.course.row_summary.ground_j -=
             ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
         self.note_right_support(self.course.time - self.kicked_s);
-        self.right.velocity_m_s = self.right.next_m_s;
+        self.right.velocity_m_s = self.right.solution_m_s;
         Ok(())
     }
 }

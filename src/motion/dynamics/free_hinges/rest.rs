@@ -11,14 +11,14 @@ use crate::mechanics::joints::Placement;
 
 /// Initial position of a row.
 #[derive(Clone, Debug)]
-pub(super) struct Rest<'a> {
+pub(super) struct InitialPosition<'a> {
     row: &'a Row,
     pub placement: Placement,
     /// Corners in contact in this position.
     pub touching: Vec<Corners>,
 }
 
-impl<'a> Rest<'a> {
+impl<'a> InitialPosition<'a> {
     pub fn new(row: &'a Row, placement: &Placement) -> Self {
         Self {
             row,

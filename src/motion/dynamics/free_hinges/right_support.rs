@@ -18,10 +18,10 @@ pub(super) struct RightSupport<'a> {
     /// Displacement relative to the left support, in metres.
     pub displacement_m: Vector2<f64>,
     /// Displacement at which the joints last followed the support, in metres. Movements too small to open a joint accumulate.
-    pub followed_m: Vector2<f64>,
+    pub joint_displacement_m: Vector2<f64>,
     /// Velocity in the last step or after the last impact, then the velocity in the current solution.
     pub velocity_m_s: Vector2<f64>,
-    pub next_m_s: Vector2<f64>,
+    pub solution_m_s: Vector2<f64>,
 }
 
 impl<'a> RightSupport<'a> {
@@ -47,20 +47,21 @@ impl<'a> RightSupport<'a> {
     /// Sets the velocity of the current solution to the mean over a step that starts at `from_s`.
     pub fn set_mean_velocity(&mut self, from_s: f64, lasts_s: f64) {
         if let Some(feet) = &self.feet {
-            self.next_m_s = (feet.ahead(from_s + lasts_s) - self.followed_m) / lasts_s;
+            self.solution_m_s =
+                (feet.ahead(from_s + lasts_s) - self.joint_displacement_m) / lasts_s;
         }
     }
 
     /// Sets the velocity of the current solution to that at an instant.
     pub fn set_velocity(&mut self, time_s: f64) {
         if let Some(feet) = &self.feet {
-            self.next_m_s = feet.velocity_m_s(time_s);
+            self.solution_m_s = feet.velocity_m_s(time_s);
         }
     }
 
     /// Returns the mean of the velocities in the last step and in the current solution.
     pub fn mean_m_s(&self) -> Vector2<f64> {
-        (self.velocity_m_s + self.next_m_s) * 0.5
+        (self.velocity_m_s + self.solution_m_s) * 0.5
     }
 
     /// Moves the right support to its position at `time_s`.

@@ -15,7 +15,7 @@ use std::mem;
 use nalgebra::{Vector2, Vector3};
 
 use self::impact::{Dissipation, Landing};
-use super::rest::Rest;
+use super::rest::InitialPosition;
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::ground::GroundVelocity;
@@ -48,7 +48,7 @@ pub struct SlidingStepper<'a> {
     row: &'a Row,
     velocity: GroundVelocity<'a>,
     gravity: f64,
-    rest: Rest<'a>,
+    rest: InitialPosition<'a>,
     right: RightSupport<'a>,
     /// Gaps and offsets of the joints in the initial position.
     initial_coordinates_m: Vec<Vector3<f64>>,
@@ -64,7 +64,7 @@ pub struct SlidingStepper<'a> {
     /// Changes of the velocities of the blocks by ties in a kick.
     tie_velocities: Vec<Vector3<f64>>,
     /// Offset at which every joint stuck last.
-    stuck: Vec<f64>,
+    stick_offsets_m: Vec<f64>,
     /// Position error of the joint coordinates at the end of the step without their rates, over the step length.
     position_errors: Vec<Vector3<f64>>,
     /// Rates of the joint coordinates before the step.
@@ -99,7 +99,7 @@ impl<'a> SlidingStepper<'a> {
     ) -> Self {
         let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
-        let rest = Rest::new(row, &standing.placement);
+        let rest = InitialPosition::new(row, &standing.placement);
         let faces = Faces::of_row(row);
         let thicknesses_m = faces.iter().map(|faces| faces.thickness_m);
         let thinnest_m = thicknesses_m.fold(f64::INFINITY, f64::min);
@@ -137,7 +137,7 @@ impl<'a> SlidingStepper<'a> {
             gravity,
             course,
             velocities: vec![Vector3::zeros(); blocks],
-            stuck: contacts.iter().map(|c| c.coordinates_m.z).collect(),
+            stick_offsets_m: contacts.iter().map(|c| c.coordinates_m.z).collect(),
             position_errors: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
             kicked_s: ground.start_s(),
@@ -194,7 +194,7 @@ impl<'a> SlidingStepper<'a> {
     fn update_position_errors(&mut self, step: f64) {
         let moved = |block: usize| {
             let Some(position) = self.positions.get(block) else {
-                let way_m = self.right.next_m_s * step;
+                let way_m = self.right.solution_m_s * step;
                 return self.supports[1].moved(way_m);
             };
             let v = self.program.velocity(block) * step;
@@ -204,7 +204,7 @@ impl<'a> SlidingStepper<'a> {
         let mut left = Some(self.supports[0]);
         for joint in 0..self.faces.len() {
             let now = self.contacts[joint].coordinates_m;
-            let mut error = now - Vector3::new(0.0, 0.0, self.stuck[joint]);
+            let mut error = now - Vector3::new(0.0, 0.0, self.stick_offsets_m[joint]);
             // A joint between blocks that move as one has no curvature; linear motion would produce some.
             let mut right = None;
             if self.program.modes[joint] != Mode::STICKING {
@@ -212,7 +212,7 @@ impl<'a> SlidingStepper<'a> {
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 error += then.coordinates_m - now - self.program.joint_rate(joint) * step;
             } else {
-                error += self.right_support_rates(joint, self.right.next_m_s) * step;
+                error += self.right_support_rates(joint, self.right.solution_m_s) * step;
             }
             self.position_errors[joint] = error / step;
             left = right;
@@ -306,9 +306,9 @@ impl<'a> SlidingStepper<'a> {
         }
         self.course.time += step;
         if self.right.moves() {
-            self.right.velocity_m_s = self.right.next_m_s;
+            self.right.velocity_m_s = self.right.solution_m_s;
             self.right.move_to(self.course.time);
-            self.right.followed_m = self.right.displacement_m;
+            self.right.joint_displacement_m = self.right.displacement_m;
             let poses = self.right.poses(&self.rest.placement.support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
             self.ties.supports = poses;
@@ -317,14 +317,14 @@ impl<'a> SlidingStepper<'a> {
             let contact = contact(&self.faces, &self.supports, &self.positions, joint);
             let offset_m = contact.coordinates_m.z;
             if self.program.modes[joint].tangential != TangentialMode::Stick {
-                self.stuck[joint] = offset_m;
+                self.stick_offsets_m[joint] = offset_m;
             }
-            let offset_m = self.stuck[joint].abs();
+            let offset_m = self.stick_offsets_m[joint].abs();
             let largest = &mut self.sliding().largest_offsets_m[joint];
             *largest = largest.max(offset_m);
             let least = APART_RATIO * self.faces[joint].thickness_m;
             let initial_coordinates_m = &self.initial_coordinates_m[joint];
-            let slipped_m = (self.stuck[joint] - initial_coordinates_m.z).abs();
+            let slipped_m = (self.stick_offsets_m[joint] - initial_coordinates_m.z).abs();
             let [intrados, extrados, _] = (contact.coordinates_m - initial_coordinates_m).into();
             self.course.moved |= slipped_m.max(intrados).max(extrados) > least;
             self.course.overturned |= contact.ends_m[1] <= contact.ends_m[0];
@@ -399,7 +399,7 @@ impl<'a> SlidingStepper<'a> {
         };
         let mut apart: Vec<_> = (0..self.faces.len()).map(rates_at_gaps).collect();
         let last = apart.len() - 1;
-        apart[last] += self.right_support_rates(last, self.right.next_m_s);
+        apart[last] += self.right_support_rates(last, self.right.solution_m_s);
         mem::swap(&mut self.program, &mut self.auxiliary);
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
@@ -484,7 +484,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn complete(&mut self) {
         self.end_landing(Dissipation::default(), true);
-        let offsets_m = self.stuck.clone();
+        let offsets_m = self.stick_offsets_m.clone();
         self.sliding().offsets_m = offsets_m;
     }
 
@@ -555,7 +555,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             sample.poses.push(position.pose(block.centre_m));
         }
         sample.feet_apart_m = self.right.displacement_m;
-        sample.offsets_m.extend(&self.stuck);
+        sample.offsets_m.extend(&self.stick_offsets_m);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         if thrust_line {

@@ -235,19 +235,19 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
     fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
-        (link.at_zero.inertia * link.critical_rad / self.weight(link)).sqrt()
+        (link.at_zero.inertia * link.critical_rad / self.potential_slope(link)).sqrt()
     }
 
     /// Returns the slope of the potential energy at `q = 0`.
-    fn weight(&self, link: &Link<C::Mechanism>) -> f64 {
+    fn potential_slope(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 * link.at_zero.s_y / self.chain.length_m()
     }
 
     /// Returns the largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the inertia of `q = 0` and the parabola of
     /// its weight for the potential energy.
-    fn reach(&self, link: &Link<C::Mechanism>, state: &RockingState) -> (f64, f64) {
+    fn attainable_state(&self, link: &Link<C::Mechanism>, state: &RockingState) -> (f64, f64) {
         let (q, rate) = (state[0], state[1]);
-        let weight = self.weight(link);
+        let weight = self.potential_slope(link);
         let potential = weight * q * (1.0 - 0.5 * q / link.critical_rad);
         let energy = match 0.5 * link.at_zero.inertia * rate * rate + potential {
             energy if energy > 0.0 && energy < self.barrier => energy,
@@ -323,7 +323,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let Phase::Rocking(Swing { link, .. }) = now.mode else {
             return RockingState::repeat(1.0);
         };
-        let (reach_rad, rate_rad_s) = self.reach(link, &now.state);
+        let (reach_rad, rate_rad_s) = self.attainable_state(link, &now.state);
         let energy = 0.5 * link.at_zero.inertia * rate_rad_s * rate_rad_s;
         RockingState::new(reach_rad, rate_rad_s, energy)
     }
@@ -337,7 +337,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
             return (f64::INFINITY, f64::INFINITY);
         };
         let fall_s = self.fall_s(link);
-        let (reach_rad, _) = self.reach(link, &now.state);
+        let (reach_rad, _) = self.attainable_state(link, &now.state);
         let height = reach_rad / link.critical_rad;
         // Time until q returns to zero at constant acceleration. The weight decreases with q, so the return takes longer by up to two thirds of the
         // height; a step should end slightly later.

@@ -26,9 +26,9 @@ pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     next: u64,
     pub(super) phase: usize,
     /// The last sample is held back, in case the end falls on it.
-    held: Option<Sample>,
+    last_sample: Option<Sample>,
     /// Reused, so that samples need no allocation.
-    spare: Sample,
+    buffer: Sample,
     /// Positions of the hinges, also reused.
     hinges_m: Vec<Vector2<f64>>,
     pub(super) thrust: ThrustRecord,
@@ -48,8 +48,8 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             output_step_s,
             next: 0,
             phase: 0,
-            held: None,
-            spare: Sample::default(),
+            last_sample: None,
+            buffer: Sample::default(),
             hinges_m: Vec::new(),
             thrust: ThrustRecord::default(),
             thrust_before_critical: ThrustRecord::default(),
@@ -73,7 +73,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
 
     fn sample(&mut self, now: &StructureState<'a, C>) -> Sample {
         let rocking = self.rocking;
-        let mut sample = mem::take(&mut self.spare);
+        let mut sample = mem::take(&mut self.buffer);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
         sample.begin(now.time_s, ground_m_s2, self.phase);
         let (rotations, rates) = posture(rocking, now.mode, &now.state);
@@ -118,9 +118,9 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             let state = self.rocking.between(step, time_s);
             let sample = self.sample(&from.at(time_s, &state));
             self.next += 1;
-            if let Some(held) = self.held.replace(sample) {
-                let flow = self.emit(&held);
-                self.spare = held;
+            if let Some(last_sample) = self.last_sample.replace(sample) {
+                let flow = self.emit(&last_sample);
+                self.buffer = last_sample;
                 flow?;
             }
         }
@@ -132,10 +132,10 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         let piece = self.rocking.ground.piece_at(now.time_s);
         let last = self.sample(&SystemState { piece, ..*now });
         // Replace a sample that differs from the end only by rounding error.
-        if let Some(held) = self.held.take()
-            && held.time_s < now.time_s - 1e-9 * self.output_step_s
+        if let Some(last_sample) = self.last_sample.take()
+            && last_sample.time_s < now.time_s - 1e-9 * self.output_step_s
         {
-            self.emit(&held)?;
+            self.emit(&last_sample)?;
         }
         self.emit(&last)
     }
@@ -179,7 +179,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
                         end = at;
                         ended = ControlFlow::Break(());
                     }
-                    self.spare = sample;
+                    self.buffer = sample;
                     ended?;
                 }
                 ControlFlow::Continue(())

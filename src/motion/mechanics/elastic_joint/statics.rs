@@ -14,7 +14,7 @@ type SingleLane = Lanes<1>;
 
 /// Structure in equilibrium.
 #[derive(Clone, Debug)]
-pub struct Rest {
+pub struct Equilibrium {
     /// Displacements (m) and rotations (rad) of the bodies.
     pub moved: Vec<[f64; 3]>,
     /// Displacements (m) and rotations (rad) under the weight alone, on supports in their original position.
@@ -85,7 +85,7 @@ const RAISED: f64 = 3.162_277_660_168_379_5;
 /// First stiffnesses over the full one, tried in turn if no equilibrium is found at full stiffness.
 const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
-impl Rest {
+impl Equilibrium {
     /// Returns the index of the first broken tie.
     fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
@@ -123,7 +123,7 @@ impl ElasticStructure {
     ///
     /// # Errors
     /// If no equilibrium is found, with the reason.
-    pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Rest, RestError> {
+    pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Equilibrium, RestError> {
         if self.has_settled() {
             let built = self.clone().on_supports([[0.0; 3]; 2]);
             return self.settled(load_m_s2, built.rest(load_m_s2)?);
@@ -151,7 +151,7 @@ impl ElasticStructure {
 
     /// Finds the equilibrium after a slow movement of the supports, from the equilibrium `built` before it. The movement is divided into steps; each
     /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. The plastic elongation of ties remains.
-    fn settled(&self, load_m_s2: [f64; 2], built: Rest) -> Result<Rest, RestError> {
+    fn settled(&self, load_m_s2: [f64; 2], built: Equilibrium) -> Result<Equilibrium, RestError> {
         let self_weight_displacements = built.self_weight_displacements.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
@@ -180,7 +180,7 @@ impl ElasticStructure {
             };
             let on_way = self.at_movement_fraction(next);
             let most_m = (FARTHEST * (next - part) * extent_m).max(NOT_FAR * length_m);
-            let near = |rest: &Rest| {
+            let near = |rest: &Equilibrium| {
                 let moved = rest.moved.iter().zip(&here.moved);
                 let by = |(now, then): (&[f64; 3], &[f64; 3])| {
                     far(&[0, 1, 2].map(|axis| now[axis] - then[axis]))
@@ -210,7 +210,7 @@ impl ElasticStructure {
     }
 
     /// Finds the equilibrium on supports that stay in place; `None` if the search does not converge.
-    fn balanced(&self, load_m_s2: [f64; 2]) -> Option<Rest> {
+    fn balanced(&self, load_m_s2: [f64; 2]) -> Option<Equilibrium> {
         let bonded = Search::new(self, load_m_s2).bonded()?;
         if let Some(rest) = Search::new(self, load_m_s2).from(bonded.clone(), 0) {
             return Some(rest);
@@ -242,7 +242,7 @@ impl ElasticStructure {
     /// continuous contact then gives a lower bound: their energy is lower in every shape, because a sum over points, as the trapezoidal rule,
     /// overestimates a convex function.
     #[must_use]
-    pub fn barrier_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+    pub fn barrier_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
         // Ties are not supported.
         if !self.ties.is_empty() {
             return None;
@@ -268,7 +268,7 @@ impl ElasticStructure {
     }
 
     /// Returns the energy in J, above that of the undeformed structure, at the top of the lower one of the paths to the right and to the left.
-    fn summit_j(&self, rest: &Rest, gravity_m_s2: f64) -> Option<f64> {
+    fn summit_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
         let to = |sense| self.summit_towards_j(rest, gravity_m_s2, sense);
         Some(to(1.0)?.min(to(-1.0)?))
     }
@@ -279,7 +279,7 @@ impl ElasticStructure {
     ///
     /// A structure that overturns passes through all positions of its centre of gravity. Among nearby shapes with the same position, those on the
     /// path have the least energy. A structure with less energy than at the top cannot pass it.
-    fn summit_towards_j(&self, rest: &Rest, gravity_m_s2: f64, sense: f64) -> Option<f64> {
+    fn summit_towards_j(&self, rest: &Equilibrium, gravity_m_s2: f64, sense: f64) -> Option<f64> {
         let without_slip = self.without_slip();
         let search = Search::new(&without_slip, [0.0, -gravity_m_s2]);
         let mass_kg = self.mass_kg();
@@ -531,7 +531,7 @@ impl<'a> Search<'a> {
     }
 
     /// Runs Newton's method from given displacements; `None` if it does not converge.
-    fn from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Rest> {
+    fn from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Equilibrium> {
         let size = 3 * moved.len();
         let mut matrix = Banded::new(size, self.width);
         let (mut forces, mut trial) = (vec![0.0; size], vec![0.0; size]);
@@ -637,7 +637,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the elastic and potential energy, in J.
-    fn energy_j(&self, rest: &Rest) -> f64 {
+    fn energy_j(&self, rest: &Equilibrium) -> f64 {
         let bodies = self.structure.bodies.iter().zip(&rest.moved);
         let lifted = bodies.map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1]);
         let each = self.structure.fibres();
@@ -649,7 +649,7 @@ impl<'a> Search<'a> {
         lifted.sum::<f64>() + elastic.sum::<f64>()
     }
 
-    fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Rest {
+    fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Equilibrium {
         let joints = &self.structure.joints;
         let each = self.structure.fibres();
         let mut memories = vec![Memory::none(); joints.len()];
@@ -668,7 +668,7 @@ impl<'a> Search<'a> {
             let memory = &mut memories[index];
             (self.structure).act(joint, [&one, &other], None, memory, fibres);
         }
-        Rest {
+        Equilibrium {
             self_weight_displacements: moved.clone(),
             moved,
             memories,

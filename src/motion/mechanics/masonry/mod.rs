@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
-use super::stability::falls;
+use super::stability::collapse_mechanism;
 use super::tie::{Tie, TieError};
 use crate::argument::{ArgumentError, allow, counted, within};
 use crate::mechanics::contact::ContactError;
@@ -287,7 +287,7 @@ impl Masonry {
             .with_supports_that_extend(on_ground);
         for (voussoir, extra) in extra.iter().enumerate() {
             if let Some(extra) = extra {
-                row = row.carrying(first + voussoir, extra);
+                row = row.with_body(first + voussoir, extra);
             }
         }
         let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
@@ -327,7 +327,7 @@ impl Masonry {
     /// # Errors
     /// If the velocities under the weight are not found.
     pub fn stands(&self) -> Result<bool, ContactError> {
-        Ok(falls(&self.row)?.is_none())
+        Ok(collapse_mechanism(&self.row)?.is_none())
     }
 
     /// Returns the indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.

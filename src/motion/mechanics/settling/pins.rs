@@ -54,7 +54,7 @@ pub(super) type TieLoads = (Vec<TieMemory<Lanes<1>>>, Vec<(TieLine, f64)>);
 
 /// Positions and forces of a row on hinges.
 #[derive(Clone, Debug, PartialEq)]
-pub struct State {
+pub struct HingeState {
     /// Joint and edge of every hinge.
     pub hinges: Vec<Pin>,
     /// Rotation of the part after each hinge relative to the part before it, anticlockwise.
@@ -73,7 +73,7 @@ pub struct State {
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
-impl State {
+impl HingeState {
     /// Returns the safety margin of the hinges: the least of all openings in radians and of all normal forces over the weight. A state is admissible
     /// if the margin is not negative.
     #[must_use]
@@ -182,7 +182,7 @@ impl Pins {
     /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
     /// equations are singular, or no stable equilibrium is found.
     #[must_use]
-    pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<State> {
+    pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<HingeState> {
         let mut poses = vec![condition.supports[0]];
         poses.extend(self.bodies(row, condition, before)?);
         poses.push(condition.supports[1]);
@@ -214,7 +214,7 @@ impl Pins {
         condition: &Condition,
         poses: &[Pose],
         before: &[TieMemory<Lanes<1>>],
-    ) -> Option<State> {
+    ) -> Option<HingeState> {
         let joints: Vec<usize> = self.hinges.iter().map(|hinge| hinge.joint).collect();
         let turn = |pair: &[Pose]| pair[1].rotation_rad() - pair[0].rotation_rad();
         let hinge_rotations_rad: Vec<f64> = poses.windows(2).map(turn).collect();
@@ -270,7 +270,7 @@ impl Pins {
             });
         }
         let rotations = (self.parts(row)).map(|part| poses[part].rotation_rad());
-        Some(State {
+        Some(HingeState {
             hinges: self.hinges.clone(),
             hinge_rotations_rad,
             openings_rad,
