@@ -14,7 +14,7 @@ use archrock::mechanics::chain::Demand;
 use archrock::output::point::Point;
 use archrock::output::scene::Scene;
 use archrock::studies::run::report::Report;
-use archrock::studies::run::{self, Ended};
+use archrock::studies::run::{self, OutcomeSummary};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -433,7 +433,7 @@ impl History {
 
     /// The outcome, as in `summary.json`.
     fn ended_json(&self) -> PyResult<String> {
-        serde_json::to_string(&Ended::of(&self.summary)).map_err(refused)
+        serde_json::to_string(&OutcomeSummary::of(&self.summary)).map_err(refused)
     }
 
     /// The events as JSON.

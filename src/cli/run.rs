@@ -173,11 +173,11 @@ impl Arguments {
             no_repeat: self.no_repeat,
             no_report: self.no_report,
             snapshots_s: self.snapshots.clone(),
-            film_a_second: self.film,
+            film_rate_hz: self.film,
             exaggeration: self.exaggerate,
             poses: self.poses,
             points_m: self.points_m.clone(),
-            samples: Vec::new(),
+            uncertainty: Vec::new(),
         })
     }
 

@@ -74,7 +74,7 @@ impl MapOption {
         if by_peak && model.has_joints {
             return Err(format!(
                 "--color peak goes with four links and columns: {} have no critical rotation",
-                model.words
+                model.label
             ));
         }
         let factors = self.dimensionless.then(|| Style::dimensionless(scenario));
@@ -149,7 +149,7 @@ fn compute(
     for one in scenarios.chunks(1) {
         let place = place.of_model(&one[0], several);
         let found = session.with_samples(kinds, one, Some(&place))?;
-        all.extend(found.map(|found| (one[0].motion.words(), found)));
+        all.extend(found.map(|found| (one[0].motion.label(), found)));
     }
     let compared = session.compare(scenarios[0].title.as_deref(), &all, Some(&place))?;
     session.publish(Some(&place))?;

@@ -267,7 +267,7 @@ impl<'s> Session<'s> {
         let (mut words, mut of_models) = (String::new(), Vec::new());
         let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
         for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
-            let model = scenario.motion.words();
+            let model = scenario.motion.label();
             let place = place.of_model(scenario, several).within(samples.name);
             let scenario = slice::from_ref(scenario);
             let Some(found) = self.compute(samples, scenario, Some(&place))? else {
@@ -281,7 +281,7 @@ impl<'s> Session<'s> {
             of_models.push((model, found));
         }
         let reports = of_models.iter().map(|(_, found)| found.words.clone());
-        self.options.run.samples = reports.collect();
+        self.options.run.uncertainty = reports.collect();
         if self.work.is_part() && has_samples {
             return Ok(None);
         }

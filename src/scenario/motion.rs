@@ -44,8 +44,8 @@ impl Motion {
 
     /// Returns the name of the model in sentences.
     #[must_use]
-    pub const fn words(&self) -> &'static str {
-        self.hinges().model().words
+    pub const fn label(&self) -> &'static str {
+        self.hinges().model().label
     }
 
     /// Returns the name of the model of a structure in results.

@@ -14,7 +14,7 @@ use super::ensemble::records::Capacities;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::results::{Reported, Results, StudyError, Style};
-use super::run::{self, Open, Rotations, RunOptions};
+use super::run::{self, OpenFolder, RotationsOutput, RunOptions};
 use super::runner::{Runner, Task, Watch};
 use super::spread::{self, Way};
 use super::suite::{Heading, RecordSuite};
@@ -48,7 +48,7 @@ pub enum Rows<'w> {
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
     /// There is one row, a history, whose files are written while it is computed.
-    Stream(Open<'w>, Rotations<'w>, Watch<'w>),
+    Stream(OpenFolder<'w>, RotationsOutput<'w>, Watch<'w>),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.

@@ -256,7 +256,7 @@ impl Writer {
             let film = folder.join(run::FILM);
             // One path is enough: hidden files of a killed run are removed with the results beside them.
             all.extend(self.beside_one_another(&film, &["frame-0001.svg"]));
-            all.extend(run::frames(&film));
+            all.extend(run::pictures_in(&film));
         }
         if let Some(mark) = self.of_models {
             for below in Hinges::ALL.iter().map(|hinges| folder.join(hinges.name())) {

@@ -25,7 +25,7 @@ pub(super) struct Snapshots {
 }
 
 /// Largest number of pictures of a film.
-const MOST_STILLS: usize = 9999;
+const MAX_FILM_PICTURES: usize = 9999;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
 /// Smallest width of a picture.
@@ -55,16 +55,12 @@ impl Snapshots {
         self
     }
 
-    pub(super) const fn is_film(&self) -> bool {
-        self.film.is_some()
-    }
-
     /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.span_s = [self.span_s[0].min(time_s), time_s];
         if let Some((every_s, next_s)) = &mut self.film {
-            if time_s >= *next_s - 1e-9 && self.taken.len() < MOST_STILLS {
+            if time_s >= *next_s - 1e-9 && self.taken.len() < MAX_FILM_PICTURES {
                 let due_s = if next_s.is_finite() { *next_s } else { time_s };
                 *next_s = due_s + *every_s;
                 self.taken.push((time_s, Some(sample.clone())));
@@ -81,7 +77,7 @@ impl Snapshots {
     }
 
     /// Returns lines about requested times before the start or after the end of the history. Their pictures show the first or the last instant.
-    pub(super) fn outside(&self) -> String {
+    pub(super) fn outside_times_text(&self) -> String {
         let [start_s, end_s] = self.span_s;
         let line = |is_outside: &dyn Fn(f64) -> bool, place: &str| {
             let times_s = self.taken.iter().map(|(time_s, _)| *time_s);
@@ -124,7 +120,7 @@ impl Snapshots {
     }
 
     /// Draws each snapshot as a separate picture, all with one scale.
-    pub(super) fn stills(&self, figure: Figure, title: &str) -> Vec<String> {
+    pub(super) fn film_pictures(&self, figure: Figure, title: &str) -> Vec<String> {
         let shown = self.shown().into_iter();
         shown
             .map(|sample| self.sheet(figure, title, &[sample]))
