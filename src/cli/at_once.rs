@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use archrock::studies::catalogue::{Options, StudyKind, VERIFY};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 
 use super::figure::FigureOption;
@@ -41,6 +41,6 @@ pub fn at_once(
     let style = Style::of(figure.get()?);
     let session = Session::new(Some(&input), Work::default(), style, options);
     let place = figure.printed(input.results(arguments.out.as_deref())?);
-    place.lock(Writer::of(kind), &Origin::of(&scenario), false)?;
+    place.lock(ResultsCommand::of(kind), &Origin::of(&scenario), false)?;
     session.finish(kind, &scenario, &place, arguments.format)
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 use archrock::studies::run::{RunOptions, check, heading};
 use nalgebra::Vector2;
@@ -95,7 +95,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     noted(Destination::check_distinct(&tasks), &mut wrong)?;
     refused(&wrong)?;
     for (root, origin) in &roots {
-        root.lock(Writer::of(RUN), origin, arguments.work.is_part())?;
+        root.lock(ResultsCommand::of(RUN), origin, arguments.work.is_part())?;
     }
     let (mut summaries, mut failures) = (Vec::new(), Vec::new());
     for (name, scenarios, place) in &tasks {

@@ -14,7 +14,7 @@ use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
 use super::{Failure, refused};
-use archrock::studies::kept::{ORIGIN, Origin, Writer};
+use archrock::studies::previous_results::{ORIGIN, Origin, ResultsCommand};
 
 /// The scenario of a command.
 #[derive(clap::Args)]
@@ -212,7 +212,7 @@ pub struct Destination {
     /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
     /// The command that writes results to the locked folder. Folders inside this one share the lock.
-    locked: Rc<OnceCell<(Batch, Writer)>>,
+    locked: Rc<OnceCell<(Batch, ResultsCommand)>>,
 }
 
 impl Destination {
@@ -238,25 +238,30 @@ impl Destination {
     /// Locks the folder and everything below it for a command, unless it is locked, before anything is written. Results of the last run are removed when those of
     /// this run are published. Prints warnings about results of other commands from another scenario. Several parts of a study may be computed
     /// in one folder at the same time.
-    pub fn lock(&self, writer: Writer, origin: &Origin, is_part: bool) -> Result<(), Failure> {
+    pub fn lock(
+        &self,
+        command: ResultsCommand,
+        origin: &Origin,
+        is_part: bool,
+    ) -> Result<(), Failure> {
         if self.locked.get().is_some() {
             return Ok(());
         }
         let batch = Batch::lock(&self.path, !is_part).map_err(elsewhere)?;
         if !is_part {
-            batch.replace(writer.last_run(&self.path));
-            super::warn(&writer.warnings(&self.path, origin));
+            batch.replace(command.last_results(&self.path));
+            super::warn(&command.warnings(&self.path, origin));
         }
-        self.locked.get_or_init(|| (batch, writer));
+        self.locked.get_or_init(|| (batch, command));
         Ok(())
     }
 
-    fn locked(&self) -> &(Batch, Writer) {
+    fn locked(&self) -> &(Batch, ResultsCommand) {
         self.locked.get().expect("the folder is locked")
     }
 
     /// Returns the folder inside this one for the comparison of several models.
-    pub fn of_models(&self) -> Self {
+    pub fn models_folder(&self) -> Self {
         self.within(self.locked().1.models(&self.path))
     }
 
@@ -364,11 +369,11 @@ impl Destination {
         if self.origin.is_some() {
             all.insert(0, ORIGIN);
         }
-        let (batch, writer) = self.locked();
+        let (batch, command) = self.locked();
         let folder = batch.folder(&self.path, &all);
         let mut folder = folder.map_err(elsewhere)?;
         // `last_run` misses the folder of a record whose seal was not written.
-        let others = writer.files.iter().filter(|name| !names.contains(name));
+        let others = command.files.iter().filter(|name| !names.contains(name));
         others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {
             let written = folder.write(ORIGIN, format!("{origin}\n"));

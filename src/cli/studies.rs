@@ -7,8 +7,8 @@ use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
-use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::map::OverturningMap;
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::{Results, Style};
 use clap::ValueEnum;
 use serde_json::Map;
@@ -142,7 +142,7 @@ fn compute(
     style: Style,
 ) -> Result<(), Failure> {
     let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
-    place.lock(Writer::of(kinds[0]), &origin, study.work.is_part())?;
+    place.lock(ResultsCommand::of(kinds[0]), &origin, study.work.is_part())?;
     let mut session = study.session(input, style, Options::default());
     let several = scenarios.len() > 1;
     let mut all = Vec::new();
@@ -184,12 +184,12 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
     let origin = Origin::of_summary(&results.summary).unwrap_or_default();
-    let writer = Writer::merge(kind);
-    place.lock(writer, &origin, false)?;
+    let command = ResultsCommand::merge(kind);
+    place.lock(command, &origin, false)?;
     // Samples are merged into a folder inside that of their command.
     let around = place.path().parent();
     if let Some(around) = around.filter(|_| place.path().ends_with(kind.name)) {
-        super::warn(&writer.warnings(around, &origin));
+        super::warn(&command.warnings(around, &origin));
     }
     place.prepare(&results)?;
     place.publish()?;

@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Done, Options, RUN, Rows, StudyKind};
+use archrock::studies::catalogue::{Computation, Options, RUN, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
@@ -203,9 +203,9 @@ impl<'s> Session<'s> {
         };
         let rows = if kind == RUN {
             let rotations = self.options.run.no_rotations.then(stdout);
-            Rows::Stream(&mut open, rotations, &mut watch)
+            RowSource::Stream(&mut open, rotations, &mut watch)
         } else {
-            Rows::Compute(runner, task, &mut watch)
+            RowSource::Compute(runner, task, &mut watch)
         };
         let done = kind.compute(scenarios, &self.options, self.style, rows);
         drop(shown);
@@ -214,12 +214,12 @@ impl<'s> Session<'s> {
             (error, _) => error.into(),
         });
         match done? {
-            Done::Whole(results, part) => {
+            Computation::Complete(results, part) => {
                 place.map_or(Ok(()), |place| place.prepare(&results))?;
                 self.pending.extend(part);
                 Ok(Some(results))
             }
-            Done::Part { part, cases, all } => {
+            Computation::Partial { part, cases, all } => {
                 let path = part.path().display();
                 say(&format!(
                     "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
@@ -331,7 +331,7 @@ impl<'s> Session<'s> {
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peaks::results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
-        place.of_models().prepare(&results)?;
+        place.models_folder().prepare(&results)?;
         Ok(Some(results))
     }
 }

@@ -2,7 +2,7 @@
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 use archrock::studies::threshold::along::{AlongOptions, KeyRange};
 use archrock::studies::threshold::{Factors, check};
@@ -70,7 +70,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     }
     let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    root.lock(Writer::of(THRESHOLD), &origin, study.work.is_part())?;
+    root.lock(ResultsCommand::of(THRESHOLD), &origin, study.work.is_part())?;
     let mut all = Vec::new();
     for (_, scenarios, place) in &tasks {
         super::warn(&scenarios[0].unlikely());
@@ -103,7 +103,7 @@ fn thresholds_along(
         return Err(input.wrong(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let (place, writer) = (study.place(input)?, Writer::of(THRESHOLD_ALONG));
-    place.lock(writer, &Origin::of(&scenario), study.work.is_part())?;
+    let (place, command) = (study.place(input)?, ResultsCommand::of(THRESHOLD_ALONG));
+    place.lock(command, &Origin::of(&scenario), study.work.is_part())?;
     session.finish(THRESHOLD_ALONG, &scenario, &place, study.format)
 }

@@ -99,7 +99,7 @@ pub struct RunOptions {
     pub exaggeration: Option<f64>,
     /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
-    /// ObservedPoints of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
+    /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
     /// The words about the samples of `[uncertain]` for each model, with which its page begins; empty without samples.
     pub uncertainty: Vec<String>,

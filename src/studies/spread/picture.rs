@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Path, Push, Stage, Summary};
+use super::{Push, SpreadPath, Stage, Summary};
 use crate::mechanics::blocks::Row;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
@@ -56,18 +56,23 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
-        let way = format!("{} {}", path.way.springing.name(), path.way.words());
+        let direction = format!(
+            "{} {}",
+            path.direction.springing.name(),
+            path.direction.label()
+        );
         let solid = Stroke::new(stroke.color, stroke.width, "");
         for (push, stroke) in [
             (Push::Capacity, solid),
             (Push::FirstMotion, thin(stroke.color)),
         ] {
             let points = path.stages.iter();
-            let points = points.filter_map(|stage| Some((stage.movement_m, stage.least(push)?)));
-            let name = format!("{}, {way}", push.name());
+            let points =
+                points.filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
+            let name = format!("{}, {direction}", push.name());
             marks.push(Mark::curve(name, stroke, points));
         }
-        keys.push(Key::line(way, solid));
+        keys.push(Key::line(direction, solid));
     }
     keys.push(Key::line("dashed: first motion", thin(color::BLACK)));
     let labels = ["movement of the springing (m)", "push (g)"];
@@ -81,7 +86,7 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
 struct Cell<'a> {
     row: &'a Row,
     scene: &'a Scene,
-    path: &'a Path,
+    path: &'a SpreadPath,
     stage: &'a Stage,
     /// Lower left and upper right corner of the undeformed and the moved arch, in metres.
     bounds_m: [Vector2<f64>; 2],
@@ -89,7 +94,7 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(row: &'a Row, scene: &'a Scene, path: &'a Path, width_px: f64) -> Option<Self> {
+    fn new(row: &'a Row, scene: &'a Scene, path: &'a SpreadPath, width_px: f64) -> Option<Self> {
         let stage = path.stages.last()?;
         // Fill and loads hardly move farther than the blocks.
         let blocks = scene.pieces(&[]).into_iter();
@@ -137,7 +142,7 @@ impl<'a> Cell<'a> {
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }
         }
-        let (words, end_m) = (self.path.way.words(), self.stage.movement_m);
+        let (words, end_m) = (self.path.direction.label(), self.stage.movement_m);
         let text = match (self.path.falls_at_m, &self.path.lost) {
             (Some(at_m), _) => format!("{words} {at_m:.3} m: falls"),
             (None, Some(_)) => format!("{words} {end_m:.3} m: not followed further"),

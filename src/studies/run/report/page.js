@@ -213,8 +213,7 @@ slider.addEventListener("input", () => {
 });
 find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
 for (const id of ["thrust", "ride", "sizes"]) find(id).addEventListener("change", draw);
-// A structure that had rotated far enough as it overturned has no fall.
-find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
+find("fall").hidden = !data.fall_end;
 find("fall-from").textContent = Number(historyEnd.toFixed(3));
 find("fall-end").textContent = data.fall_end ?? "";
 find("sizes-choice").hidden = data.dimensions.length === 0;
