@@ -6,9 +6,9 @@ use archrock::studies::spread::Direction;
 use clap::ValueEnum;
 
 use super::Failure;
-use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
 use super::number::number;
+use super::short_study::{CommonArguments, run_short_study};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -53,5 +53,5 @@ pub fn spread(arguments: &Arguments) -> Result<(), Failure> {
         directions: angles_deg.iter().map(direction).collect(),
         ..Options::default()
     };
-    at_once(SPREAD, &arguments.common, arguments.figure, options)
+    run_short_study(SPREAD, &arguments.common, arguments.figure, options)
 }

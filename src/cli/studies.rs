@@ -15,7 +15,7 @@ use serde_json::Map;
 
 use super::figure::FigureOption;
 use super::models::warn_of;
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
 use super::study::StudyArguments;
 use super::{Failure, Format, print};
@@ -114,10 +114,10 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let input = study.scenario.open()?;
     let scenario = study.models.read_one(&input, "map")?;
     warn_of(slice::from_ref(&scenario));
-    OverturningMap::of(&scenario).map_err(|message| input.wrong(message))?;
+    OverturningMap::of(&scenario).map_err(|message| input.input_error(message))?;
     let style = arguments.map.style(&scenario, study.figure.get()?)?;
     if scenario.uncertain.is_some() {
-        CellsOfSamples::of(&scenario).map_err(|message| input.wrong(message))?;
+        CellsOfSamples::of(&scenario).map_err(|message| input.input_error(message))?;
     }
     let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
     compute(kinds, study, &input, &[scenario], style)
@@ -158,13 +158,13 @@ fn compute(
     }
     let mut summaries = Map::new();
     for (scenario, (model, results)) in scenarios.iter().zip(&all) {
-        say(model);
+        print_status(model);
         show(results, &place.of_model(scenario, several), Format::Text)?;
         let name = scenario.motion.hinges().name();
         summaries.insert(name.to_owned(), results.summary.clone());
     }
     if let Some(compared) = compared {
-        say(&compared.words);
+        print_status(&compared.words);
         summaries.insert("peaks".to_owned(), compared.summary);
     }
     match study.format {
@@ -179,7 +179,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
-    let place = arguments.figure.printed(place);
+    let place = arguments.figure.with_picture_format(place);
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
@@ -201,7 +201,7 @@ fn show(results: &Results, place: &Destination, format: Format) -> Result<(), Fa
     if let Format::Json = format {
         return print(&pretty(&results.summary));
     }
-    say(&results.words);
-    say(&format!("  results in {}", place.holds(results)));
+    print_status(&results.words);
+    print_status(&format!("  results in {}", place.describe(results)));
     Ok(())
 }

@@ -8,7 +8,7 @@ use archrock::studies::threshold::along::{AlongOptions, KeyRange};
 use archrock::studies::threshold::{Factors, check};
 
 use super::models::warn_of;
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::{Destination, Input, SuiteOption};
 use super::study::{Session, StudyArguments};
 use super::{Failure, Format, print, print_all};
@@ -66,7 +66,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     Destination::check_distinct(&tasks)?;
     let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
-        say(ignored);
+        print_status(ignored);
     }
     let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
@@ -78,7 +78,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         let found = session.with_samples(kinds, scenarios, place.as_ref())?;
         session.publish(place.as_ref())?;
         if let (Some(found), Some(place)) = (&found, place) {
-            say(&format!("results in {}", place.holds(found)));
+            print_status(&format!("results in {}", place.describe(found)));
         }
         all.push(found.unwrap_or_default());
     }
@@ -100,7 +100,7 @@ fn thresholds_along(
     let scenario = study.models.read_one(input, "--along")?;
     if scenario.uncertain.is_some() {
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
-        return Err(input.wrong(message));
+        return Err(input.input_error(message));
     }
     warn_of(std::slice::from_ref(&scenario));
     let (place, command) = (study.place(input)?, ResultsCommand::of(THRESHOLD_ALONG));

@@ -14,10 +14,10 @@ use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::Figure;
-use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
+use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::{FARTHEST, Scene};
-use crate::output::sheet::{Height, Sheet};
+use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::output::text::Text;
 use crate::scenario::DimensionSide;
@@ -95,7 +95,7 @@ impl<'a> FourLinkStructure<'a> {
 
     /// Places the structure around `middle` in a part of the sheet.
     fn at(&self, middle: f64, part: Frame) -> PlacedStructure<'a> {
-        let place = Place::over(self.scene.blocks_m(), middle, part);
+        let place = SheetTransform::over(self.scene.blocks_m(), middle, part);
         PlacedStructure { of: *self, place }
     }
 }
@@ -107,7 +107,7 @@ fn open_at(hinge: Hinge, position_m: Vector2<f64>) -> OpenHinge {
 /// A structure on the sheet.
 struct PlacedStructure<'a> {
     of: FourLinkStructure<'a>,
-    place: Place,
+    place: SheetTransform,
 }
 
 impl PlacedStructure<'_> {
@@ -223,22 +223,25 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
         sheet.gap(ABOVE_PX);
         let cells = (first_cell..2).take(columns).zip([0.5, 1.5]);
         let (of, open) = (&of, &open);
-        sheet.part(Height::Structure(arch_px, arch_px), move |drawing, part| {
-            for (cell, middle) in cells {
-                let middle = middle * cell_px + 0.5 * (left - right);
-                let placed = of.at(middle, part);
-                if cell == 1 {
-                    placed.mechanism(drawing, open);
-                    continue;
+        sheet.part(
+            PartHeight::Structure(arch_px, arch_px),
+            move |drawing, part| {
+                for (cell, middle) in cells {
+                    let middle = middle * cell_px + 0.5 * (left - right);
+                    let placed = of.at(middle, part);
+                    if cell == 1 {
+                        placed.mechanism(drawing, open);
+                        continue;
+                    }
+                    draw_dimensions(drawing, &placed.place, scene);
+                    let view = placed.view(&[], &[]);
+                    view.draw_carried(drawing, true);
+                    view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
+                    placed.resultants(drawing, "thrust line", &incipient.thrust_line, first);
+                    placed.hinges(drawing, open, "");
                 }
-                draw_dimensions(drawing, &placed.place, scene);
-                let view = placed.view(&[], &[]);
-                view.draw_carried(drawing, true);
-                view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
-                placed.resultants(drawing, "thrust line", &incipient.thrust_line, first);
-                placed.hinges(drawing, open, "");
-            }
-        });
+            },
+        );
         if first_cell == 0 {
             sheet.gap(room_px(scene, DimensionSide::Below));
         }
@@ -281,7 +284,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     sheet.gap(ABOVE_PX);
     let half_px = 0.5 * figure.width_px;
     let arch_px = of.height_px((0.8 * half_px).min(half_px - 2.0 * LETTER_PX));
-    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
+    sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         for (open, middle) in [(&before, 0.5), (&after, 1.5)] {
             let placed = of.at(middle * half_px, part);
             placed.mechanism(drawing, open);
@@ -294,7 +297,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let width_px = (0.71 * figure.width_px).min(figure.width_px - left - right);
     let middle = 0.5 * (figure.width_px + left - right);
     let arch_px = of.height_px(width_px);
-    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
+    sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         let placed = of.at(middle, part);
         if is_wide {
             draw_dimensions(drawing, &placed.place, scene);

@@ -10,7 +10,9 @@ use crate::output::axes::Scale;
 use crate::output::chart::{Mark, Shape};
 use crate::output::envelope::{COLUMNS, Envelope};
 use crate::output::figure::Panel;
-use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, overturns};
+use crate::output::panels::{
+    MAIN, Panels, StateHistory, Subject, overturning, overturns, scale_around,
+};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 
@@ -62,7 +64,7 @@ pub(super) struct Timeline {
     /// Half cycles that come near the unstable equilibrium.
     near_critical: Vec<NearCriticalCycle>,
     /// The states of mechanisms over time, and their impacts.
-    states: States,
+    states: StateHistory,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
@@ -235,7 +237,7 @@ impl Timeline {
     }
 
     /// Adds the panel of the right foot, if it moves.
-    fn add_feet(&self, panels: &mut Panels, states: Option<&States>) {
+    fn add_feet(&self, panels: &mut Panels, states: Option<&StateHistory>) {
         let names = ["right foot to the right", "right foot upwards"];
         let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
         let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
@@ -261,7 +263,7 @@ impl Timeline {
             let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
             Mark::curve("unstable", unstable(cycle.body), ends)
         }));
-        let y = around(&marks, [], 6);
+        let y = scale_around(&marks, [], 6);
         let ticks = Shape::Ticks(self.impacts_s.clone());
         marks.push(Mark::new("impact", IMPACT, ticks));
         if !self.impacts_s.is_empty() {
@@ -291,13 +293,13 @@ impl Timeline {
             let keys = [Key::line(name, LARGEST), Key::line("others", BLOCK)];
             panels.keys.extend(keys);
         }
-        let y = around(&marks, [], 6);
+        let y = scale_around(&marks, [], 6);
         (marks, y)
     }
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn states(history: &History, half_cycles: &[HalfCycle]) -> States {
+fn states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
@@ -306,7 +308,7 @@ fn states(history: &History, half_cycles: &[HalfCycle]) -> States {
     let cycles = half_cycles.iter();
     let changes = cycles.map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)));
     let end = end.map(|state| (history.outcome_time_s, state));
-    States {
+    StateHistory {
         start: State::Rest,
         changes: changes.chain(end).collect(),
     }

@@ -9,8 +9,8 @@ use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
 use crate::output::mechanisms::columns;
-use crate::output::panels::{Panels, States};
-use crate::output::point::Point;
+use crate::output::panels::{Panels, StateHistory};
+use crate::output::point::StructurePoint;
 use crate::output::scene::Scene;
 use crate::output::svg::CURVES;
 use crate::output::table::{Cell, Column, several};
@@ -27,7 +27,7 @@ pub struct ObservedPoints {
 
 #[derive(Clone, Debug)]
 struct ObservedPoint {
-    point: Point,
+    point: StructurePoint,
     /// Name of the point in columns; empty if there is only one point.
     name: String,
     /// Displacements to the right and upwards.
@@ -131,7 +131,7 @@ impl ObservedPoints {
     }
 
     /// Adds the panel of the displacements.
-    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&States>) {
+    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&StateHistory>) {
         let displacements = self
             .observed
             .iter()
@@ -159,7 +159,7 @@ impl ObservedPoints {
         let marks = self
             .observed
             .iter()
-            .map(|one| self.scene.mark(&one.point, hinges));
+            .map(|one| self.scene.body_point(&one.point, hinges));
         marks.map(|mark| mark.body).collect()
     }
 
@@ -176,8 +176,8 @@ impl ObservedPoints {
     }
 }
 
-fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64> {
-    let mark = scene.mark(point, &sample.hinges);
+fn displacement_m(scene: &Scene, point: &StructurePoint, sample: &Sample) -> Vector2<f64> {
+    let mark = scene.body_point(point, &sample.hinges);
     mark.moved(&sample.poses, 1.0) - point.at_m
 }
 

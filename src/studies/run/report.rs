@@ -26,8 +26,8 @@ use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
 use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
-use crate::output::page::{escaped, filled, script_safe};
-use crate::output::scene::{FARTHEST, Mark, Piece, Scene};
+use crate::output::page::{escaped, fill_template, script_safe};
+use crate::output::scene::{BodyPoint, FARTHEST, Piece, Scene};
 use crate::scenario::Scenario;
 use crate::scenario::metres;
 
@@ -130,7 +130,7 @@ impl Report {
         let what = format!("{structure}; {shaken}");
         let data = self.data(ground, &frames, ends_at, (history, points));
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        filled(
+        fill_template(
             include_str!("report/page.html"),
             &[
                 ("PROGRAM", &program),
@@ -334,7 +334,7 @@ fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
 }
 
 /// Returns the number of the body of a point, and its position.
-fn point(mark: Mark) -> (i64, f64, f64) {
+fn point(mark: BodyPoint) -> (i64, f64, f64) {
     (body_number(mark.body), mark.at_m.x, mark.at_m.y)
 }
 

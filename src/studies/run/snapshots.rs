@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
 use crate::output::Figure;
-use crate::output::elevation::{BODIES, Place, STONE, TIE, View};
-use crate::output::scene::{Mark, Scene};
-use crate::output::sheet::{Height, Sheet};
+use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
+use crate::output::scene::{BodyPoint, Scene};
+use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
@@ -138,14 +138,17 @@ impl Snapshots {
         sheet.gap(14.0);
         for samples in shown.chunks(columns) {
             let tall_px = 1.1 * scale * height_m;
-            sheet.part(Height::Structure(tall_px, tall_px), move |drawing, part| {
-                for (column, sample) in (0_u32..).zip(samples) {
-                    let middle = (f64::from(column) + 0.5) * cell_px;
-                    let sway_m = Vector2::new(0.0, 0.1 * height_m);
-                    let place = Place::over([low_m, high_m + sway_m], middle, part);
-                    self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
-                }
-            });
+            sheet.part(
+                PartHeight::Structure(tall_px, tall_px),
+                move |drawing, part| {
+                    for (column, sample) in (0_u32..).zip(samples) {
+                        let middle = (f64::from(column) + 0.5) * cell_px;
+                        let sway_m = Vector2::new(0.0, 0.1 * height_m);
+                        let place = SheetTransform::over([low_m, high_m + sway_m], middle, part);
+                        self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
+                    }
+                },
+            );
             sheet.gap(52.0);
         }
         sheet.caption(0.0, &self.caption());
@@ -174,7 +177,13 @@ impl Snapshots {
         caption
     }
 
-    fn draw_one(&self, drawing: &mut Drawing, place: Place, sample: &Sample, half_px: f64) {
+    fn draw_one(
+        &self,
+        drawing: &mut Drawing,
+        place: SheetTransform,
+        sample: &Sample,
+        half_px: f64,
+    ) {
         let left = place.at - Vector2::new(half_px, 0.0);
         let right = place.at + Vector2::new(half_px, 0.0);
         drawing.line(left, right, Stroke::new(color::GREY, 1.4, ""));
@@ -197,7 +206,7 @@ impl Snapshots {
             }
             Some(body) => (format!("body {body}"), STONE),
         });
-        let moved = |mark: &Mark| view.px(mark);
+        let moved = |mark: &BodyPoint| view.px(mark);
         let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
         for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {
             let [from, to] = ends.each_ref().map(moved);
@@ -211,7 +220,7 @@ impl Snapshots {
                 drawing.curve("tie", [from, to], TIE);
             }
         }
-        for pressed in self.scene.pressed(sample) {
+        for pressed in self.scene.compressed_joints(sample) {
             let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
             let wedge = pressed.wedge(high_m);
             let stroke = Stroke::new(color::PURPLE, 0.8, "");

@@ -6,9 +6,9 @@ use super::{Push, SpreadPath, Stage, Summary};
 use crate::mechanics::blocks::Row;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
-use crate::output::elevation::{HINGE, HINGE_PX, Place, STONE, View};
-use crate::output::scene::{Mark as SceneMark, Scene, widened};
-use crate::output::sheet::{Height, Key, Sheet};
+use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
+use crate::output::scene::{BodyPoint, Scene, widened};
+use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 
 /// Largest number of pictures of the arch side by side.
@@ -32,7 +32,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene)
             .collect();
         let heights_px = cells.iter().map(|cell| cell.height_px);
         let height_px = heights_px.fold(0.0, f64::max);
-        let height = Height::Structure(height_px, height_px);
+        let height = PartHeight::Structure(height_px, height_px);
         sheet.part(height, move |drawing, part| {
             for (column, cell) in (0_u32..).zip(cells) {
                 let middle = (f64::from(column) + 0.5) * cell_px;
@@ -121,7 +121,7 @@ impl<'a> Cell<'a> {
             height,
             ..part
         };
-        let place = Place::over(self.bounds_m, middle, own);
+        let place = SheetTransform::over(self.bounds_m, middle, own);
         let view = View::new(self.scene, place, &self.stage.poses, &[]);
         view.draw_carried(drawing, false);
         view.draw_built(drawing, "");
@@ -153,8 +153,8 @@ impl<'a> Cell<'a> {
     }
 
     /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
-    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> SceneMark {
+    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
         let body = Some(joint.min(self.stage.poses.len() - 1));
-        SceneMark { body, at_m }
+        BodyPoint { body, at_m }
     }
 }
