@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn a_picture_has_the_height_of_its_figure() {
         let height_mm = |figure: Figure| {
-            // Two plots with a gap, and text that is not stretched.
+            // Two plots with a gap are stretched; text is not.
             let mut sheet = Sheet::new(figure, "");
             sheet.part(PartHeight::Plot(figure.height_px(130.0)), |_, _| ());
             sheet.gap(90.0);
@@ -319,7 +319,7 @@ mod tests {
             let height = format!("{wanted_mm} mm").parse().ok();
             assert!((height_mm(Figure { height, ..figure }) - wanted_mm).abs() < 1e-3);
         }
-        // It cannot be lower than its text.
+        // The height is at least that of the text.
         let height = "20mm".parse().ok();
         assert!(height_mm(Figure { height, ..figure }) > 20.0);
         for wrong in ["70", "5mm", "-7cm", "8000mm"] {

@@ -393,7 +393,7 @@ impl UncertainKey {
 mod tests {
     use super::*;
 
-    /// Compares with the quantile function of the normal distribution, from its density integrated by Simpson's rule.
+    /// The quantile function agrees with the density of the normal distribution, integrated by Simpson's rule.
     #[test]
     fn normal_values_are_cut_off_and_keep_their_shares() {
         let density = |x: f64| (-0.5 * x * x).exp();

@@ -226,7 +226,7 @@ mod tests {
             values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
             [1.0, -2.0, -3.0, 4.0]
         );
-        // Numbers without even a sign between them are not guessed.
+        // Numbers without a sign or blank between them are an error.
         for line in [
             "0.12340.5678 0 0 0",
             ".12E-03.56E-03 0 0",

@@ -511,7 +511,7 @@ mod tests {
     }
 
     proptest! {
-        /// Noise and damaged files are either read, in order, or refused.
+        /// Random and damaged files are either read with ascending times, or are an error.
         #[test]
         fn readers_never_panic(
             noise in any::<String>(),

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::dynamics::history::State;
 
-    /// A column that sways right turns clockwise: its rotation is negative here as in its table and on its page.
+    /// A column that sways right turns clockwise. Its rotation is negative, as in the table and on the page.
     #[test]
     fn a_sway_to_the_right_is_negative_as_everywhere() {
         for (sway, rotation_rad) in [(Sway::Right, -0.02), (Sway::Left, 0.03)] {
