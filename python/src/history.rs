@@ -11,10 +11,10 @@ use archrock::dynamics::history::Summary;
 use archrock::dynamics::recording::{Recording, Samples};
 use archrock::dynamics::repeatability::Repetitions;
 use archrock::mechanics::chain::Demand;
-use archrock::output::point::Point;
+use archrock::output::point::StructurePoint;
 use archrock::output::scene::Scene;
 use archrock::studies::run::report::Report;
-use archrock::studies::run::{self, Ended};
+use archrock::studies::run::{self, OutcomeSummary};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -202,9 +202,9 @@ impl History {
             watched.signals.raised.take()
         })?;
         let (samples, events) = watched.recording.finish().map_err(too_large)?;
-        let displaced = |point: &Point| {
+        let displaced = |point: &StructurePoint| {
             let moved_m = samples.iter().map(|sample| {
-                let mark = scene.mark(point, &sample.hinges);
+                let mark = scene.body_point(point, &sample.hinges);
                 mark.moved(&sample.poses, 1.0) - point.at_m
             });
             moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
@@ -366,7 +366,7 @@ fn code(state: State) -> usize {
 }
 
 /// A point of a structure, given by its undeformed position.
-fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<Point> {
+fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<StructurePoint> {
     scene.point(at_m).map_err(|nearest_m| {
         refused(format!(
             "`point = ({:?}, {:?})` is in no block: the nearest place of one is ({:.3}, {:.3})",
@@ -433,7 +433,7 @@ impl History {
 
     /// The outcome, as in `summary.json`.
     fn ended_json(&self) -> PyResult<String> {
-        serde_json::to_string(&Ended::of(&self.summary)).map_err(refused)
+        serde_json::to_string(&OutcomeSummary::of(&self.summary)).map_err(refused)
     }
 
     /// The events as JSON.

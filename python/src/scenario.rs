@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::scenario::{Assignment, Changes, Hinges, MODELS, ScenarioErrors, Source};
+use archrock::scenario::{Assignment, Hinges, MODELS, ReadOptions, ScenarioErrors, Source};
 use archrock::studies::{impact, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
@@ -177,7 +177,7 @@ impl Scenario {
             .map_err(refused)?;
         let text = Text::new(text, name, &files)?;
         let read = |statics: bool| {
-            let changes = Changes {
+            let changes = ReadOptions {
                 hinges,
                 set: &set,
                 statics,

@@ -6,9 +6,9 @@ use std::slice;
 use std::sync::Arc;
 
 use archrock::output::{Batch, Figure};
-use archrock::studies::catalogue::{self as studies, Done, Options, Rows, StudyKind};
-use archrock::studies::kept::Writer;
+use archrock::studies::catalogue::{self as studies, Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::Shard;
+use archrock::studies::previous_results::ResultsCommand;
 use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::Factors;
@@ -94,13 +94,13 @@ pub fn study<'py>(
     };
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
-        let rows = Rows::Compute(runner, None, watch);
+        let rows = RowSource::Compute(runner, None, watch);
         kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {
-        Done::Whole(results, _) => Ok(to_python(py, results)),
-        Done::Part { .. } => unreachable!("a computation in memory is no part"),
+        Computation::Complete(results, _) => Ok(to_python(py, results)),
+        Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
     }
 }
 
@@ -124,14 +124,16 @@ pub fn compute_part(
             shard,
             resume: true,
         };
-        let rows = Rows::Compute(runner, Some(task), watch);
+        let rows = RowSource::Compute(runner, Some(task), watch);
         let options = Options::default();
         kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
             .map_err(failed)
     })?;
     match done {
-        Done::Part { part, .. } | Done::Whole(_, Some(part)) => Ok(part.path().to_owned()),
-        Done::Whole(_, None) => Err(refused(format!("{:?} has no parts", kind.name))),
+        Computation::Partial { part, .. } | Computation::Complete(_, Some(part)) => {
+            Ok(part.path().to_owned())
+        }
+        Computation::Complete(_, None) => Err(refused(format!("{:?} has no parts", kind.name))),
     }
 }
 
@@ -169,10 +171,10 @@ fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let batch = Batch::lock(path, true).map_err(not_written)?;
     let mut warnings = Vec::new();
-    if let Some(writer) = names.last().and_then(|seal| Writer::of_seal(seal)) {
-        batch.replace(writer.last_run(path));
-        if let Some(origin) = writer.origin_in(files) {
-            warnings = writer.warnings(path, &origin);
+    if let Some(command) = names.last().and_then(|seal| ResultsCommand::of_seal(seal)) {
+        batch.replace(command.last_results(path));
+        if let Some(origin) = command.origin_in(files) {
+            warnings = command.warnings(path, &origin);
         }
     }
     let mut folder = batch.folder(path, &names).map_err(not_written)?;

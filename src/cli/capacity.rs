@@ -4,9 +4,9 @@ use archrock::studies::catalogue::{CAPACITY, Options};
 use nalgebra::Vector2;
 
 use super::Failure;
-use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
 use super::number::point_m;
+use super::short_study::{CommonArguments, run_short_study};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -24,5 +24,5 @@ pub fn capacity(arguments: &Arguments) -> Result<(), Failure> {
         point_m: arguments.point,
         ..Options::default()
     };
-    at_once(CAPACITY, &arguments.common, arguments.figure, options)
+    run_short_study(CAPACITY, &arguments.common, arguments.figure, options)
 }

@@ -7,12 +7,14 @@ use archrock::dynamics::ground::intensity::Intensity;
 use archrock::dynamics::model::Request;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
-use archrock::scenario::{Format, Layout, Recorded, Scenario, Series};
+use archrock::scenario::{Format, Layout, RecordedQuantity, Scenario, Series};
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;
 use super::scenario_file::{Input, SetOption};
-use super::{Failure, Format as Printed, commands, noted, print, print_all, refused};
+use super::{
+    Failure, Format as Printed, check_no_errors, collect_input_error, commands, print, print_all,
+};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -40,7 +42,7 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     }
     let (mut texts, mut contents, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for file in &arguments.files {
-        if let Some((text, json)) = noted(check_file(file, arguments), &mut wrong)? {
+        if let Some((text, json)) = collect_input_error(check_file(file, arguments), &mut wrong)? {
             texts.push(text);
             contents.push(json);
         }
@@ -50,7 +52,7 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
         Printed::Json if contents.is_empty() => {}
         Printed::Json => print_all(contents)?,
     }
-    refused(&wrong)
+    check_no_errors(&wrong)
 }
 
 /// Returns the contents of a file, as text and as JSON.
@@ -108,11 +110,11 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
         .model()
         .map_err(|error| Failure::Work(error.to_string()))?;
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-    let at_once = Request {
+    let request = Request {
         end_s: request.output_step_s,
         ..request
     };
-    let history = model.history(&GroundMotion::still(), &at_once)?;
+    let history = model.history(&GroundMotion::still(), &request)?;
     let first = history.samples.iter().next();
     scene.stands = first.map_or_else(Default::default, |first| {
         (first.poses.to_vec(), first.hinges.to_vec())
@@ -234,8 +236,8 @@ fn kind(series: &Series) -> String {
         Format::Csv => "table",
     };
     let quantity = match series.layout.quantity {
-        Recorded::Acceleration => "accelerations",
-        Recorded::Velocity => "velocities",
+        RecordedQuantity::Acceleration => "accelerations",
+        RecordedQuantity::Velocity => "velocities",
     };
     format!("{format}, {quantity} in {}", series.unit.name())
 }

@@ -13,7 +13,7 @@ use archrock::output::scene::Scene;
 use archrock::scenario::Scenario;
 use archrock::studies::limit;
 use archrock::studies::pictures;
-use archrock::studies::results::Answer;
+use archrock::studies::results::PrintedResult;
 
 use super::figure::FigureOption;
 use super::first::FirstOption;
@@ -56,14 +56,14 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
         let picture = pictures::limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
-    answer(&limit::limit(&scenario)?, arguments.format)
+    print_result(&limit::limit(&scenario)?, arguments.format)
 }
 
-/// Prints an answer.
-pub fn answer(answer: &Answer, format: Format) -> Result<(), Failure> {
+/// Prints a result without files.
+pub fn print_result(result: &PrintedResult, format: Format) -> Result<(), Failure> {
     match format {
-        Format::Json => print(&pretty(&answer.json)),
-        Format::Text => print(&answer.text),
+        Format::Json => print(&pretty(&result.json)),
+        Format::Text => print(&result.text),
     }
 }
 

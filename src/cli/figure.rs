@@ -46,7 +46,7 @@ impl FigureOption {
     }
 
     /// Sets the format of pictures of a folder.
-    pub fn printed(self, place: Destination) -> Destination {
+    pub fn with_picture_format(self, place: Destination) -> Destination {
         place.with_pictures(self.figure_format)
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::output::Folder;
 use archrock::output::scene::Scene;
-use archrock::studies::impact::{LinkImpact, Question, chain_answer, four_links_answer};
+use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_answer, four_links_answer};
 use archrock::studies::pictures;
 
 use super::figure::FigureOption;
@@ -60,7 +60,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     if !scenario.structure.thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
         let answer = chain_answer(&scenario, &*model, first, count)?;
-        return commands::answer(&answer, arguments.format);
+        return commands::print_result(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
     let impact = LinkImpact {
@@ -102,14 +102,14 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         let message = "voussoirs, whose joints are used; leave it out";
         return Err(format!("--joints: the arch has {count} {message}").into());
     }
-    let question = Question {
+    let options = ImpactOptions {
         count,
         models: arguments.models,
         certificate: arguments.certificate,
         joints: arguments.joints.map(usize::from),
     };
-    let answer = four_links_answer(&scenario, &impact, &question)?;
-    commands::answer(&answer, arguments.format)
+    let answer = four_links_answer(&scenario, &impact, &options)?;
+    commands::print_result(&answer, arguments.format)
 }
 
 fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use archrock::Scenario;
 use clap::ValueEnum;
 
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::is_stdin;
 use super::{Failure, print};
 
@@ -81,7 +81,7 @@ pub fn init(arguments: &Arguments) -> Result<(), Failure> {
             written += &format!(" and {}", path.display());
         }
     }
-    say(&format!(
+    print_status(&format!(
         "{written} written; now: archrock {command} {}",
         file.display()
     ));

@@ -3,7 +3,6 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
-mod at_once;
 mod capacity;
 mod check;
 mod commands;
@@ -17,6 +16,7 @@ mod number;
 mod progress;
 mod run;
 mod scenario_file;
+mod short_study;
 mod spread;
 mod studies;
 mod study;
@@ -35,8 +35,8 @@ use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use serde_json::Value;
 
-use at_once::at_once;
 use figure::FigureOption;
+use short_study::run_short_study;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
 #[derive(Parser)]
@@ -71,7 +71,7 @@ enum Command {
     Spread(spread::Arguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
-    Verify(at_once::CommonArguments),
+    Verify(short_study::CommonArguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
@@ -152,7 +152,10 @@ impl From<OutputError> for Failure {
 }
 
 /// Returns the result. If the input is wrong, adds the message to `wrong` and returns `None`.
-fn noted<T>(result: Result<T, Failure>, wrong: &mut Vec<String>) -> Result<Option<T>, Failure> {
+fn collect_input_error<T>(
+    result: Result<T, Failure>,
+    wrong: &mut Vec<String>,
+) -> Result<Option<T>, Failure> {
     match result {
         Err(Failure::Input(message)) => {
             wrong.push(message);
@@ -163,7 +166,7 @@ fn noted<T>(result: Result<T, Failure>, wrong: &mut Vec<String>) -> Result<Optio
 }
 
 /// Returns an error if there is any message.
-fn refused(wrong: &[String]) -> Result<(), Failure> {
+fn check_no_errors(wrong: &[String]) -> Result<(), Failure> {
     match wrong {
         [] => Ok(()),
         _ => Err(wrong.join("\n").into()),
@@ -172,7 +175,7 @@ fn refused(wrong: &[String]) -> Result<(), Failure> {
 
 /// Runs the program.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::try_parse().unwrap_or_else(|error| likely(error).exit());
+    let arguments = Arguments::try_parse().unwrap_or_else(|error| with_suggestion(error).exit());
     progress::set_quiet(arguments.quiet);
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),
@@ -182,7 +185,7 @@ pub fn main() -> ExitCode {
         Command::Capacity(capacity) => capacity::capacity(&capacity),
         Command::Spread(spread) => spread::spread(&spread),
         Command::Verify(verify) => {
-            at_once(VERIFY, &verify, FigureOption::default(), Options::default())
+            run_short_study(VERIFY, &verify, FigureOption::default(), Options::default())
         }
         Command::Map(map) => studies::map(&map),
         Command::Suite(suite) => studies::suite(&suite),
@@ -219,7 +222,7 @@ const REPLACED: [(&str, &str); 4] = [
 ];
 
 /// Adds to the error the replacement of a former command or option, or the most similar command; two swapped letters count as one mistake.
-fn likely(mut error: clap::Error) -> clap::Error {
+fn with_suggestion(mut error: clap::Error) -> clap::Error {
     for kind in [ContextKind::InvalidSubcommand, ContextKind::InvalidArg] {
         let Some(ContextValue::String(given)) = error.get(kind) else {
             continue;
@@ -248,7 +251,7 @@ const FAR: usize = 2;
 /// Prints warnings about unlikely values in a scenario or a record.
 fn warn(unlikely: &[String]) {
     for unlikely in unlikely {
-        progress::say(&format!("warning: {unlikely}"));
+        progress::print_status(&format!("warning: {unlikely}"));
     }
 }
 

@@ -4,7 +4,7 @@ use archrock::scenario::{Hinges, Scenario};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 
 use super::Failure;
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::Input;
 
 /// Value of the option for both rigid models: four links and free hinges.
@@ -51,7 +51,7 @@ impl ModelsOption {
         let mut scenarios = self.read(input)?;
         if scenarios.len() > 1 {
             let message = format!("{command} is for one model: choose it by --hinges");
-            return Err(input.wrong(message));
+            return Err(input.input_error(message));
         }
         Ok(scenarios.remove(0))
     }
@@ -61,6 +61,6 @@ impl ModelsOption {
 pub fn warn_of(scenarios: &[Scenario]) {
     super::warn(&scenarios[0].unlikely());
     if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
-        say(ignored);
+        print_status(ignored);
     }
 }

@@ -33,14 +33,14 @@ pub fn listen_to_interrupts() {
 pub const INTERRUPTED_CODE: i32 = 130;
 
 /// Prints a line on standard error, unless the program is quiet.
-pub fn say(text: &str) {
+pub fn print_status(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
-        say_always(text);
+        print_always(text);
     }
 }
 
 /// Prints a line on standard error.
-pub fn say_always(text: &str) {
+pub fn print_always(text: &str) {
     // If standard error fails, there is no place for a message.
     let _ = writeln!(io::stderr(), "{}", shown_lines(text));
 }
@@ -83,7 +83,7 @@ impl Display {
             && said.elapsed() >= MINUTE
         {
             *said = Instant::now();
-            say(&words(elapsed));
+            print_status(&words(elapsed));
         } else if self.patience.is_some_and(|patience| elapsed >= patience) {
             if self.bar.is_hidden() {
                 self.bar.set_draw_target(ProgressDrawTarget::stderr());
@@ -107,7 +107,7 @@ impl Drop for Display {
 
 /// Returns speed and remaining time, such as "12 a second, 3 minutes left". They are means over all finished cases, so a single slow case has
 /// little effect.
-pub fn pace(done: usize, left: usize, elapsed: Duration) -> String {
+pub fn progress_text(done: usize, left: usize, elapsed: Duration) -> String {
     if done == 0 {
         return "none finished yet".to_owned();
     }
@@ -122,7 +122,7 @@ pub fn pace(done: usize, left: usize, elapsed: Duration) -> String {
 }
 
 /// Returns the remaining time, from the completed fraction of the work.
-pub fn left(part: f64, elapsed: Duration) -> HumanDuration {
+pub fn remaining_time(part: f64, elapsed: Duration) -> HumanDuration {
     // At the beginning the estimate is arbitrary, so it is limited.
     HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).clamp(0.0, 1e6)))
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 use archrock::studies::run::{RunOptions, check, heading};
 use nalgebra::Vector2;
@@ -13,9 +13,9 @@ use nalgebra::Vector2;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::number::{number, point_m};
-use super::scenario_file::{Destination, SetOption, SuiteOption, Task};
-use super::study::{Session, Work};
-use super::{Failure, Format, noted, print, print_all, refused};
+use super::scenario_file::{Destination, ScenarioTask, SetOption, SuiteOption};
+use super::study::{Session, WorkOptions};
+use super::{Failure, Format, check_no_errors, collect_input_error, print, print_all};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -55,7 +55,7 @@ pub struct Arguments {
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', value_parser = time_s, allow_negative_numbers = true)]
     snapshots: Vec<f64>,
     /// Draw the deformed structure at this rate per second, as numbered pictures in the folder film.
-    #[arg(long, value_name = "FPS", value_parser = a_second, allow_negative_numbers = true)]
+    #[arg(long, value_name = "FPS", value_parser = film_rate_hz, allow_negative_numbers = true)]
     film: Option<f64>,
     /// Factor on the displacements in snapshots and film.
     #[arg(long, value_name = "K", value_parser = factor, allow_negative_numbers = true)]
@@ -69,7 +69,7 @@ pub struct Arguments {
     points_m: Vec<Vector2<f64>>,
     /// The driver of the samples of [uncertain].
     #[command(flatten)]
-    work: Work,
+    work: WorkOptions,
     #[command(flatten)]
     figure: FigureOption,
     #[command(flatten)]
@@ -84,7 +84,9 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     };
     let (mut roots, mut tasks, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for path in &arguments.scenarios {
-        if let Some((root, own)) = noted(arguments.read(path, &options.run, &roots), &mut wrong)? {
+        if let Some((root, own)) =
+            collect_input_error(arguments.read(path, &options.run, &roots), &mut wrong)?
+        {
             roots.extend(root);
             tasks.extend(own);
         }
@@ -92,10 +94,10 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     if tasks.len() > 1 && arguments.to_stdout() {
         return Err("--rotations - is for one scenario: run them one by one".into());
     }
-    noted(Destination::check_distinct(&tasks), &mut wrong)?;
-    refused(&wrong)?;
+    collect_input_error(Destination::check_distinct(&tasks), &mut wrong)?;
+    check_no_errors(&wrong)?;
     for (root, origin) in &roots {
-        root.lock(Writer::of(RUN), origin, arguments.work.is_part())?;
+        root.lock(ResultsCommand::of(RUN), origin, arguments.work.is_part())?;
     }
     let (mut summaries, mut failures) = (Vec::new(), Vec::new());
     for (name, scenarios, place) in &tasks {
@@ -139,7 +141,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
 }
 
 /// The folder around the results of a scenario file.
-type Root = (Destination, Origin);
+type ResultsRoot = (Destination, Origin);
 
 impl Arguments {
     /// Whether the rotations go to standard output.
@@ -173,11 +175,11 @@ impl Arguments {
             no_repeat: self.no_repeat,
             no_report: self.no_report,
             snapshots_s: self.snapshots.clone(),
-            film_a_second: self.film,
+            film_rate_hz: self.film,
             exaggeration: self.exaggerate,
             poses: self.poses,
             points_m: self.points_m.clone(),
-            samples: Vec::new(),
+            uncertainty: Vec::new(),
         })
     }
 
@@ -186,23 +188,25 @@ impl Arguments {
         &self,
         path: &Path,
         options: &RunOptions,
-        others: &[Root],
-    ) -> Result<(Option<Root>, Vec<Task>), Failure> {
+        others: &[ResultsRoot],
+    ) -> Result<(Option<ResultsRoot>, Vec<ScenarioTask>), Failure> {
         let input = self.set.open(path)?;
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
-            return Err(input.wrong("--rotations - is for one model: choose one by --hinges"));
+            return Err(input.input_error("--rotations - is for one model: choose one by --hinges"));
         }
         if self.no_repeat && !models.iter().any(|one| one.motion.hinges().has_joints()) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
-            return Err(input.wrong(message));
+            return Err(input.input_error(message));
         }
         let origin = Origin::of(&models[0]);
         let root = match &self.out {
             Some(out) if self.scenarios.len() > 1 => Destination::of(out).within(input.stem()),
             out => input.results(out.as_deref())?,
         };
-        let root = self.has_folder().then(|| self.figure.printed(root));
+        let root = self
+            .has_folder()
+            .then(|| self.figure.with_picture_format(root));
         let known = || others.iter().map(|(other, _)| other);
         let root = root.map(|root| root.with_lock_of(known()));
         let check = |scenario: &Scenario| {
@@ -219,7 +223,7 @@ fn time_s(text: &str) -> Result<f64, String> {
     number(text, -1e9..=1e9, remedy)
 }
 
-fn a_second(text: &str) -> Result<f64, String> {
+fn film_rate_hz(text: &str) -> Result<f64, String> {
     let remedy = "give a number of pictures a second from 0.1 to 1000, such as 25";
     number(text, 0.1..=1e3, remedy)
 }

@@ -10,11 +10,11 @@ use std::rc::Rc;
 
 use archrock::output::print::PictureFormat;
 use archrock::output::{Batch, Folder, OutputError};
-use archrock::scenario::{Assignment, Changes, Hinges, Scenario, Source, shown};
+use archrock::scenario::{Assignment, Hinges, ReadOptions, Scenario, Source, shown};
 use archrock::studies::results::Results;
 
-use super::{Failure, refused};
-use archrock::studies::kept::{ORIGIN, Origin, Writer};
+use super::{Failure, check_no_errors};
+use archrock::studies::previous_results::{ORIGIN, Origin, ResultsCommand};
 
 /// The scenario of a command.
 #[derive(clap::Args)]
@@ -74,7 +74,7 @@ pub struct SuiteOption {
 
 /// Name of a task, scenarios that differ only in their model of motion, and the folder for their results, if there is one. The name is that of
 /// the scenario file, with the record of the suite.
-pub type Task = (String, Vec<Scenario>, Option<Destination>);
+pub type ScenarioTask = (String, Vec<Scenario>, Option<Destination>);
 
 impl SuiteOption {
     /// Returns the tasks of a scenario file, with the folder `root`. With `--suite` there is one task for each record of the suite, with a
@@ -85,9 +85,9 @@ impl SuiteOption {
         models: Vec<Scenario>,
         root: Option<&Destination>,
         check: impl Fn(&Scenario) -> Result<(), String>,
-    ) -> Result<Vec<Task>, Failure> {
+    ) -> Result<Vec<ScenarioTask>, Failure> {
         let file = input.path.display().to_string();
-        let mut tasks: Vec<Task> = Vec::new();
+        let mut tasks: Vec<ScenarioTask> = Vec::new();
         let records = models.iter();
         let records = records.flat_map(|model| model.by_record().into_iter().enumerate());
         for (index, (record, scenario)) in records.filter(|_| self.suite) {
@@ -95,7 +95,7 @@ impl SuiteOption {
                 scenarios.push(scenario);
             } else {
                 let place = root.map(|root| root.of_record(&record)).transpose();
-                let place = place.map_err(|wrong| input.about(wrong))?;
+                let place = place.map_err(|wrong| input.with_file_name(wrong))?;
                 tasks.push((format!("{file}, {record}"), vec![scenario], place));
             }
         }
@@ -103,11 +103,11 @@ impl SuiteOption {
             tasks.push((file, models, root.cloned()));
         } else if tasks.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
-            return Err(input.wrong(message));
+            return Err(input.input_error(message));
         }
         let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
         let checked = scenarios.try_for_each(check);
-        checked.map_err(|message| input.wrong(message))?;
+        checked.map_err(|message| input.input_error(message))?;
         Ok(tasks)
     }
 }
@@ -137,7 +137,7 @@ impl Input<'_> {
     }
 
     fn read_for(&self, hinges: Option<Hinges>, statics: bool) -> Result<Scenario, Failure> {
-        let changes = Changes {
+        let changes = ReadOptions {
             hinges,
             set: self.set,
             statics,
@@ -157,17 +157,17 @@ impl Input<'_> {
     /// Returns an error for a scenario with moved springings.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();
-        built.map_err(|message| self.wrong(message))?;
+        built.map_err(|message| self.input_error(message))?;
         Ok(scenario)
     }
 
     /// Makes a failure with this reason, after the name of the scenario file.
-    pub fn wrong(&self, reason: impl Into<String>) -> Failure {
-        self.about(Failure::Input(reason.into()))
+    pub fn input_error(&self, reason: impl Into<String>) -> Failure {
+        self.with_file_name(Failure::Input(reason.into()))
     }
 
     /// Adds the name of the scenario file before the message of a failure.
-    pub fn about(&self, failure: Failure) -> Failure {
+    pub fn with_file_name(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
             other => other,
@@ -212,7 +212,7 @@ pub struct Destination {
     /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
     /// The command that writes results to the locked folder. Folders inside this one share the lock.
-    locked: Rc<OnceCell<(Batch, Writer)>>,
+    locked: Rc<OnceCell<(Batch, ResultsCommand)>>,
 }
 
 impl Destination {
@@ -238,25 +238,30 @@ impl Destination {
     /// Locks the folder and everything below it for a command, unless it is locked, before anything is written. Results of the last run are removed when those of
     /// this run are published. Prints warnings about results of other commands from another scenario. Several parts of a study may be computed
     /// in one folder at the same time.
-    pub fn lock(&self, writer: Writer, origin: &Origin, is_part: bool) -> Result<(), Failure> {
+    pub fn lock(
+        &self,
+        command: ResultsCommand,
+        origin: &Origin,
+        is_part: bool,
+    ) -> Result<(), Failure> {
         if self.locked.get().is_some() {
             return Ok(());
         }
-        let batch = Batch::lock(&self.path, !is_part).map_err(elsewhere)?;
+        let batch = Batch::lock(&self.path, !is_part).map_err(suggest_other_folder)?;
         if !is_part {
-            batch.replace(writer.last_run(&self.path));
-            super::warn(&writer.warnings(&self.path, origin));
+            batch.replace(command.last_results(&self.path));
+            super::warn(&command.warnings(&self.path, origin));
         }
-        self.locked.get_or_init(|| (batch, writer));
+        self.locked.get_or_init(|| (batch, command));
         Ok(())
     }
 
-    fn locked(&self) -> &(Batch, Writer) {
+    fn locked(&self) -> &(Batch, ResultsCommand) {
         self.locked.get().expect("the folder is locked")
     }
 
     /// Returns the folder inside this one for the comparison of several models.
-    pub fn of_models(&self) -> Self {
+    pub fn models_folder(&self) -> Self {
         self.within(self.locked().1.models(&self.path))
     }
 
@@ -298,7 +303,7 @@ impl Destination {
     }
 
     /// Returns an error if two tasks would write to the same folder.
-    pub fn check_distinct(tasks: &[Task]) -> Result<(), Failure> {
+    pub fn check_distinct(tasks: &[ScenarioTask]) -> Result<(), Failure> {
         let mut first = BTreeMap::new();
         let mut wrong = Vec::new();
         for (name, _, place) in tasks {
@@ -310,7 +315,7 @@ impl Destination {
                 ));
             }
         }
-        refused(&wrong)
+        check_no_errors(&wrong)
     }
 
     /// Returns the folder inside this one for the results of one record of the suite.
@@ -348,7 +353,7 @@ impl Destination {
     }
 
     /// Returns the folder and the names of its result files, in words.
-    pub fn holds(&self, results: &Results) -> String {
+    pub fn describe(&self, results: &Results) -> String {
         let also = self.pictures.filter(|format| *format != PictureFormat::Svg);
         let also = also.map_or("", |format| match format {
             PictureFormat::Pdf => ", pictures also as PDF",
@@ -364,21 +369,21 @@ impl Destination {
         if self.origin.is_some() {
             all.insert(0, ORIGIN);
         }
-        let (batch, writer) = self.locked();
+        let (batch, command) = self.locked();
         let folder = batch.folder(&self.path, &all);
-        let mut folder = folder.map_err(elsewhere)?;
+        let mut folder = folder.map_err(suggest_other_folder)?;
         // `last_run` misses the folder of a record whose seal was not written.
-        let others = writer.files.iter().filter(|name| !names.contains(name));
+        let others = command.files.iter().filter(|name| !names.contains(name));
         others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {
             let written = folder.write(ORIGIN, format!("{origin}\n"));
-            written.map_err(elsewhere)?;
+            written.map_err(suggest_other_folder)?;
         }
         Ok(folder.with_pictures(self.pictures))
     }
 }
 
 /// Returns the error of a folder that cannot be used.
-fn elsewhere(error: OutputError) -> String {
+fn suggest_other_folder(error: OutputError) -> String {
     format!("{error}; choose another folder with --out")
 }

@@ -2,13 +2,13 @@
 
 use archrock::mechanics::sway::Sway;
 use archrock::studies::catalogue::{Options, SPREAD};
-use archrock::studies::spread::Way;
+use archrock::studies::spread::Direction;
 use clap::ValueEnum;
 
 use super::Failure;
-use super::at_once::{CommonArguments, at_once};
 use super::figure::FigureOption;
 use super::number::number;
+use super::short_study::{CommonArguments, run_short_study};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -42,16 +42,16 @@ pub fn spread(arguments: &Arguments) -> Result<(), Failure> {
         Side::Right => Sway::Right,
     };
     let angles_deg = match &arguments.angles_deg[..] {
-        [] => &Way::USUAL_DEG[..],
+        [] => &Direction::DEFAULT_DEG[..],
         given => given,
     };
-    let way = |angle_deg: &f64| Way {
+    let direction = |angle_deg: &f64| Direction {
         springing,
         angle_deg: *angle_deg,
     };
     let options = Options {
-        ways: angles_deg.iter().map(way).collect(),
+        directions: angles_deg.iter().map(direction).collect(),
         ..Options::default()
     };
-    at_once(SPREAD, &arguments.common, arguments.figure, options)
+    run_short_study(SPREAD, &arguments.common, arguments.figure, options)
 }

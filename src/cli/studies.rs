@@ -7,15 +7,15 @@ use archrock::output::{Figure, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
-use archrock::studies::kept::{Origin, Writer};
 use archrock::studies::map::OverturningMap;
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::{Results, Style};
 use clap::ValueEnum;
 use serde_json::Map;
 
 use super::figure::FigureOption;
 use super::models::warn_of;
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
 use super::study::StudyArguments;
 use super::{Failure, Format, print};
@@ -74,7 +74,7 @@ impl MapOption {
         if by_peak && model.has_joints {
             return Err(format!(
                 "--color peak goes with four links and columns: {} have no critical rotation",
-                model.words
+                model.label
             ));
         }
         let factors = self.dimensionless.then(|| Style::dimensionless(scenario));
@@ -114,10 +114,10 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let input = study.scenario.open()?;
     let scenario = study.models.read_one(&input, "map")?;
     warn_of(slice::from_ref(&scenario));
-    OverturningMap::of(&scenario).map_err(|message| input.wrong(message))?;
+    OverturningMap::of(&scenario).map_err(|message| input.input_error(message))?;
     let style = arguments.map.style(&scenario, study.figure.get()?)?;
     if scenario.uncertain.is_some() {
-        CellsOfSamples::of(&scenario).map_err(|message| input.wrong(message))?;
+        CellsOfSamples::of(&scenario).map_err(|message| input.input_error(message))?;
     }
     let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
     compute(kinds, study, &input, &[scenario], style)
@@ -142,14 +142,14 @@ fn compute(
     style: Style,
 ) -> Result<(), Failure> {
     let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
-    place.lock(Writer::of(kinds[0]), &origin, study.work.is_part())?;
+    place.lock(ResultsCommand::of(kinds[0]), &origin, study.work.is_part())?;
     let mut session = study.session(input, style, Options::default());
     let several = scenarios.len() > 1;
     let mut all = Vec::new();
     for one in scenarios.chunks(1) {
         let place = place.of_model(&one[0], several);
         let found = session.with_samples(kinds, one, Some(&place))?;
-        all.extend(found.map(|found| (one[0].motion.words(), found)));
+        all.extend(found.map(|found| (one[0].motion.label(), found)));
     }
     let compared = session.compare(scenarios[0].title.as_deref(), &all, Some(&place))?;
     session.publish(Some(&place))?;
@@ -158,13 +158,13 @@ fn compute(
     }
     let mut summaries = Map::new();
     for (scenario, (model, results)) in scenarios.iter().zip(&all) {
-        say(model);
+        print_status(model);
         show(results, &place.of_model(scenario, several), Format::Text)?;
         let name = scenario.motion.hinges().name();
         summaries.insert(name.to_owned(), results.summary.clone());
     }
     if let Some(compared) = compared {
-        say(&compared.words);
+        print_status(&compared.words);
         summaries.insert("peaks".to_owned(), compared.summary);
     }
     match study.format {
@@ -179,17 +179,17 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
     let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
-    let place = arguments.figure.printed(place);
+    let place = arguments.figure.with_picture_format(place);
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
     let origin = Origin::of_summary(&results.summary).unwrap_or_default();
-    let writer = Writer::merge(kind);
-    place.lock(writer, &origin, false)?;
+    let command = ResultsCommand::merge(kind);
+    place.lock(command, &origin, false)?;
     // Samples are merged into a folder inside that of their command.
     let around = place.path().parent();
     if let Some(around) = around.filter(|_| place.path().ends_with(kind.name)) {
-        super::warn(&writer.warnings(around, &origin));
+        super::warn(&command.warnings(around, &origin));
     }
     place.prepare(&results)?;
     place.publish()?;
@@ -201,7 +201,7 @@ fn show(results: &Results, place: &Destination, format: Format) -> Result<(), Fa
     if let Format::Json = format {
         return print(&pretty(&results.summary));
     }
-    say(&results.words);
-    say(&format!("  results in {}", place.holds(results)));
+    print_status(&results.words);
+    print_status(&format!("  results in {}", place.describe(results)));
     Ok(())
 }

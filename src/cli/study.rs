@@ -10,7 +10,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Done, Options, RUN, Rows, StudyKind};
+use archrock::studies::catalogue::{Computation, Options, RUN, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
@@ -19,7 +19,8 @@ use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 use super::figure::FigureOption;
 use super::models::ModelsOption;
 use super::progress::{
-    Display, INTERRUPTED, INTERRUPTED_CODE, left, listen_to_interrupts, pace, say, say_always,
+    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
+    progress_text, remaining_time,
 };
 use super::scenario_file::{Destination, Input, ScenarioFile};
 use super::{Failure, Format, show};
@@ -37,7 +38,7 @@ pub struct StudyArguments {
     #[command(flatten)]
     pub figure: FigureOption,
     #[command(flatten)]
-    pub work: Work,
+    pub work: WorkOptions,
     /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -45,7 +46,7 @@ pub struct StudyArguments {
 
 /// Options of long computations.
 #[derive(clap::Args, Clone, Copy, Default)]
-pub struct Work {
+pub struct WorkOptions {
     /// Number of threads [default: number of processors].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -88,7 +89,7 @@ impl From<StudyError> for Failure {
     }
 }
 
-impl Work {
+impl WorkOptions {
     /// True if only a part is requested.
     pub const fn is_part(self) -> bool {
         self.shard.is_some()
@@ -98,7 +99,9 @@ impl Work {
 impl StudyArguments {
     /// The folder for results.
     pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
-        Ok(self.figure.printed(input.results(self.out.as_deref())?))
+        Ok(self
+            .figure
+            .with_picture_format(input.results(self.out.as_deref())?))
     }
 
     /// The studies of this command.
@@ -111,7 +114,7 @@ impl StudyArguments {
 pub struct Session<'s> {
     /// The scenario file, which errors about the scenario name.
     input: Option<&'s Input<'s>>,
-    work: Work,
+    work: WorkOptions,
     style: Style,
     options: Options,
     /// The files that keep the rows of results until these are published.
@@ -125,7 +128,7 @@ impl<'s> Session<'s> {
     /// The studies of a command, none of which is computed yet.
     pub const fn new(
         input: Option<&'s Input<'s>>,
-        work: Work,
+        work: WorkOptions,
         style: Style,
         options: Options,
     ) -> Self {
@@ -183,7 +186,7 @@ impl<'s> Session<'s> {
             // No row is being written, and a study with a file has all finished rows in it, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
                 display.abandon();
-                say_always(&interrupted(kind, task, progress, samples_are_kept));
+                print_always(&interrupted(kind, task, progress, samples_are_kept));
                 process::exit(INTERRUPTED_CODE);
             }
             let new = done.saturating_sub(*before);
@@ -191,7 +194,7 @@ impl<'s> Session<'s> {
             display.show(part, |elapsed| match kind == RUN {
                 true => simulated(progress, elapsed),
                 false => {
-                    let pace = pace(new, all.saturating_sub(done), elapsed);
+                    let pace = progress_text(new, all.saturating_sub(done), elapsed);
                     format!("{done} of {all} cases, {pace}")
                 }
             });
@@ -203,25 +206,25 @@ impl<'s> Session<'s> {
         };
         let rows = if kind == RUN {
             let rotations = self.options.run.no_rotations.then(stdout);
-            Rows::Stream(&mut open, rotations, &mut watch)
+            RowSource::Stream(&mut open, rotations, &mut watch)
         } else {
-            Rows::Compute(runner, task, &mut watch)
+            RowSource::Compute(runner, task, &mut watch)
         };
         let done = kind.compute(scenarios, &self.options, self.style, rows);
         drop(shown);
         let done = done.map_err(|error| match (error, self.input) {
-            (StudyError::Scenario(message), Some(input)) => input.wrong(message),
+            (StudyError::Scenario(message), Some(input)) => input.input_error(message),
             (error, _) => error.into(),
         });
         match done? {
-            Done::Whole(results, part) => {
+            Computation::Complete(results, part) => {
                 place.map_or(Ok(()), |place| place.prepare(&results))?;
                 self.pending.extend(part);
                 Ok(Some(results))
             }
-            Done::Part { part, cases, all } => {
+            Computation::Partial { part, cases, all } => {
                 let path = part.path().display();
-                say(&format!(
+                print_status(&format!(
                     "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
                 ));
                 Ok(None)
@@ -240,7 +243,7 @@ impl<'s> Session<'s> {
         let found = self.compute(kind, slice::from_ref(scenario), Some(place))?;
         self.publish(Some(place))?;
         found.map_or(Ok(()), |found| {
-            say(&format!("results in {}", place.holds(&found)));
+            print_status(&format!("results in {}", place.describe(&found)));
             show(&found, format)
         })
     }
@@ -267,7 +270,7 @@ impl<'s> Session<'s> {
         let (mut words, mut of_models) = (String::new(), Vec::new());
         let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
         for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
-            let model = scenario.motion.words();
+            let model = scenario.motion.label();
             let place = place.of_model(scenario, several).within(samples.name);
             let scenario = slice::from_ref(scenario);
             let Some(found) = self.compute(samples, scenario, Some(&place))? else {
@@ -276,12 +279,12 @@ impl<'s> Session<'s> {
             if several {
                 words += &format!("{model}\n");
             }
-            let (found_words, place) = (&found.words, place.holds(&found));
+            let (found_words, place) = (&found.words, place.describe(&found));
             words += &format!("  {found_words}\n  results in {place}\n");
             of_models.push((model, found));
         }
         let reports = of_models.iter().map(|(_, found)| found.words.clone());
-        self.options.run.samples = reports.collect();
+        self.options.run.uncertainty = reports.collect();
         if self.work.is_part() && has_samples {
             return Ok(None);
         }
@@ -331,7 +334,7 @@ impl<'s> Session<'s> {
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peaks::results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
-        place.of_models().prepare(&results)?;
+        place.models_folder().prepare(&results)?;
         Ok(Some(results))
     }
 }
@@ -365,7 +368,7 @@ fn simulated(Progress { done, all }: Progress, elapsed: Duration) -> String {
         return "repeating the history with other steps".to_owned();
     }
     let [time_s, end_s] = [done, all].map(|time| time as f64 / 1e3);
-    let left = left(time_s / end_s, elapsed);
+    let left = remaining_time(time_s / end_s, elapsed);
     format!("{time_s:.2} of {end_s} s simulated, {left} left")
 }
 

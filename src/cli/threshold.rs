@@ -2,13 +2,13 @@
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 use archrock::studies::threshold::along::{AlongOptions, KeyRange};
 use archrock::studies::threshold::{Factors, check};
 
 use super::models::warn_of;
-use super::progress::say;
+use super::progress::print_status;
 use super::scenario_file::{Destination, Input, SuiteOption};
 use super::study::{Session, StudyArguments};
 use super::{Failure, Format, print, print_all};
@@ -66,11 +66,11 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     Destination::check_distinct(&tasks)?;
     let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
-        say(ignored);
+        print_status(ignored);
     }
     let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    root.lock(Writer::of(THRESHOLD), &origin, study.work.is_part())?;
+    root.lock(ResultsCommand::of(THRESHOLD), &origin, study.work.is_part())?;
     let mut all = Vec::new();
     for (_, scenarios, place) in &tasks {
         super::warn(&scenarios[0].unlikely());
@@ -78,7 +78,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         let found = session.with_samples(kinds, scenarios, place.as_ref())?;
         session.publish(place.as_ref())?;
         if let (Some(found), Some(place)) = (&found, place) {
-            say(&format!("results in {}", place.holds(found)));
+            print_status(&format!("results in {}", place.describe(found)));
         }
         all.push(found.unwrap_or_default());
     }
@@ -100,10 +100,10 @@ fn thresholds_along(
     let scenario = study.models.read_one(input, "--along")?;
     if scenario.uncertain.is_some() {
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
-        return Err(input.wrong(message));
+        return Err(input.input_error(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let (place, writer) = (study.place(input)?, Writer::of(THRESHOLD_ALONG));
-    place.lock(writer, &Origin::of(&scenario), study.work.is_part())?;
+    let (place, command) = (study.place(input)?, ResultsCommand::of(THRESHOLD_ALONG));
+    place.lock(command, &Origin::of(&scenario), study.work.is_part())?;
     session.finish(THRESHOLD_ALONG, &scenario, &place, study.format)
 }

@@ -13,12 +13,12 @@ pub struct Scale {
     pub low: f64,
     /// Value at the end of the axis.
     pub high: f64,
-    steps: Steps,
+    spacing: TickSpacing,
 }
 
 /// The spacing of ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Steps {
+enum TickSpacing {
     /// Equal differences.
     Linear(f64),
     /// About equal ratios; on the axis equal ratios have equal distances.
@@ -45,7 +45,7 @@ impl Scale {
         Self {
             low: (low / step + 1e-9).floor() * step,
             high: (high / step - 1e-9).ceil() * step,
-            steps: Steps::Linear(step),
+            spacing: TickSpacing::Linear(step),
         }
     }
 
@@ -55,7 +55,7 @@ impl Scale {
         Self {
             low,
             high,
-            steps: Steps::Linear(tick_step(high - low, ticks)),
+            spacing: TickSpacing::Linear(tick_step(high - low, ticks)),
         }
     }
 
@@ -65,15 +65,15 @@ impl Scale {
         Self {
             low: low.max(f64::MIN_POSITIVE),
             high,
-            steps: Steps::Logarithmic,
+            spacing: TickSpacing::Logarithmic,
         }
     }
 
     /// Returns the positions of the ticks with their texts.
     pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
-        match self.steps {
-            Steps::Linear(step) => self.linear_ticks(step),
-            Steps::Logarithmic => self.logarithmic_ticks(),
+        match self.spacing {
+            TickSpacing::Linear(step) => self.linear_ticks(step),
+            TickSpacing::Logarithmic => self.logarithmic_ticks(),
         }
     }
 
@@ -122,16 +122,16 @@ impl Scale {
     /// Returns the value at a fraction of the axis, from 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
-        match self.steps {
-            Steps::Linear(_) => self.low + part * (self.high - self.low),
-            Steps::Logarithmic => self.low * (self.high / self.low).powf(part),
+        match self.spacing {
+            TickSpacing::Linear(_) => self.low + part * (self.high - self.low),
+            TickSpacing::Logarithmic => self.low * (self.high / self.low).powf(part),
         }
     }
 
     fn part(&self, value: f64) -> f64 {
-        match self.steps {
-            Steps::Linear(_) => (value - self.low) / (self.high - self.low),
-            Steps::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
+        match self.spacing {
+            TickSpacing::Linear(_) => (value - self.low) / (self.high - self.low),
+            TickSpacing::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
         }
     }
 }

@@ -153,10 +153,10 @@ fn files(record: &Record) -> String {
 
 fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
     if scenario.motion.hinges().has_joints() {
-        return scenario.motion.words().to_owned();
+        return scenario.motion.label().to_owned();
     }
     let name = match scenario.structure.thrusts() {
-        true => scenario.motion.words(),
+        true => scenario.motion.label(),
         false => "Housner's block",
     };
     match scenario.motion.impact().model {

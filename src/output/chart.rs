@@ -2,7 +2,7 @@
 
 use super::axes::{Axes, Scale};
 use super::figure::Figure;
-use super::sheet::{Height, Key, Sheet};
+use super::sheet::{Key, PartHeight, Sheet};
 use super::svg::{Drawing, Frame, Stroke};
 
 /// Distance from the left side of the picture to a plot, with space for the label of the y axis.
@@ -83,7 +83,7 @@ impl Chart {
     /// Adds plot and axes to a picture. Returns the index of the plot among the parts of the picture.
     pub(crate) fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
         let figure = sheet.figure;
-        let height = Height::Plot(figure.height_px(self.height_px));
+        let height = PartHeight::Plot(figure.height_px(self.height_px));
         sheet.part(height, move |drawing, part| {
             let is_panel = self.is_panel;
             let left_px = if is_panel { PANEL_LEFT_PX } else { LEFT_PX };

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::figure::Figure;
-use super::scene::{Mark, Piece, Scene};
-use super::sheet::{Height, Sheet};
+use super::scene::{BodyPoint, Piece, Scene};
+use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::dynamics::history::OpenHinge;
@@ -40,7 +40,7 @@ const ARROW_PX: f64 = 30.0;
 
 /// Converts metres to positions on the sheet.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Place {
+pub(crate) struct SheetTransform {
     /// A point of the structure.
     pub(crate) middle_m: Vector2<f64>,
     /// Position of that point on the sheet.
@@ -49,7 +49,7 @@ pub(crate) struct Place {
     pub(crate) scale: f64,
 }
 
-impl Place {
+impl SheetTransform {
     /// Scales a box, in metres, to the height of a part of the sheet, around the horizontal position `middle`.
     pub(crate) fn over([low_m, high_m]: [Vector2<f64>; 2], middle: f64, part: Frame) -> Self {
         Self {
@@ -81,10 +81,10 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let most_px = width_px / size_m.x * size_m.y;
     let mut sheet = Sheet::new(figure, title);
     sheet.gap(12.0 + above_px);
-    let height = Height::Structure(figure.height_px(520.0), most_px);
+    let height = PartHeight::Structure(figure.height_px(520.0), most_px);
     sheet.part(height, |drawing, part| {
         let (poses, hinges) = &scene.stands;
-        let place = Place::over([low_m, high_m], left_px + 0.5 * width_px, part);
+        let place = SheetTransform::over([low_m, high_m], left_px + 0.5 * width_px, part);
         let view = View::new(scene, place, poses, hinges);
         draw_dimensions(drawing, &view.place, scene);
         supports(drawing, &view.place, scene);
@@ -106,7 +106,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
 /// A structure on a sheet, with its bodies at an instant.
 pub(crate) struct View<'a> {
     pub(crate) scene: &'a Scene,
-    pub(crate) place: Place,
+    pub(crate) place: SheetTransform,
     /// Poses of the bodies; empty for the undeformed structure.
     pub(crate) poses: &'a [Pose],
     /// Open hinges.
@@ -121,7 +121,7 @@ impl<'a> View<'a> {
     /// Makes a view of a structure to scale.
     pub(crate) const fn new(
         scene: &'a Scene,
-        place: Place,
+        place: SheetTransform,
         poses: &'a [Pose],
         hinges: &'a [OpenHinge],
     ) -> Self {
@@ -136,7 +136,7 @@ impl<'a> View<'a> {
     }
 
     /// Returns the position of a point on the sheet.
-    pub(crate) fn px(&self, mark: &Mark) -> Vector2<f64> {
+    pub(crate) fn px(&self, mark: &BodyPoint) -> Vector2<f64> {
         self.place.px(mark.moved(self.poses, self.exaggeration))
     }
 
@@ -204,7 +204,7 @@ impl<'a> View<'a> {
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
                     let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
-                    Vector2::new(self.px(&Mark { at_m, ..mark }).x, tail.y)
+                    Vector2::new(self.px(&BodyPoint { at_m, ..mark }).x, tail.y)
                 };
                 drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
             }
@@ -232,7 +232,7 @@ pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
 }
 
 /// Draws the dimensions of a structure beside it.
-pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
     let levels = levels(&scene.dimensions);
     let [low, high] = scene.frame_m().map(|corner| place.px(corner));
     for (dimension, level) in scene.dimensions.iter().zip(levels) {
@@ -269,7 +269,7 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &Place, scene: &Scen
 }
 
 /// Draws hatched ground under the supports of the structure.
-fn supports(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+fn supports(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
     let mut faces = scene.supports_m(1.0);
     let [low_m, high_m] = scene.bounds_m();
     if faces.is_empty() {
@@ -322,7 +322,7 @@ fn levels(dimensions: &[Dimension]) -> Vec<u32> {
 
 /// Draws the numbers of the joints inside the intrados, or left of a column: all, or every second, fifth, tenth and so on if there is not enough
 /// space.
-fn joint_numbers(drawing: &mut Drawing, place: &Place, scene: &Scene) {
+fn joint_numbers(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
     let joints = scene.joints_m();
     let last = joints.len().saturating_sub(1);
     let numbers: Vec<(Text, Vector2<f64>)> = joints

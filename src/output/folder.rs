@@ -437,7 +437,7 @@ mod tests {
     fn what_a_killed_run_left_goes() {
         let root = tempfile::tempdir().unwrap();
         fs::write(root.path().join(".archrock-x.csv-dead"), "half").unwrap();
-        // A folder is never one of our hidden files, whatever its name.
+        // A folder stays even if its name is that of a hidden file.
         fs::create_dir(root.path().join(".archrock-folder")).unwrap();
         let folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
         folder.complete().unwrap();
@@ -462,7 +462,7 @@ mod tests {
         }
         working.complete().unwrap();
         assert_eq!(names(root.path()), ["seal.json", "x.csv"]);
-        // Runs that write single files do not disturb each other, nor does a hidden file that one leaves behind.
+        // Runs that write single files can share a folder, also with a hidden file of an interrupted run.
         let mut one = Folder::open(root.path(), &["one.csv"]).unwrap();
         let mut two = Folder::open(root.path(), &["two.csv"]).unwrap();
         assert!(Folder::open(root.path(), &all).is_err());

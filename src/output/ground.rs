@@ -60,7 +60,7 @@ mod tests {
             &curve_g(&ground, 10.0, 2.0),
             &[&rectangle[..], &[(2.0, 0.0)]].concat(),
         );
-        // Cut off in the middle, the curve does not return to zero.
+        // If the history ends within the pulse, the curve does not return to zero.
         near(
             &curve_g(&ground, 10.0, 0.2),
             &[&rectangle[..3], &[(0.2, -0.5)]].concat(),

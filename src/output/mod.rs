@@ -115,7 +115,7 @@ mod tests {
         ] {
             assert_eq!(range_ends(ends, 3), printed);
         }
-        // Neighbouring numbers end the search.
+        // The search for decimals ends at neighbouring numbers.
         let _ = range_ends([1.0, 1.0 + f64::EPSILON], 3);
     }
 }

@@ -6,7 +6,7 @@ pub(crate) use super::text::escaped;
 use crate::scenario::shown_lines;
 
 /// Fills a template: each name between `%` signs is replaced by its text. Inserted texts are not searched for names.
-pub(crate) fn filled(template: &str, texts: &[(&str, &str)]) -> String {
+pub(crate) fn fill_template(template: &str, texts: &[(&str, &str)]) -> String {
     let mut page = String::new();
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('%') {
@@ -40,11 +40,11 @@ mod tests {
 
     #[test]
     fn places_are_filled_once() {
-        let page = filled("100 % of %A%, %B% and %C%", &[("A", "%B%"), ("B", "b")]);
+        let page = fill_template("100 % of %A%, %B% and %C%", &[("A", "%B%"), ("B", "b")]);
         assert_eq!(page, "100 % of %B%, b and %C%");
         let texts = [("A", "1"), ("B", "2")];
-        assert_eq!(filled("half of %A", &texts), "half of %A");
-        assert_eq!(filled("%A%B%C", &texts), "1B%C");
+        assert_eq!(fill_template("half of %A", &texts), "half of %A");
+        assert_eq!(fill_template("%A%B%C", &texts), "1B%C");
     }
 
     #[test]

@@ -35,7 +35,7 @@ const OVERTURNING: Stroke = Stroke::new(color::VERMILION, 1.8, "8 3 2 3");
 
 /// The states of the structure over time, for shading.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct States {
+pub(crate) struct StateHistory {
     pub(crate) start: State,
     pub(crate) changes: Vec<(f64, State)>,
 }
@@ -76,7 +76,7 @@ impl Panels {
         label: &str,
         height_px: f64,
         y: Scale,
-        states: Option<&States>,
+        states: Option<&StateHistory>,
         marks: Vec<Mark>,
     ) {
         let mut shades = Vec::new();
@@ -99,11 +99,11 @@ impl Panels {
         label: &str,
         height_px: f64,
         curves: Vec<Mark>,
-        states: Option<&States>,
+        states: Option<&StateHistory>,
     ) {
         if !curves.iter().all(Mark::is_flat) {
             let ticks = if height_px > 200.0 { 6 } else { 3 };
-            let y = around(&curves, [], ticks);
+            let y = scale_around(&curves, [], ticks);
             self.panel(label, height_px, y, states, curves);
         }
     }
@@ -113,7 +113,7 @@ impl Panels {
         &mut self,
         height_px: f64,
         subject: &Subject<'_>,
-        states: Option<&States>,
+        states: Option<&StateHistory>,
     ) {
         let points = ground::curve_g(subject.ground, subject.gravity_m_s2, self.x.high);
         let sizes_g = points.iter().map(|point| point.1.abs());
@@ -164,7 +164,11 @@ impl Panels {
 }
 
 /// Returns a scale that contains curves, further values and zero, with a small margin so that no curve coincides with the frame.
-pub(crate) fn around(curves: &[Mark], more: impl IntoIterator<Item = f64>, ticks: u32) -> Scale {
+pub(crate) fn scale_around(
+    curves: &[Mark],
+    more: impl IntoIterator<Item = f64>,
+    ticks: u32,
+) -> Scale {
     let values = curves.iter().flat_map(Mark::points).map(|point| point.1);
     let values = values.chain(more).filter(|value| value.is_finite());
     Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
@@ -193,7 +197,7 @@ const fn shade_of(state: State) -> Option<Shade> {
 
 /// Returns the shades of the states of the structure, and true if there are hops too short to distinguish. A sequence of such hops has one
 /// common shade.
-fn shade(x: Scale, figure: Figure, states: &States) -> (Vec<Mark>, bool) {
+fn shade(x: Scale, figure: Figure, states: &StateHistory) -> (Vec<Mark>, bool) {
     let (start_s, end_s) = (x.low, x.high);
     let width_px = figure.right_of(PANEL_LEFT_PX, Frame::default()).width;
     let least_s = NARROWEST_PX * (end_s - start_s) / width_px;

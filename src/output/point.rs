@@ -4,21 +4,21 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 
-use super::scene::{Mark, Scene, link, sections_rad};
+use super::scene::{BodyPoint, Scene, link, sections_rad};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::parts::Outline;
 
 /// A point of a structure. The body that carries the point may depend on the open hinges.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Point {
+pub struct StructurePoint {
     /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
-    part: Part,
+    part: PointLocation,
 }
 
 /// The part of the structure to which a point belongs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Part {
+enum PointLocation {
     /// A block, by its index.
     Block(usize),
     /// A section of a ring, in radians from the left springing.
@@ -31,7 +31,7 @@ impl Scene {
     ///
     /// # Errors
     /// When the position is outside the structure; the error is the nearest position inside.
-    pub fn point(&self, at_m: impl Into<Vector2<f64>>) -> Result<Point, Vector2<f64>> {
+    pub fn point(&self, at_m: impl Into<Vector2<f64>>) -> Result<StructurePoint, Vector2<f64>> {
         let at_m = at_m.into();
         let pieces = self.pieces(&[]).into_iter().enumerate();
         let near = pieces.map(|(index, piece)| (index, nearest(&piece.outline_m, at_m)));
@@ -49,21 +49,21 @@ impl Scene {
                 // Points just below the left springing have angles down to this one; smaller angles are beyond the right springing.
                 let before_rad = 0.5 * (ring.embrace_rad - TAU);
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };
-                Part::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad))
+                PointLocation::Section((angle_rad + turns).clamp(0.0, ring.embrace_rad))
             }
-            Outline::Block(_) | Outline::Row(_) => Part::Block(index),
+            Outline::Block(_) | Outline::Row(_) => PointLocation::Block(index),
         };
-        Ok(Point { at_m, part })
+        Ok(StructurePoint { at_m, part })
     }
 
     /// Returns a point with the body that carries it while these hinges are open.
     #[must_use]
-    pub fn mark(&self, point: &Point, hinges: &[OpenHinge]) -> Mark {
+    pub fn body_point(&self, point: &StructurePoint, hinges: &[OpenHinge]) -> BodyPoint {
         let body = match (point.part, &self.outline) {
-            (Part::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),
-            (Part::Block(block), _) => self.body_of(block, hinges),
+            (PointLocation::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),
+            (PointLocation::Block(block), _) => self.body_of(block, hinges),
         };
-        Mark {
+        BodyPoint {
             body,
             at_m: point.at_m,
         }

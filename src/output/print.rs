@@ -183,7 +183,7 @@ mod tests {
         }
     }
 
-    /// Runs with `cargo test --features print`.
+    /// Requires `cargo test --features print`.
     #[cfg(feature = "print")]
     #[test]
     fn a_picture_keeps_its_size_and_its_texts() {
@@ -216,7 +216,7 @@ mod tests {
             pixels.all(|pixel| pixel.alpha() == 255),
             "no edge shows through"
         );
-        // Black on white: the text is there.
+        // Dark pixels show that the text is drawn.
         let empty = drawn("");
         assert!(png.len() > 1000 + PictureFormat::Png.of_picture(&empty).unwrap().len());
     }

@@ -4,7 +4,7 @@ use super::axes::Scale;
 use super::chart::{Mark, Shape};
 use super::envelope::Envelope;
 use super::figure::Figure;
-use super::panels::{Panels, around};
+use super::panels::{Panels, scale_around};
 use super::sheet::{Key, Sign};
 use super::svg::{Stroke, color};
 use crate::dynamics::ground::intensity::Intensity;
@@ -39,7 +39,7 @@ pub fn draw(
         let curve = Mark::curve(name, CURVE, envelope.points());
         let y = match name {
             "arias" => Scale::around([0.0, 1.0], 4),
-            _ => around(std::slice::from_ref(&curve), [], 4),
+            _ => scale_around(std::slice::from_ref(&curve), [], 4),
         };
         let range = Shape::Range(intensity.significant_s, SHADE.1);
         let shade = Mark::new("significant", Stroke::new(SHADE.0, 0.0, ""), range);

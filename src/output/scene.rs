@@ -37,21 +37,21 @@ pub struct Scene {
 
 /// The compressed part of a joint, from the intrados to the extrados.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pressed {
+pub struct CompressedJoint {
     /// Ends of the compressed part.
-    pub ends: [Mark; 2],
+    pub ends: [BodyPoint; 2],
     /// Compressive stresses at the ends, in Pa.
     pub stresses_pa: [f64; 2],
     /// Unit normal of the undeformed joint, towards the block after it.
     pub across: Vector2<f64>,
 }
 
-impl Pressed {
+impl CompressedJoint {
     /// Returns the stress as a wedge on the joint, with this height in metres per Pa.
     #[must_use]
-    pub fn wedge(&self, metres_per_pa: f64) -> [Mark; 4] {
+    pub fn wedge(&self, metres_per_pa: f64) -> [BodyPoint; 4] {
         let [first, last] = self.ends;
-        let top = |end: Mark, stress_pa: f64| Mark {
+        let top = |end: BodyPoint, stress_pa: f64| BodyPoint {
             at_m: end.at_m + self.across * (stress_pa * metres_per_pa),
             ..end
         };
@@ -71,14 +71,14 @@ pub struct Piece {
 
 /// A point that moves with a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mark {
+pub struct BodyPoint {
     /// Index of the body; `None` for a point that does not move.
     pub body: Option<usize>,
     /// Position in the undeformed structure, in metres.
     pub at_m: Vector2<f64>,
 }
 
-impl Mark {
+impl BodyPoint {
     /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
     /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
     #[must_use]
@@ -93,7 +93,8 @@ impl Piece {
     #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
         let (body, corners) = (self.body, self.outline_m.iter());
-        let corners = corners.map(|at_m| Mark { body, at_m: *at_m }.moved(poses, exaggeration));
+        let corners =
+            corners.map(|at_m| BodyPoint { body, at_m: *at_m }.moved(poses, exaggeration));
         corners.collect()
     }
 }
@@ -139,8 +140,8 @@ impl Scene {
 
     /// Returns the ends of the ties while these hinges are open.
     #[must_use]
-    pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[Mark; 2]> {
-        let end = |anchor: Anchor| Mark {
+    pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[BodyPoint; 2]> {
+        let end = |anchor: Anchor| BodyPoint {
             body: anchor.block.and_then(|block| self.body_of(block, hinges)),
             at_m: anchor.at_m,
         };
@@ -208,10 +209,10 @@ impl Scene {
 
     /// Returns the loads while these hinges are open, each with the position of its middle.
     #[must_use]
-    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(Mark, &PlacedLoad)> {
+    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(BodyPoint, &PlacedLoad)> {
         let loads = self.loads.iter().map(|((block, at_m), load)| {
             let (body, at_m) = (self.body_of(*block, hinges), *at_m);
-            (Mark { body, at_m }, load)
+            (BodyPoint { body, at_m }, load)
         });
         loads.collect()
     }
@@ -298,7 +299,7 @@ impl Scene {
 
     /// Returns the positions of the open hinges, as points of the body to the right of the hinge, or above it.
     #[must_use]
-    pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<Mark> {
+    pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<BodyPoint> {
         let last = hinges.len().saturating_sub(1);
         let marks = hinges.iter().enumerate();
         let marks = marks.filter_map(|(index, open)| {
@@ -306,12 +307,12 @@ impl Scene {
             // The last hinge is on the part that does not move.
             let link = (index < last).then_some(index);
             let body = if self.linked { link } else { mark.body };
-            Some(Mark { body, ..mark })
+            Some(BodyPoint { body, ..mark })
         });
         marks.collect()
     }
 
-    fn hinge(&self, hinge: Hinge) -> Option<Mark> {
+    fn hinge(&self, hinge: Hinge) -> Option<BodyPoint> {
         let (body, at_m) = match (hinge, &self.outline) {
             (Hinge::Section { angle_rad, edge }, Outline::Ring { .. }) => {
                 (None, self.on_ring_m(angle_rad, edge)?)
@@ -329,7 +330,7 @@ impl Scene {
             }
             _ => return None,
         };
-        Some(Mark { body, at_m })
+        Some(BodyPoint { body, at_m })
     }
 
     /// Returns a point on an edge of a ring, in metres; `None` for other structures.
@@ -347,21 +348,21 @@ impl Scene {
     /// Returns the corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several blocks move as one
     /// body.
     #[must_use]
-    pub fn joint(&self, joint: usize) -> Option<[Mark; 2]> {
+    pub fn joint(&self, joint: usize) -> Option<[BodyPoint; 2]> {
         match &self.outline {
             Outline::Row(_) if !self.linked => self.corners(joint),
             _ => None,
         }
     }
 
-    fn corners(&self, joint: usize) -> Option<[Mark; 2]> {
+    fn corners(&self, joint: usize) -> Option<[BodyPoint; 2]> {
         let Outline::Row(outlines_m) = &self.outline else {
             return None;
         };
         let section = self.sections.get(joint)?;
         // The support comes after the last block of an arch. If the support has moved, that block has its pose.
         let last = self.has_settled().then(|| outlines_m.len() - 1);
-        Some([-0.5, 0.5].map(|part| Mark {
+        Some([-0.5, 0.5].map(|part| BodyPoint {
             body: (joint < outlines_m.len()).then_some(joint).or(last),
             at_m: section.middle_m + section.across_m * part,
         }))
@@ -369,7 +370,7 @@ impl Scene {
 
     /// Returns the compressed parts of the elastic joints of a row; empty for rigid joints.
     #[must_use]
-    pub fn pressed(&self, sample: &Sample) -> Vec<Pressed> {
+    pub fn compressed_joints(&self, sample: &Sample) -> Vec<CompressedJoint> {
         let pressures = sample.pressures.iter().enumerate();
         pressures
             .filter_map(|(joint, pressure)| {
@@ -383,11 +384,11 @@ impl Scene {
                     (false, true) => [1.0 - pressure.contact_ratio, 1.0],
                     (false, false) => return None,
                 };
-                let at = |part: f64| Mark {
+                let at = |part: f64| BodyPoint {
                     at_m: intrados.at_m + along_m * part,
                     ..intrados
                 };
-                Some(Pressed {
+                Some(CompressedJoint {
                     ends: [at(from), at(to)],
                     stresses_pa: pressure.edge_stresses_pa,
                     across: self.across(joint)?,
@@ -436,7 +437,7 @@ impl Scene {
 
     /// Returns the thrust line of a sample, as stretches of consecutive compressed sections.
     #[must_use]
-    pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<Mark>> {
+    pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<BodyPoint>> {
         let bodies = self.bodies_of_sections(&sample.hinges);
         let sections = self.sections.iter().zip(bodies);
         let mut stretches = vec![Vec::new()];
@@ -446,7 +447,7 @@ impl Scene {
                     let ratio = ratio.clamp(-FARTHEST, FARTHEST);
                     let at_m = section.middle_m + section.across_m * ratio;
                     let last = stretches.len() - 1;
-                    stretches[last].push(Mark { body, at_m });
+                    stretches[last].push(BodyPoint { body, at_m });
                 }
                 None => stretches.push(Vec::new()),
             }

@@ -18,7 +18,7 @@ const MOST_STRETCH: f64 = 20.0;
 /// A picture to be drawn.
 pub(crate) struct Sheet<'a> {
     pub(crate) figure: Figure,
-    parts: Vec<(Height, Draw<'a>)>,
+    parts: Vec<(PartHeight, Draw<'a>)>,
 }
 
 /// Draws a part into its frame, which is as wide as the sheet.
@@ -26,7 +26,7 @@ type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
 
 /// The height of a part in pixels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Height {
+pub(crate) enum PartHeight {
     /// Texts and gaps.
     Fixed(f64),
     /// A plot, which is stretched to give the picture its height.
@@ -35,7 +35,7 @@ pub(crate) enum Height {
     Structure(f64, f64),
 }
 
-impl Height {
+impl PartHeight {
     fn at(self, stretch: f64) -> f64 {
         match self {
             Self::Fixed(height_px) => height_px,
@@ -46,7 +46,7 @@ impl Height {
 }
 
 /// A picture, and the frames of its parts.
-pub(crate) struct Drawn {
+pub(crate) struct FinishedSheet {
     pub(crate) svg: String,
     pub(crate) height_px: f64,
     pub(crate) frames: Vec<Frame>,
@@ -75,7 +75,7 @@ impl<'a> Sheet<'a> {
     /// Adds a part; returns its index.
     pub(crate) fn part(
         &mut self,
-        height: Height,
+        height: PartHeight,
         draw: impl FnOnce(&mut Drawing, Frame) + 'a,
     ) -> usize {
         self.parts.push((height, Box::new(draw)));
@@ -84,7 +84,7 @@ impl<'a> Sheet<'a> {
 
     /// Adds a gap.
     pub(crate) fn gap(&mut self, height_px: f64) {
-        self.part(Height::Fixed(height_px), |_, _| ());
+        self.part(PartHeight::Fixed(height_px), |_, _| ());
     }
 
     /// Adds a centred text with as many lines as necessary. The first baseline is `above_px` below the last part.
@@ -108,7 +108,7 @@ impl<'a> Sheet<'a> {
         let most = paragraphs.iter().map(|(_, lines)| lines.len()).max();
         let below_first = LINE_PX * most.unwrap_or(0).saturating_sub(1) as f64;
         let height_px = above_px + below_first + BELOW_TEXT_PX;
-        self.part(Height::Fixed(height_px), move |drawing, frame| {
+        self.part(PartHeight::Fixed(height_px), move |drawing, frame| {
             for (middle, lines) in paragraphs {
                 let at = Vector2::new(middle, frame.top + above_px);
                 draw_lines(drawing, at, Anchor::Middle, lines);
@@ -135,7 +135,7 @@ impl<'a> Sheet<'a> {
             placed.push((at, sign, lines));
             at += Vector2::new(advance, more);
         }
-        let height = Height::Fixed(at.y + 0.5 * LEGEND_ROW_PX);
+        let height = PartHeight::Fixed(at.y + 0.5 * LEGEND_ROW_PX);
         self.part(height, move |drawing, frame| {
             for (at, sign, lines) in placed {
                 let at = at + Vector2::new(0.0, frame.top);
@@ -147,7 +147,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Draws the picture with the height of the figure, within the limits of stretch.
-    pub(crate) fn drawn(self) -> Drawn {
+    pub(crate) fn drawn(self) -> FinishedSheet {
         let Self { figure, parts } = self;
         let height = |stretch: f64| parts.iter().map(|(height, _)| height.at(stretch)).sum();
         let stretch = stretch(&height, figure.wanted_px(height(1.0)));
@@ -163,7 +163,7 @@ impl<'a> Sheet<'a> {
             top += frame.height;
             draw(&mut drawing, frame);
         }
-        Drawn {
+        FinishedSheet {
             svg: drawing.finish([figure.width_px, top], figure.width_mm),
             height_px: top,
             frames,
@@ -306,11 +306,11 @@ mod tests {
     #[test]
     fn a_picture_has_the_height_of_its_figure() {
         let height_mm = |figure: Figure| {
-            // Two plots with a gap, and text that is not stretched.
+            // Two plots with a gap are stretched; text is not.
             let mut sheet = Sheet::new(figure, "");
-            sheet.part(Height::Plot(figure.height_px(130.0)), |_, _| ());
+            sheet.part(PartHeight::Plot(figure.height_px(130.0)), |_, _| ());
             sheet.gap(90.0);
-            sheet.part(Height::Plot(figure.height_px(260.0)), |_, _| ());
+            sheet.part(PartHeight::Plot(figure.height_px(260.0)), |_, _| ());
             let picture = sheet.finish();
             between(&picture, "height=\"", "mm").parse::<f64>().unwrap()
         };
@@ -319,7 +319,7 @@ mod tests {
             let height = format!("{wanted_mm} mm").parse().ok();
             assert!((height_mm(Figure { height, ..figure }) - wanted_mm).abs() < 1e-3);
         }
-        // It cannot be lower than its text.
+        // The height is at least that of the text.
         let height = "20mm".parse().ok();
         assert!(height_mm(Figure { height, ..figure }) > 20.0);
         for wrong in ["70", "5mm", "-7cm", "8000mm"] {

@@ -222,7 +222,7 @@ mod tests {
             numbers(["b", "c\"d"].map(String::from), |row: &Row| &row.1),
             column("e", |row: &Row| row.1[0]),
         ];
-        // Much more text than is buffered.
+        // The text is longer than the buffer.
         let mut rows: Vec<_> = (0..10_000)
             .map(|row| (row.to_string(), [0.5, f64::from(row)]))
             .collect();

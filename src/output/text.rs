@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn text_is_as_wide_as_in_helvetica() {
-        // By its published measures: H 722, e 556, l 222, l 222, o 556.
+        // Published widths of the letters: H 722, e 556, l 222, l 222, o 556.
         assert!((text_px("Hello") - 13.0 * 2.278).abs() < 1e-12);
         assert!((text_px("-0.05") - 13.0 * 2.279).abs() < 1e-12);
     }

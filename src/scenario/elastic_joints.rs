@@ -64,7 +64,7 @@ pub struct ElasticTable {
 
 impl ElasticTable {
     /// Reads `[elastic_joints]`.
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
         let softest_gpa_m = *ElasticProperties::NORMAL_STIFFNESS_PA_M.start() / GPA;
         let stiffness = within(&(softest_gpa_m..=STIFFEST_GPA_M)).because("stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints");
@@ -126,7 +126,7 @@ impl ElasticTable {
         table: &mut Table<'_>,
         structure: &Structure,
         (gravity_m_s2, end_s): (f64, f64),
-    ) -> Reading<()> {
+    ) -> ReadResult<()> {
         let (depth_m, _) = structure.depth_and_density();
         let properties = self.properties(depth_m);
         let row = structure.row().ok();
@@ -176,7 +176,7 @@ impl ElasticTable {
         table: &mut Table<'_>,
         joints: &ElasticStructure,
         end_s: f64,
-    ) -> Reading<()> {
+    ) -> ReadResult<()> {
         let step_s = ElasticJoints::default_step_s(joints);
         let stable_s = joints.stable_step_s();
         match self.longest_step_s {

@@ -14,14 +14,14 @@ pub struct ScenarioError {
     /// Name of the file as the caller gave it, or the assignment after `--set`.
     pub file: String,
     /// Position in the file; `None` for an assignment, or if the file cannot be read.
-    pub place: Option<Place>,
+    pub place: Option<TextPosition>,
     /// The wrong key and value, and the allowed values.
     pub message: String,
 }
 
 /// A position in a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct TextPosition {
     /// Line, from 1.
     pub line: usize,
     /// Column in characters, from 1.
@@ -29,7 +29,7 @@ pub struct Place {
 }
 
 /// Returns the position before a message.
-fn before(place: Option<&Place>) -> String {
+fn before(place: Option<&TextPosition>) -> String {
     place.map_or_else(String::new, |place| {
         format!("{}:{}:", place.line, place.column)
     })
@@ -68,7 +68,7 @@ impl ScenarioErrors {
         faults.sort_by_key(|fault| (fault.text, fault.offset));
         // A single pass over the text for all faults: a malicious file can have very many.
         let mut chars = text.char_indices().peekable();
-        let mut place = Place { line: 1, column: 1 };
+        let mut place = TextPosition { line: 1, column: 1 };
         let errors = faults.into_iter().map(|fault| {
             // Keys may contain control characters.
             let message = shown(&fault.message);

@@ -33,7 +33,7 @@ impl FreeTable {
 }
 
 /// Reads `[free_hinges]`; the table may be empty.
-pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
+pub(super) fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
     let step_s = within(&RowOptions::STEP_S);
     let coefficient = within(&RowOptions::FRICTION_COEFFICIENT);
     let options = RowOptions {
@@ -48,7 +48,11 @@ pub(super) fn read(table: &mut Table<'_>) -> Reading<RowOptions> {
 }
 
 /// Rejects a coefficient of friction with which the structure slides on its moved springings. [`carries`] checks the undeformed structure.
-pub(super) fn holds(table: &mut Table<'_>, structure: &Structure, free: &FreeTable) -> Reading<()> {
+pub(super) fn holds(
+    table: &mut Table<'_>,
+    structure: &Structure,
+    free: &FreeTable,
+) -> ReadResult<()> {
     match free.model(structure) {
         Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
             let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";

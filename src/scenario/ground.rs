@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::error::ScenarioErrors;
 use super::prelude::*;
-use super::record::{Known, MAX_ACCELERATION_G, Record, free_fall};
+use super::record::{KnownRecords, MAX_ACCELERATION_G, Record, free_fall};
 use super::source::Source;
 use super::table;
 use crate::argument::{self, ArgumentError};
@@ -45,7 +45,7 @@ impl Ground {
             let missing =
                 "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]";
             table.refuse_all(ground.is_none(), missing)?;
-            ground.map(|(ground, _)| ground).ok_or(Reported)
+            ground.map(|(ground, _)| ground).ok_or(FaultRecorded)
         })
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
@@ -68,7 +68,10 @@ impl Ground {
     }
 
     /// Reads `[ground]` and makes the motion. `[ground]` contains one table named after its kind, so that kinds may have different keys.
-    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        known: KnownRecords<'_>,
+    ) -> ReadResult<(Self, GroundMotion)> {
         let mut found = None;
         for &kind in Pulse::ALL {
             let pulse = table.table(kind.name(), |table| PulseGround::read(table, kind, known));
@@ -79,7 +82,7 @@ impl Ground {
         let kinds: Vec<_> = kinds.chain([RECORD]).collect();
         table.relate(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
-        found.or(record).ok_or(Reported)
+        found.or(record).ok_or(FaultRecorded)
     }
 }
 
@@ -139,7 +142,11 @@ impl PulseGround {
             .expect(IN_RANGE)
     }
 
-    fn read(table: &mut Table<'_>, kind: Pulse, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
+    fn read(
+        table: &mut Table<'_>,
+        kind: Pulse,
+        known: KnownRecords<'_>,
+    ) -> ReadResult<(Self, GroundMotion)> {
         let (is_train, periods) = (kind.is_wave_train(), WaveTrain::default().cycles);
         let has_cycles = kind == Pulse::WindowedSine;
         let pulse = Self {

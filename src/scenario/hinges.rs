@@ -20,7 +20,7 @@ pub struct ModelEntry {
     /// Scenario table with the options of the model.
     pub table: &'static str,
     /// Name of the model in sentences.
-    pub words: &'static str,
+    pub label: &'static str,
     /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
     pub has_joints: bool,
     /// True: blocks and joints are rigid. False: joints have a stiffness.
@@ -36,7 +36,7 @@ pub const MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "four_links",
         table: "impact",
-        words: "four links",
+        label: "four links",
         has_joints: false,
         is_rigid: true,
         ignored: None,
@@ -45,7 +45,7 @@ pub const MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "free_hinges",
         table: "free_hinges",
-        words: "free hinges",
+        label: "free hinges",
         has_joints: true,
         is_rigid: true,
         ignored: Some("[impact] is ignored: with free hinges impacts follow from the blocks"),
@@ -54,7 +54,7 @@ pub const MODELS: [ModelEntry; 3] = [
     ModelEntry {
         name: "elastic_joints",
         table: "elastic_joints",
-        words: "elastic joints",
+        label: "elastic joints",
         has_joints: true,
         is_rigid: false,
         ignored: Some("[impact] is ignored: elastic joints have no impacts"),

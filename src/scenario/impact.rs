@@ -11,7 +11,7 @@ const MODELS: [ImpactModel; 4] = [
     ImpactModel::Prescribed { restitution: 0.0 },
 ];
 /// Reads `[impact]`.
-pub(super) fn read(table: &mut Table<'_>) -> Reading<ImpactLaw> {
+pub(super) fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
     let names = MODELS.map(|model| model.name());
     let name = table.or("model", &one_of(&names, |name| name), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);

@@ -16,7 +16,7 @@ pub(super) fn read(
     table: &mut Table<'_>,
     structure: Option<&Structure>,
     hinges: Hinges,
-) -> Reading<Initial> {
+) -> ReadResult<Initial> {
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
                  [initial] out";
     table.refuse_all(!hinges.model().is_rigid, wrong)?;

@@ -9,13 +9,13 @@ use super::prelude::*;
 use super::record::{Format, Layout, Series};
 
 /// The files that keys of a table name, and their format.
-pub(super) struct Listing {
-    files: Vec<Listed>,
+pub(super) struct RecordListing {
+    files: Vec<ListedFile>,
     layout: Layout,
 }
 
 /// A record file.
-struct Listed {
+struct ListedFile {
     /// The key that names the file.
     key: &'static str,
     file: String,
@@ -24,7 +24,7 @@ struct Listed {
     format: Format,
 }
 
-impl Listing {
+impl RecordListing {
     /// Finds the files that match the patterns of the keys, and reads the keys that describe tables. `format` applies to all files; without it
     /// the file extensions determine the formats.
     pub(super) fn read(
@@ -55,10 +55,10 @@ impl Listing {
         self,
         table: &mut Table<'_>,
         accept: impl Fn(&Series) -> Result<(), String>,
-    ) -> Reading<Vec<(&'static str, Series)>> {
+    ) -> ReadResult<Vec<(&'static str, Series)>> {
         let layout = self.layout;
-        let read = |listed: Listed| {
-            let Listed { key, file, .. } = listed;
+        let read = |listed: ListedFile| {
+            let ListedFile { key, file, .. } = listed;
             let mut own = layout.clone();
             if listed.format != layout.format {
                 own = Layout::new(listed.format);
@@ -104,7 +104,7 @@ fn list(
     table: &mut Table<'_>,
     (key, patterns): (&'static str, &[String]),
     format: Option<Format>,
-) -> Vec<Listed> {
+) -> Vec<ListedFile> {
     let mut found = BTreeMap::new();
     // A file with several names counts once.
     let mut seen = BTreeSet::new();
@@ -125,7 +125,7 @@ fn list(
             let wrong = format!("names {}, which {wrong}", shown(&file));
             table.wrong_element(key, element, wrong)
         });
-        Some(Listed {
+        Some(ListedFile {
             key,
             format: format.ok()?,
             file,

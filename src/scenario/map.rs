@@ -98,7 +98,7 @@ impl Map {
         table: &mut Table<'_>,
         structure: Option<&Structure>,
         (hinges, motion): (Hinges, Option<&Motion>),
-    ) -> Reading<Self> {
+    ) -> ReadResult<Self> {
         let repeat = table.or(REPEAT, &switch(), false);
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
         let _ = table.refuse(repeat && !hinges.has_joints(), REPEAT, wrong);

@@ -49,7 +49,7 @@ pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
     pointed.or(elliptic).or(basket).or(blocks)
 }
 
-fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
+fn read_dimensions(table: &mut Table<'_>) -> ReadResult<Dimensions> {
     Ok(Dimensions {
         span_m: table.required("span_m", &MAGNITUDE),
         rise_m: table.required("rise_m", &MAGNITUDE),
@@ -62,7 +62,7 @@ fn read_dimensions(table: &mut Table<'_>) -> Reading<Dimensions> {
     })
 }
 
-fn read_blocks(table: &mut Table<'_>) -> Reading<GivenBlocks> {
+fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let joints_file = table.required("joints", &text());
     let outlines_file = table.optional("outlines", &text());
     let kinds = one_of(Supports::ALL, Supports::name);
@@ -185,7 +185,7 @@ pub(super) struct Additions {
 }
 
 impl Additions {
-    pub fn read(table: &mut Table<'_>) -> Reading<Self> {
+    pub fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let before = table.faults();
         let read = Self {
             piers: table.table("piers", read_piers).unwrap_or_default(),
@@ -193,10 +193,10 @@ impl Additions {
             loads: table.tables("load", read_load),
             ties: TieTable::read_all(table),
         };
-        ensure(table.faults() == before, || Reported).map(|()| read)
+        ensure(table.faults() == before, || FaultRecorded).map(|()| read)
     }
 
-    pub fn is_nothing(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.is_ties_at_most() && self.ties.is_empty()
     }
 
@@ -205,7 +205,7 @@ impl Additions {
     }
 
     /// Records that the additions do not fit a structure of this kind.
-    pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> Reported {
+    pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> FaultRecorded {
         let key = match self {
             _ if !self.piers.are_none() => "piers",
             Self { fill: Some(_), .. } => "fill",
@@ -220,7 +220,7 @@ impl Additions {
         table: &mut Table<'_>,
         shape: Shape,
         gravity_m_s2: f64,
-    ) -> Reading<Masonry> {
+    ) -> ReadResult<Masonry> {
         let key = shape.name();
         let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
@@ -239,7 +239,12 @@ impl Additions {
         }
     }
 
-    fn wrong(&self, table: &mut Table<'_>, shape: &'static str, error: &MasonryError) -> Reported {
+    fn wrong(
+        &self,
+        table: &mut Table<'_>,
+        shape: &'static str,
+        error: &MasonryError,
+    ) -> FaultRecorded {
         let allowed = |error: &ArgumentError| format!("is not allowed; must be {}", error.allowed);
         match error {
             MasonryError::Shape(error) => {
@@ -275,7 +280,7 @@ fn stands_without_ties(masonry: &Masonry) -> bool {
 }
 
 /// Reads `[piers]`. Its keys hold for both piers; `[piers.left]` and `[piers.right]` may override them.
-fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
+fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     let both = ["height_m", "width_m", "density_kg_m3"].map(|key| {
         let value = table.optional(key, &MAGNITUDE);
         // A wrong value must not be reported as missing.
@@ -326,7 +331,7 @@ fn read_piers(table: &mut Table<'_>) -> Reading<Piers> {
     })
 }
 
-fn read_fill(table: &mut Table<'_>) -> Reading<Fill> {
+fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
@@ -335,12 +340,12 @@ fn read_fill(table: &mut Table<'_>) -> Reading<Fill> {
     Ok(Fill {
         level: level
             .or(above_crown_m.map(FillLevel::AboveCrown))
-            .ok_or(Reported)?,
+            .ok_or(FaultRecorded)?,
         density_kg_m3,
     })
 }
 
-fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
+fn read_load(table: &mut Table<'_>) -> ReadResult<PlacedLoad> {
     Ok(PlacedLoad {
         mass_kg: table.required("mass_kg", &within(&(1e-6..=1e15))),
         x_m: table.required("x_m", &within(&(-1e6..=1e6))),
@@ -349,7 +354,7 @@ fn read_load(table: &mut Table<'_>) -> Reading<PlacedLoad> {
 }
 
 /// Records that the masonry collapses under its own weight, with remedies.
-fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Reported {
+fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> FaultRecorded {
     let shape = masonry.shape.name();
     let falls = format!(
         "cannot carry its own weight: it opens at joints {joints} (0: the left base or springing)"

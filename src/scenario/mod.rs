@@ -73,7 +73,7 @@ use crate::mechanics::four_links::FourLinkError;
 pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ElasticTable;
-pub use error::{Place, ScenarioError, ScenarioErrors};
+pub use error::{ScenarioError, ScenarioErrors, TextPosition};
 pub use free_hinges::FreeTable;
 pub use ground::{Ground, PulseGround};
 pub use hinges::{Hinges, MODELS, ModelEntry};
@@ -83,10 +83,10 @@ pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
 pub use motion::Motion;
 use prelude::*;
-use record::Known;
+use record::KnownRecords;
 pub use record::{
-    Component, Contents, Decimal, Format, Layout, LineFault, Record, Recorded, Sampling, Scaling,
-    Series, TableColumn, Times, Unit,
+    Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity, Sampling,
+    Scaling, Series, TableColumn, Times, Unit,
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
@@ -96,19 +96,20 @@ pub use source::Source;
 use span::Circular;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub use suite::{Measure, Spectral, Suite};
-pub use tie::{Between, TieTable};
+pub use tie::{TieEnds, TieTable};
 pub(crate) use toml_text::toml_text;
-pub use uncertain::{Distribution, MOST_DEVIATIONS, Spread, Uncertain, UncertainKey};
+pub use uncertain::{Distribution, DistributionForm, MAX_DEVIATIONS, Uncertain, UncertainKey};
 pub use verify::{
-    BEHAVIOUR_FACTOR, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand, Demand,
-    FreeStanding, Height, LimitState, ModeState, PointDemand, Records, Relief, StateRule, Verify,
+    BEHAVIOUR_FACTOR, Building, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand,
+    Demand, FreeStanding, LimitState, ModeState, PointDemand, Records, SiteTopography, StateRule,
+    Verify,
 };
 
 /// Changes that are made to a scenario while it is read.
 ///
 /// If `hinges` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Changes<'a> {
+pub struct ReadOptions<'a> {
     /// The model of motion; `None` if the tables of the scenario choose it.
     pub hinges: Option<Hinges>,
     /// Values that replace those in the text. If a key is set twice, the later value counts.
@@ -222,7 +223,7 @@ impl Scenario {
     ///
     /// All faults of the text and of its records. Parsing stops after twenty lines that are not TOML.
     pub fn parse(text: &str, name: &str) -> Result<Self, ScenarioErrors> {
-        Self::of(&Source::of_text(text, name), &Changes::default())
+        Self::of(&Source::of_text(text, name), &ReadOptions::default())
     }
 
     /// Reads a scenario file.
@@ -231,16 +232,16 @@ impl Scenario {
     ///
     /// As [`Scenario::parse`] and [`Source::of_file`].
     pub fn read(path: &Path) -> Result<Self, ScenarioErrors> {
-        Self::of(&Source::of_file(path)?, &Changes::default())
+        Self::of(&Source::of_file(path)?, &ReadOptions::default())
     }
 
     /// Returns the JSON schema of scenarios for editors: all tables and keys with their rules and defaults.
     #[must_use]
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
-        let changes = Changes {
+        let changes = ReadOptions {
             hinges: Some(Hinges::Four),
-            ..Changes::default()
+            ..ReadOptions::default()
         };
         let mut schema = table::describe(|table| Self::read_table(table, &[], &changes));
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
@@ -254,7 +255,7 @@ impl Scenario {
     ///
     /// As [`Scenario::parse`], and when a change does not fit the scenario. An error in an assignment has the assignment instead of the file,
     /// and no line.
-    pub fn of(source: &Source, changes: &Changes<'_>) -> Result<Self, ScenarioErrors> {
+    pub fn of(source: &Source, changes: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
         table::read_text((text, folder), changes.set, |table| {
             let mut scenario = Self::read_table(table, &[], changes)?;
@@ -268,7 +269,11 @@ impl Scenario {
     }
 
     /// Reads a scenario. `known` are records that need not be read from their files again.
-    fn read_table(table: &mut Table<'_>, known: &[Series], changes: &Changes<'_>) -> Reading<Self> {
+    fn read_table(
+        table: &mut Table<'_>,
+        known: &[Series],
+        changes: &ReadOptions<'_>,
+    ) -> ReadResult<Self> {
         let title = table.optional("title", &text());
         let motion = motion::Tables::read(table, changes.hinges, changes.statics);
         let hinges = motion.hinges;
@@ -278,7 +283,7 @@ impl Scenario {
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2);
-        let shaking = Shaking::read(table, known, changes.statics);
+        let shaking = GroundInput::read(table, known, changes.statics);
         let motion = motion.complete(table);
         let right_foot = shaking.as_ref().ok().and_then(|it| it.right_foot.as_ref());
         let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
@@ -383,7 +388,7 @@ impl Scenario {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         records
             .map(|series| {
-                let record = suite::shaking(series, Scaling::Factor(1.0));
+                let record = suite::scaled_record(series, Scaling::Factor(1.0));
                 let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
                 (series.file.clone(), scenario)
             })
@@ -393,7 +398,7 @@ impl Scenario {
     /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
     #[must_use]
     pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
-        suite::shaking(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
+        suite::scaled_record(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
 
     /// Makes the model of motion of the structure.
@@ -586,7 +591,7 @@ impl Scenario {
 }
 
 /// The ground motion of a scenario, read from `[ground]`.
-struct Shaking {
+struct GroundInput {
     ground: Option<Ground>,
     right_foot: Option<RightFoot>,
     /// Motion of the left foot.
@@ -595,8 +600,8 @@ struct Shaking {
     unread: Option<Value>,
 }
 
-impl Shaking {
-    fn read(table: &mut Table<'_>, known: Known<'_>, statics: bool) -> Reading<Self> {
+impl GroundInput {
+    fn read(table: &mut Table<'_>, known: KnownRecords<'_>, statics: bool) -> ReadResult<Self> {
         let faults = table.faults();
         let mut right_foot = Ok(None);
         let mut ground = table.given_table("ground", |table| {

@@ -44,8 +44,8 @@ impl Motion {
 
     /// Returns the name of the model in sentences.
     #[must_use]
-    pub const fn words(&self) -> &'static str {
-        self.hinges().model().words
+    pub const fn label(&self) -> &'static str {
+        self.hinges().model().label
     }
 
     /// Returns the name of the model of a structure in results.
@@ -142,7 +142,7 @@ impl Motion {
         table: &mut Table<'_>,
         structure: &Structure,
         until: Option<(f64, f64)>,
-    ) -> Reading<()> {
+    ) -> ReadResult<()> {
         if let Some(movements) = self.supports() {
             supports::check(table, structure, movements)?;
         }
@@ -222,9 +222,9 @@ pub(super) struct Tables {
     pub(super) hinges: Hinges,
     /// True if the user chose the model, so that tables of other models are ignored.
     is_set: bool,
-    free_hinges: Reading<Option<RowOptions>>,
-    elastic_joints: Reading<Option<ElasticTable>>,
-    supports: Reading<Option<Movements>>,
+    free_hinges: ReadResult<Option<RowOptions>>,
+    elastic_joints: ReadResult<Option<ElasticTable>>,
+    supports: ReadResult<Option<Movements>>,
 }
 
 impl Tables {
@@ -251,7 +251,7 @@ impl Tables {
     }
 
     /// Reads the impact law. Returns the model, and true if the model ignores an `[impact]` of the text.
-    pub(super) fn complete(self, table: &mut Table<'_>) -> Reading<(Motion, bool)> {
+    pub(super) fn complete(self, table: &mut Table<'_>) -> ReadResult<(Motion, bool)> {
         let law = table.table_or_defaults("impact", impact::read);
         if !self.is_set {
             table.relate(ALONE)?;

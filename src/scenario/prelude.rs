@@ -11,5 +11,5 @@ pub(super) use super::relation::GIVE_ONE;
 pub(super) use super::relation::Relation::{self, *};
 pub(super) use super::rule::*;
 pub(super) use super::shown::shown;
-pub(super) use super::table::{Reader, Reading, Reported, Table};
+pub(super) use super::table::{FaultRecorded, ReadResult, Reader, Table};
 pub(super) use crate::argument::{plain, short};

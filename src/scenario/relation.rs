@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::error::ensure;
-use super::table::{Reading, Reported, Table};
+use super::table::{FaultRecorded, ReadResult, Table};
 
 /// A relation between the given keys of a table.
 pub(super) enum Relation<'a> {
@@ -97,17 +97,17 @@ fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
 
 impl Table<'_> {
     /// Records faults of all relations that the table violates.
-    pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
+    pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
         let before = self.faults();
         for relation in relations {
             self.describe("allOf", || relation.schema());
             relation.check(self);
         }
-        ensure(self.faults() == before, || Reported)
+        ensure(self.faults() == before, || FaultRecorded)
     }
 
     /// Records faults of all relations that the table violates. Succeeds if there are none and all values of the table are valid.
-    pub(super) fn agrees(&mut self, relations: &[Relation<'_>]) -> Reading<()> {
+    pub(super) fn agrees(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
         self.relate(relations).and(self.sound())
     }
 }

@@ -11,7 +11,7 @@
 
 use super::hinges::Hinges;
 use super::prelude::*;
-use super::record::{Known, Record};
+use super::record::{KnownRecords, Record};
 use super::structure::Structure;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
@@ -37,7 +37,7 @@ pub enum RightFoot {
 }
 
 impl RightFoot {
-    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, known: KnownRecords<'_>) -> ReadResult<Self> {
         let delay_s = table.optional("delay_s", &within(&(-1e3..=1e3)));
         let velocity_m_s = table.optional(WAVE, &within(&(-1e6..=1e6)));
         let record = table.table(RECORD, |table| Record::read(table, known));
@@ -48,7 +48,7 @@ impl RightFoot {
         let record = record.map(|(record, _)| Self::Record(Box::new(record)));
         let late = delay_s.map(Self::Late);
         let right = late.or(velocity_m_s.map(Self::Wave)).or(record);
-        right.ok_or(Reported)
+        right.ok_or(FaultRecorded)
     }
 
     /// Rejects different motions of the feet if the structure, the model or a study does not support them. `outer` is the table of the whole
@@ -58,7 +58,7 @@ impl RightFoot {
         outer: &mut Table<'_>,
         structure: Option<&Structure>,
         hinges: Hinges,
-    ) -> Reading<()> {
+    ) -> ReadResult<()> {
         if !hinges.has_joints() {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"

@@ -13,11 +13,11 @@ use crate::argument::short;
 /// A rule for a value.
 pub(super) trait Rule {
     /// Type of the value in the program.
-    type Read: Serialize;
+    type Output: Serialize;
     /// Returns the allowed values in words.
     fn allowed(&self) -> String;
     /// Reads a value. The error is a phrase that follows the value.
-    fn read(&self, value: &Value) -> Result<Self::Read, String>;
+    fn read(&self, value: &Value) -> Result<Self::Output, String>;
     /// Returns the rule as a JSON schema.
     fn schema(&self) -> Value;
 }
@@ -55,7 +55,7 @@ impl Number {
 }
 
 impl Rule for Number {
-    type Read = f64;
+    type Output = f64;
 
     fn allowed(&self) -> String {
         let why = self.2.map_or_else(String::new, |why| format!(" ({why})"));
@@ -105,13 +105,17 @@ impl Rule for Number {
 }
 
 /// Reads a value. The error is a phrase that follows the value.
-type Read<'a, T> = Box<dyn Fn(&Value) -> Result<T, String> + 'a>;
+type ReadValue<'a, T> = Box<dyn Fn(&Value) -> Result<T, String> + 'a>;
 
 /// A rule given by its parts: allowed values in words, JSON schema, and reader.
-pub(super) struct Custom<'a, T>(pub(super) String, pub(super) Value, pub(super) Read<'a, T>);
+pub(super) struct Custom<'a, T>(
+    pub(super) String,
+    pub(super) Value,
+    pub(super) ReadValue<'a, T>,
+);
 
 impl<T: Serialize> Rule for Custom<'_, T> {
-    type Read = T;
+    type Output = T;
 
     fn allowed(&self) -> String {
         self.0.clone()
@@ -127,7 +131,7 @@ impl<T: Serialize> Rule for Custom<'_, T> {
 }
 
 /// Returns the rule for an array whose elements follow a rule.
-pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
+pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("an array, each element {}", rule.allowed());
     let read = |value: &Value| {
         let elements = value.as_array().ok_or_else(|| is(value))?;
@@ -142,7 +146,7 @@ pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
 }
 
 /// Returns the rule for a value that follows a rule, or a non-empty array of such values.
-pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Read>> {
+pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("{} or an array of at least one", rule.allowed());
     let (one, list) = (rule.schema(), list(rule));
     let read = move |value: &Value| match value {
@@ -190,7 +194,7 @@ pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<
 pub(super) struct Count(pub(super) RangeInclusive<usize>, pub(super) &'static str);
 
 impl Rule for Count {
-    type Read = usize;
+    type Output = usize;
 
     fn allowed(&self) -> String {
         let (low, high) = (self.0.start(), self.0.end());

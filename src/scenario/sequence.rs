@@ -92,7 +92,7 @@ impl Sequence {
         table.optional(key, &ascending(rule)).map(Self::List)
     }
 
-    fn read_range(table: &mut Table<'_>, rule: &Number) -> Reading<Self> {
+    fn read_range(table: &mut Table<'_>, rule: &Number) -> ReadResult<Self> {
         let from = table.required("from", rule);
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);

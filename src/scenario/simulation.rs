@@ -21,7 +21,7 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let default = Request::default();
         let time_s = within(&Request::TIME_S);
         let duration_s = table.optional("duration_s", &time_s);
@@ -57,7 +57,7 @@ impl Simulation {
     }
 
     /// Checks that the output of a history with default end has at least one step and fits on a disk.
-    pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> Reading<()> {
+    pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> ReadResult<()> {
         let is_default = self.duration_s.is_none();
         let fault = rows_fault(end_s, self.output_step_s).filter(|_| is_default);
         let Some(wrong) = fault else {

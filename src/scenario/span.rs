@@ -33,7 +33,7 @@ pub(super) struct Circular {
 
 impl Circular {
     /// Reads the keys of `[arch]` that define the shape.
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let mean_radius_m = table.optional("mean_radius_m", &MAGNITUDE);
         let span_m = table.optional("span_m", &LENGTH);
         let ratio = table.optional("thickness_ratio", &THICKNESS_RATIO);
@@ -57,17 +57,17 @@ impl Circular {
         ])?;
         let embrace_deg = match (span_m, rise_m, embrace_deg) {
             (Some(span_m), Some(rise_m), _) => checked_embrace_deg(table, span_m, rise_m)?,
-            (_, _, embrace_deg) => embrace_deg.ok_or(Reported)?,
+            (_, _, embrace_deg) => embrace_deg.ok_or(FaultRecorded)?,
         };
         let radius_m = match (span_m, mean_radius_m) {
             (Some(span_m), _) => 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin(),
-            (None, radius_m) => radius_m.ok_or(Reported)?,
+            (None, radius_m) => radius_m.ok_or(FaultRecorded)?,
         };
         let to_mean = measured_at.unwrap_or(MeasuredAt::Mean).to_mean();
         let (mean_radius_m, thickness_ratio) = match (ratio, thickness_m) {
             (Some(ratio), _) => (radius_m / (1.0 - to_mean * ratio), ratio),
             (None, thickness_m) => {
-                let thickness_m = thickness_m.ok_or(Reported)?;
+                let thickness_m = thickness_m.ok_or(FaultRecorded)?;
                 let mean_radius_m = radius_m + to_mean * thickness_m;
                 (mean_radius_m, thickness_m / mean_radius_m)
             }
@@ -125,7 +125,7 @@ pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
 }
 
 /// Returns the embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.
-fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> Reading<f64> {
+fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> ReadResult<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
     let wrong = format!(
         "makes an embrace angle of {} degrees; must be from 1 to 180, which is a rise of at most half the span",

@@ -13,7 +13,7 @@
 //! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. `[ground]` is
 //! not used.
 
-use super::listing::{Listing, written};
+use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
 use super::sequence::Sequence;
@@ -109,7 +109,7 @@ const MAX_CASES: usize = 1_000_000;
 
 impl Suite {
     /// Reads `[suite]` with its records. `simulation` is `None` if `[simulation]` is faulty.
-    pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> ReadResult<Self> {
         let patterns = table.required(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
@@ -120,9 +120,9 @@ impl Suite {
         let both_signs = table.or("both_signs", &switch(), true);
         let spectral = Spectral::read(table);
         let related = table.relate(&[OneOf(&["scales", "peaks_g"], None)]);
-        let listing = Listing::read(table, &[(RECORDS, patterns)], format);
+        let listing = RecordListing::read(table, &[(RECORDS, patterns)], format);
         related.and(table.sound())?;
-        let (measure, levels) = levels.into_iter().next().ok_or(Reported)?;
+        let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
         let (values, files) = (levels.values(), listing.len());
         let cases = files * (1 + usize::from(both_signs)) * values.len();
         let wrong = format!(
@@ -152,7 +152,7 @@ impl Suite {
     /// Returns a record scaled to a level, mirrored if `mirrored`.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
         let signed = if mirrored { -level } else { level };
-        shaking(&self.records[record], self.measure.scaling(signed))
+        scaled_record(&self.records[record], self.measure.scaling(signed))
     }
 }
 
@@ -200,7 +200,7 @@ fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result
 }
 
 /// Returns the horizontal ground motion of a record.
-pub(super) fn shaking(series: &Series, scaling: Scaling) -> Record {
+pub(super) fn scaled_record(series: &Series, scaling: Scaling) -> Record {
     Record {
         component: Component::Horizontal,
         main: series.scaled(scaling),

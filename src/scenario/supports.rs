@@ -9,14 +9,14 @@ use crate::mechanics::settling::{Follower, Movement, Movements};
 const MOVEMENT_M: Number = within(&(-1e3..=1e3));
 
 /// Reads `[supports]`.
-pub(super) fn read(table: &mut Table<'_>) -> Reading<Movements> {
+pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Movements> {
     Ok(Movements {
         left: table.table("left", read_one).unwrap_or_default(),
         right: table.table("right", read_one).unwrap_or_default(),
     })
 }
 
-fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
+fn read_one(table: &mut Table<'_>) -> ReadResult<Movement> {
     Ok(Movement {
         spread_m: table.or("spread_m", &MOVEMENT_M, 0.0),
         settlement_m: table.or("settlement_m", &MOVEMENT_M, 0.0),
@@ -25,7 +25,11 @@ fn read_one(table: &mut Table<'_>) -> Reading<Movement> {
 }
 
 /// Rejects movements on which a structure of rigid blocks cannot stand. Elastic joints collapse earlier.
-pub(super) fn check(table: &mut Table<'_>, structure: &Structure, moved: Movements) -> Reading<()> {
+pub(super) fn check(
+    table: &mut Table<'_>,
+    structure: &Structure,
+    moved: Movements,
+) -> ReadResult<()> {
     // Other users of the row report its faults.
     let Ok(row) = structure.row() else {
         return Ok(());

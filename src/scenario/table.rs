@@ -19,15 +19,15 @@ use super::rule::{Rule, did_you_mean};
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reported;
+pub(super) struct FaultRecorded;
 
-/// A value, or [`Reported`] if a fault was recorded.
-pub(super) type Reading<T> = Result<T, Reported>;
+/// A value, or [`FaultRecorded`] if a fault was recorded.
+pub(super) type ReadResult<T> = Result<T, FaultRecorded>;
 
 /// Function that reads the keys of a table.
-pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> Reading<T> {}
+pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> ReadResult<T> {}
 
-impl<T, R: FnOnce(&mut Table<'_>) -> Reading<T>> Reader<T> for R {}
+impl<T, R: FnOnce(&mut Table<'_>) -> ReadResult<T>> Reader<T> for R {}
 
 /// Reads a TOML text with `read` after the assignments `set`. Returns all faults if there are any.
 pub(super) fn read_text<T>(
@@ -137,25 +137,25 @@ impl<'a> Table<'a> {
     }
 
     /// Succeeds if all values that were read are from the file.
-    pub(super) fn sound(&self) -> Reading<()> {
+    pub(super) fn sound(&self) -> ReadResult<()> {
         let is_sound = self.faults.is_empty() && !self.is_partial;
-        ensure(is_sound && self.description.is_none(), || Reported)
+        ensure(is_sound && self.description.is_none(), || FaultRecorded)
     }
 
     /// Returns the value of a key that must be given.
-    pub(super) fn required<R: Rule<Read: Default>>(&mut self, key: &str, rule: &R) -> R::Read {
+    pub(super) fn required<R: Rule<Output: Default>>(&mut self, key: &str, rule: &R) -> R::Output {
         let value = self.optional(key, rule);
         self.describe("required", || json!(key));
         self.needed(key, rule, value)
     }
 
     /// Returns the value of an optional key that other keys make necessary. `value` is the result of reading the key.
-    pub(super) fn needed<R: Rule<Read: Default>>(
+    pub(super) fn needed<R: Rule<Output: Default>>(
         &mut self,
         key: &str,
         rule: &R,
-        value: Option<R::Read>,
-    ) -> R::Read {
+        value: Option<R::Output>,
+    ) -> R::Output {
         if !self.may_give(&[key]) {
             self.wrong_itself(format!("lacks `{key}`: give {}", rule.allowed()));
         }
@@ -163,7 +163,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the value of an optional key, or `default`.
-    pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Read) -> R::Read {
+    pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Output) -> R::Output {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
             description["properties"][key]["default"] = json!(default);
@@ -172,7 +172,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the value of an optional key; `None` if it is not given or wrong.
-    pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Read> {
+    pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Output> {
         self.describe_key(key, || rule.schema());
         match rule.read(self.entry(key, false)?) {
             Ok(value) => Some(value),
@@ -189,7 +189,11 @@ impl<'a> Table<'a> {
     }
 
     /// Reads the table with this name; `None` if it is not given.
-    pub(super) fn given_table<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<Option<T>> {
+    pub(super) fn given_table<T>(
+        &mut self,
+        key: &str,
+        read: impl Reader<T>,
+    ) -> ReadResult<Option<T>> {
         match self.entry(key, true) {
             Some(Value::Object(entries)) => {
                 let path = format!("{}/{key}", self.path);
@@ -197,7 +201,7 @@ impl<'a> Table<'a> {
             }
             Some(entry) => Err(self.wrong(key, format!("is {}; must be a table", kind(entry)))),
             None if self.describes() => self.descend(key, None, read).map(Some),
-            None if self.may_give(&[key]) => Err(Reported),
+            None if self.may_give(&[key]) => Err(FaultRecorded),
             None => Ok(None),
         }
     }
@@ -234,9 +238,13 @@ impl<'a> Table<'a> {
     }
 
     /// Reads the table with this name; if it is not given, `read` gets an empty table.
-    pub(super) fn table_or_defaults<T>(&mut self, key: &str, read: impl Reader<T>) -> Reading<T> {
+    pub(super) fn table_or_defaults<T>(
+        &mut self,
+        key: &str,
+        read: impl Reader<T>,
+    ) -> ReadResult<T> {
         if self.may_give(&[key]) || self.describes() {
-            return self.given_table(key, read)?.ok_or(Reported);
+            return self.given_table(key, read)?.ok_or(FaultRecorded);
         }
         self.entry(key, true);
         self.descend(key, None, read)
@@ -343,7 +351,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the file of `key` is missing or wrong. `message` follows the key and its value.
-    pub(super) fn wrong_file(&mut self, key: &str, message: impl Display) -> Reported {
+    pub(super) fn wrong_file(&mut self, key: &str, message: impl Display) -> FaultRecorded {
         let reported = self.wrong(key, message);
         if let Some(fault) = self.faults.last_mut() {
             fault.of_file = true;
@@ -352,22 +360,31 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the value of `key` is wrong. `message` follows the key and its value.
-    pub(super) fn wrong(&mut self, key: &str, message: impl Display) -> Reported {
+    pub(super) fn wrong(&mut self, key: &str, message: impl Display) -> FaultRecorded {
         self.wrong_in(&[], key, message)
     }
 
     /// Records that the value of `key` is wrong if `when` is true.
-    pub(super) fn refuse<M: Display>(&mut self, when: bool, key: &str, message: M) -> Reading<()> {
+    pub(super) fn refuse<M: Display>(
+        &mut self,
+        when: bool,
+        key: &str,
+        message: M,
+    ) -> ReadResult<()> {
         ensure(!when, || self.wrong(key, message))
     }
 
     /// Records that the whole table is wrong if `when` is true.
-    pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> Reading<()> {
+    pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> ReadResult<()> {
         ensure(!when, || self.wrong_itself(message))
     }
 
     /// Returns the value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
-    pub(super) fn accept<T, E: Display>(&mut self, key: &str, result: Result<T, E>) -> Reading<T> {
+    pub(super) fn accept<T, E: Display>(
+        &mut self,
+        key: &str,
+        result: Result<T, E>,
+    ) -> ReadResult<T> {
         result.map_err(|wrong| self.wrong(key, wrong))
     }
 
@@ -378,7 +395,7 @@ impl<'a> Table<'a> {
         path: &[&str],
         key: &str,
         message: M,
-    ) -> Reported {
+    ) -> FaultRecorded {
         let mut around = vec![(self.path.clone(), self.entries)];
         for table in path {
             let (path, entries) = &around[around.len() - 1];
@@ -407,7 +424,12 @@ impl<'a> Table<'a> {
 
     /// Records that an element of the array of `key` is wrong; elements are counted from 0. A value that is not an array counts as
     /// its only element.
-    pub(super) fn wrong_element<M: Display>(&mut self, key: &str, at: usize, wrong: M) -> Reported {
+    pub(super) fn wrong_element<M: Display>(
+        &mut self,
+        key: &str,
+        at: usize,
+        wrong: M,
+    ) -> FaultRecorded {
         let Some(element) = self.entries.get(key).and_then(|value| value.get(at)) else {
             return self.wrong(key, wrong);
         };
@@ -425,13 +447,13 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the whole table is wrong. `message` follows its name.
-    pub(super) fn wrong_itself(&mut self, message: impl Display) -> Reported {
+    pub(super) fn wrong_itself(&mut self, message: impl Display) -> FaultRecorded {
         self.fault(self.place, format!("{} {message}", self.name))
     }
 
-    fn fault(&mut self, (text, offset): (usize, usize), message: String) -> Reported {
+    fn fault(&mut self, (text, offset): (usize, usize), message: String) -> FaultRecorded {
         self.faults.push(Fault::new(text, offset, message));
-        Reported
+        FaultRecorded
     }
 
     /// Returns the entry of a key; `None` if the file does not give it.
@@ -450,7 +472,7 @@ impl<'a> Table<'a> {
         key: &str,
         table: Option<(String, &Entries)>,
         read: impl Reader<T>,
-    ) -> Reading<T> {
+    ) -> ReadResult<T> {
         let empty = Entries::new();
         let name = match self.name.strip_suffix(']') {
             Some(parent) => format!("{parent}.{key}]"),

@@ -35,7 +35,7 @@ const NEAR_RATIO: f64 = 0.01;
 
 named! {
     /// Named ends of a tie.
-    pub enum Between {
+    pub enum TieEnds {
         /// The intrados corners of the springings.
         Springings = "springings",
     }
@@ -45,7 +45,7 @@ named! {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TieTable {
     /// Named ends; `None` if the ends are given by coordinates or height.
-    pub between: Option<Between>,
+    pub between: Option<TieEnds>,
     /// Height of a horizontal tie between the intrados on both sides, in m; `None` if the ends are given otherwise.
     pub height_m: Option<f64>,
     /// Coordinates of the first end, in m; `None` if the ends are given otherwise.
@@ -86,8 +86,8 @@ impl TieTable {
         ties
     }
 
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
-        let names = one_of(Between::ALL, Between::name);
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        let names = one_of(TieEnds::ALL, TieEnds::name);
         let stiffness = within(&(1e-3..=STIFFEST_N_M));
         let stress = within(&(1e-3..=1e5));
         let read = Self {
@@ -271,7 +271,7 @@ pub(super) fn placed(
     table: &mut Table<'_>,
     ties: &[TieTable],
     (row, springings): (&Row, Option<[usize; 2]>),
-) -> Reading<Vec<Tie>> {
+) -> ReadResult<Vec<Tie>> {
     let placed = ties.iter().enumerate().map(|(index, tie)| {
         let placed = tie.placed(row, springings);
         placed.map_err(|wrong| table.wrong_element("tie", index, wrong))
@@ -285,7 +285,7 @@ pub(super) fn tied_column(
     ties: &[TieTable],
     column: Column,
     gravity_m_s2: f64,
-) -> Reading<Column> {
+) -> ReadResult<Column> {
     if ties.is_empty() {
         return Ok(column);
     }

@@ -19,7 +19,7 @@ use crate::bisection::{Width, bisect, middle};
 
 named! {
     /// Distribution of a number about the value in the scenario.
-    pub enum Distribution {
+    pub enum DistributionForm {
         /// Normal distribution, with that value as its mean.
         Normal = "normal",
         /// Lognormal distribution, with that value as its median; the deviation is that of the logarithm.
@@ -30,7 +30,7 @@ named! {
 /// Distribution of an uncertain number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Spread {
+pub enum Distribution {
     /// Uniform distribution over a range.
     Range {
         /// The smallest value.
@@ -40,17 +40,17 @@ pub enum Spread {
         /// Spacing: the values or their logarithms are uniformly distributed.
         spacing: Spacing,
     },
-    /// Distribution about the value in the scenario, truncated at [`MOST_DEVIATIONS`].
+    /// Distribution about the value in the scenario, truncated at [`MAX_DEVIATIONS`].
     About {
         /// Standard deviation, in the unit of the key; that of the natural logarithm for a lognormal distribution.
         deviation: f64,
         /// The form of the distribution.
-        distribution: Distribution,
+        distribution: DistributionForm,
     },
 }
 
 /// Number of standard deviations at which distributions are truncated.
-pub const MOST_DEVIATIONS: f64 = 3.0;
+pub const MAX_DEVIATIONS: f64 = 3.0;
 
 /// An uncertain number of a scenario.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub struct UncertainKey {
     /// Key of the number: `table.key`.
     pub key: String,
     /// Distribution of its values.
-    pub spread: Spread,
+    pub distribution: Distribution,
     /// Value in the scenario; `None` if the scenario has no value.
     pub own: Option<f64>,
 }
@@ -83,29 +83,29 @@ const SAMPLES: Count = Count(1..=65_536, "one sample");
 const SEED: Count = Count(0..=u32::MAX as usize, "the first");
 /// Largest number of keys, because the sequence has that many dimensions.
 const MAX_KEYS: usize = 256;
-const SPREAD: &str = "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
+const DISTRIBUTION: &str = "must be a range, such as { from = 0.5, to = 0.8 }, or a deviation from the scenario's value, such as \
                       { deviation = 0.003 }";
 
-impl Spread {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
+impl Distribution {
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let from = table.optional("from", &ANY_NUMBER);
         let to = table.optional("to", &ANY_NUMBER);
         let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
         let deviation = table.optional("deviation", &above(0.0, 1e12));
-        let distributions = one_of(Distribution::ALL, Distribution::name);
+        let distributions = one_of(DistributionForm::ALL, DistributionForm::name);
         let distribution = table.optional("distribution", &distributions);
         let relations = [
-            OneOf(&["from", "deviation"], Some(SPREAD)),
+            OneOf(&["from", "deviation"], Some(DISTRIBUTION)),
             Together(&["from", "to"]),
             Requires("spacing", "from", " beside it"),
             Requires("distribution", "deviation", " beside it"),
-            AtMostOne(&["from", "distribution"], SPREAD),
+            AtMostOne(&["from", "distribution"], DISTRIBUTION),
         ];
         table.agrees(&relations)?;
         let Some((from, to)) = from.zip(to) else {
             return Ok(Self::About {
-                deviation: deviation.ok_or(Reported)?,
-                distribution: distribution.unwrap_or(Distribution::Normal),
+                deviation: deviation.ok_or(FaultRecorded)?,
+                distribution: distribution.unwrap_or(DistributionForm::Normal),
             });
         };
         let spacing = spacing.unwrap_or(Spacing::Linear);
@@ -130,7 +130,7 @@ impl Spread {
             }
             Self::About {
                 deviation,
-                distribution: Distribution::Normal,
+                distribution: DistributionForm::Normal,
             } => own + deviation * cut_normal(part),
             Self::About { deviation, .. } => own * libm::exp(deviation * cut_normal(part)),
         }
@@ -142,9 +142,9 @@ fn normal(deviations: f64) -> f64 {
     0.5 * libm::erfc(-deviations * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// Computes a quantile of the standard normal distribution truncated at [`MOST_DEVIATIONS`].
+/// Computes a quantile of the standard normal distribution truncated at [`MAX_DEVIATIONS`].
 fn cut_normal(part: f64) -> f64 {
-    let most = MOST_DEVIATIONS;
+    let most = MAX_DEVIATIONS;
     let below = normal(-most);
     let wanted = below + part * (1.0 - 2.0 * below);
     // The ends are reported as bounds, so they are exact.
@@ -159,7 +159,7 @@ fn cut_normal(part: f64) -> f64 {
 
 /// Writes each key with its distribution.
 fn by_key<S: Serializer>(keys: &[UncertainKey], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(keys.iter().map(|key| (&key.key, key.spread)))
+    serializer.collect_map(keys.iter().map(|key| (&key.key, key.distribution)))
 }
 
 const TABLE: &str = "uncertain";
@@ -167,15 +167,19 @@ const TOTAL_INDICES: &str = "total_indices";
 
 impl Uncertain {
     /// Reads `[uncertain]`. [`Uncertain::check`] checks it later against the rest of the scenario.
-    pub(super) fn read(table: &mut Table<'_>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let samples = table.or("samples", &SAMPLES, 100);
         let seed = table.or("seed", &SEED, 1);
         let total_indices = table.or(TOTAL_INDICES, &switch(), false);
         let mut keys = Vec::new();
         for key in table.keys_of_other_tables() {
-            if let Some(spread) = table.table(&key, Spread::read) {
+            if let Some(distribution) = table.table(&key, Distribution::read) {
                 let own = None;
-                keys.push(UncertainKey { key, spread, own });
+                keys.push(UncertainKey {
+                    key,
+                    distribution,
+                    own,
+                });
             }
         }
         table.sound()?;
@@ -228,7 +232,7 @@ impl Uncertain {
         table: &mut Table<'_>,
         scenario: &Scenario,
         resolved: &Value,
-    ) -> Reading<Self> {
+    ) -> ReadResult<Self> {
         let mut faulty = Ok(());
         for index in 0..self.keys.len() {
             let (before, others) = self.keys.split_at_mut(index);
@@ -352,7 +356,8 @@ impl UncertainKey {
         })?;
         let wrong = "is no number in the scenario; only numbers are uncertain";
         ensure(own.is_number() || own.is_null(), || wrong)?;
-        let is_enough = self.own.is_some() || matches!(self.spread, Spread::Range { .. });
+        let is_enough =
+            self.own.is_some() || matches!(self.distribution, Distribution::Range { .. });
         ensure(is_enough, || {
             let key = &self.key;
             format!(
@@ -380,7 +385,7 @@ impl UncertainKey {
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1.
     #[must_use]
     pub fn at(&self, part: f64) -> f64 {
-        self.spread.at(part, self.own.unwrap_or(0.0))
+        self.distribution.at(part, self.own.unwrap_or(0.0))
     }
 }
 
@@ -388,7 +393,7 @@ impl UncertainKey {
 mod tests {
     use super::*;
 
-    /// Compares with the quantile function of the normal distribution, from its density integrated by Simpson's rule.
+    /// The quantile function agrees with the density of the normal distribution, integrated by Simpson's rule.
     #[test]
     fn normal_values_are_cut_off_and_keep_their_shares() {
         let density = |x: f64| (-0.5 * x * x).exp();
@@ -414,7 +419,7 @@ mod tests {
     fn points_are_spread_evenly() {
         let key = |key: &str| UncertainKey {
             key: key.to_owned(),
-            spread: Spread::Range {
+            distribution: Distribution::Range {
                 from: 0.0,
                 to: 1.0,
                 spacing: Spacing::Linear,

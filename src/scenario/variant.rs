@@ -2,7 +2,7 @@
 
 use super::document::{Document, Entries};
 use super::prelude::*;
-use super::{Assignment, Changes, Scenario, Series, span, table};
+use super::{Assignment, ReadOptions, Scenario, Series, span, table};
 
 /// Tables of studies and of the check.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
@@ -28,7 +28,7 @@ impl Scenario {
         document.assign(&set);
         fit(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
-        let changes = Changes::default();
+        let changes = ReadOptions::default();
         table::read_document(document, |table| Self::read_table(table, &known, &changes))
             .map_err(|faults| shown(&faults[0].message))
     }

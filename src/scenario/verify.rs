@@ -31,7 +31,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::listing::{Listing, written};
+use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Format, LineFault, Series, faulty, read_numbers};
 use crate::dynamics::demand::floor::Mode;
@@ -140,7 +140,7 @@ impl Records {
         self.0.get(&state).map_or(&[], Vec::as_slice)
     }
 
-    fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> ReadResult<Self> {
         let patterns =
             RECORDS.map(|(_, key)| Some((key, table.optional(key, &one_or_more(&text()))?)));
         let given: Vec<_> = patterns.into_iter().flatten().collect();
@@ -148,9 +148,9 @@ impl Records {
             return Ok(Self::default());
         }
         let format = Format::read(table);
-        let listing = Listing::read(table, &given, format);
+        let listing = RecordListing::read(table, &given, format);
         table.sound()?;
-        let gravity_m_s2 = gravity_m_s2.ok_or(Reported)?;
+        let gravity_m_s2 = gravity_m_s2.ok_or(FaultRecorded)?;
         let accept = |series: &Series| {
             series.check_not_zero(gravity_m_s2)?;
             series.check_strength(gravity_m_s2)
@@ -207,7 +207,7 @@ impl Default for Verify {
 
 impl Verify {
     /// Reads `[verify]` with its records.
-    pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> Reading<Self> {
+    pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> ReadResult<Self> {
         let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
             confidence_factor: table.or("confidence_factor", &CONFIDENCE, CONFIDENCE_FACTOR),
@@ -219,7 +219,7 @@ impl Verify {
     }
 
     /// Rejects records of limit states that are not checked, and records if only one side is checked.
-    pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> Reading<()> {
+    pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> ReadResult<()> {
         let has_records = |(state, _): &(LimitState, _)| !self.records.of(*state).is_empty();
         for (state, key) in RECORDS.into_iter().filter(has_records) {
             let is_checked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
@@ -237,7 +237,7 @@ impl Verify {
 }
 
 impl FreeStanding {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let t0_s = table.optional("t0_s", &PERIOD_S);
         let kappa = table.optional("kappa", &above(0.0, 100.0));
         let length_m = table.optional("length_m", &MAGNITUDE);
@@ -249,10 +249,10 @@ impl FreeStanding {
             return Ok(Self::Period { t0_s });
         }
         Ok(Self::Elastic {
-            kappa: kappa.ok_or(Reported)?,
-            length_m: length_m.ok_or(Reported)?,
-            thickness_m: thickness_m.ok_or(Reported)?,
-            modulus_gpa: modulus_gpa.ok_or(Reported)?,
+            kappa: kappa.ok_or(FaultRecorded)?,
+            length_m: length_m.ok_or(FaultRecorded)?,
+            thickness_m: thickness_m.ok_or(FaultRecorded)?,
+            modulus_gpa: modulus_gpa.ok_or(FaultRecorded)?,
         })
     }
 }
@@ -262,7 +262,7 @@ pub type ByState<T> = BTreeMap<LimitState, T>;
 
 fn read_by_state<T>(
     table: &mut Table<'_>,
-    read: impl Fn(&mut Table<'_>, LimitState) -> Reading<T>,
+    read: impl Fn(&mut Table<'_>, LimitState) -> ReadResult<T>,
 ) -> ByState<T> {
     let states = LimitState::ALL.iter();
     let values = states.filter_map(|state| {
@@ -289,25 +289,25 @@ pub struct CodeDemand {
     pub soil: Soil,
     /// Topography.
     #[serde(flatten)]
-    pub relief: Relief,
+    pub relief: SiteTopography,
     /// Hazard of each checked limit state.
     #[serde(flatten)]
     pub hazards: ByState<Hazard>,
     /// Position in a building; `None` on the ground.
-    pub height: Option<Height>,
+    pub height: Option<Building>,
 }
 
 /// The topography of a site.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Relief {
+pub enum SiteTopography {
     /// A category, with the largest coefficient of the category.
     Topography(Topography),
     /// The coefficient itself.
     TopographicFactor(f64),
 }
 
-impl Relief {
+impl SiteTopography {
     /// Returns the coefficient `S_T`.
     #[must_use]
     pub const fn factor(&self) -> f64 {
@@ -320,7 +320,7 @@ impl Relief {
 
 /// The building that carries the mechanism.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Height {
+pub struct Building {
     /// Modes of the building.
     pub modes: Vec<BuildingMode>,
 }
@@ -407,7 +407,7 @@ const CODE_KEYS: [&str; 4] = ["soil", "topography", "topographic_factor", "heigh
 
 impl Demand {
     /// Reads `[demand]` of the scenario.
-    pub(super) fn read_given(outer: &mut Table<'_>, options: &Verify) -> Reading<Option<Self>> {
+    pub(super) fn read_given(outer: &mut Table<'_>, options: &Verify) -> ReadResult<Option<Self>> {
         let points = |table: &mut Table<'_>| {
             Ok(read_by_state(table, |table, state| {
                 PointDemand::read(table, state, options.confidence_factor)
@@ -419,7 +419,7 @@ impl Demand {
         outer.given_table("demand", |table| Self::read(table, points))
     }
 
-    fn read(table: &mut Table<'_>, points: impl Reader<ByState<PointDemand>>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, points: impl Reader<ByState<PointDemand>>) -> ReadResult<Self> {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
         let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
             if let Some(key) = CODE_KEYS.into_iter().find(|key| table.gives(key)) {
@@ -448,30 +448,30 @@ impl Demand {
 }
 
 impl CodeDemand {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let soil = table.required("soil", &one_of(Soil::ALL, Soil::name));
         let categories = one_of(Topography::ALL, Topography::name);
         let category = table.optional("topography", &categories);
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
-        let category = category.map(Relief::Topography);
-        let relief = category.or(factor.map(Relief::TopographicFactor));
+        let category = category.map(SiteTopography::Topography);
+        let relief = category.or(factor.map(SiteTopography::TopographicFactor));
         let site = relief.filter(|_| is_site.is_ok()).map(|relief| Site {
             soil,
             topographic_factor: relief.factor(),
         });
         let hazards = read_by_state(table, |table, _| read_hazard(table, site));
-        let height = table.table("height", |table| Height::read(table, &hazards));
+        let height = table.table("height", |table| Building::read(table, &hazards));
         Ok(Self {
             soil,
-            relief: relief.ok_or(Reported)?,
+            relief: relief.ok_or(FaultRecorded)?,
             hazards,
             height,
         })
     }
 }
 
-fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
+fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> ReadResult<Hazard> {
     let hazard = Hazard {
         ag_g: table.required("ag_g", &HAZARD),
         f0: table.required("f0", &HAZARD),
@@ -487,9 +487,9 @@ fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> Reading<Hazard> {
     Ok(hazard)
 }
 
-impl Height {
+impl Building {
     /// Reads `[demand.height]`, for the limit states with these hazards.
-    fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> ReadResult<Self> {
         let modes = table.tables("modes", BuildingMode::read);
         table.sound()?;
         let missing = "lacks `modes`: give the modes of the building, at least the first";
@@ -527,7 +527,7 @@ impl Height {
 }
 
 impl BuildingMode {
-    fn read(table: &mut Table<'_>) -> Reading<Self> {
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let any = within(&(-10.0..=10.0));
         Ok(Self {
             gamma: table.required("gamma", &any),
@@ -543,7 +543,7 @@ impl BuildingMode {
 }
 
 impl PointDemand {
-    fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> ReadResult<Self> {
         let spectrum = table.required("spectrum", &text());
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
         let default = StateRule::circolare(state, confidence_factor);
@@ -564,7 +564,7 @@ impl PointDemand {
 }
 
 impl StateRule {
-    fn read(table: &mut Table<'_>, default: Self) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, default: Self) -> ReadResult<Self> {
         let mut or = |key, rule: &Number, default| table.or(key, rule, default);
         let part = between(Excluded(0.0), Excluded(1.0));
         Ok(Self {

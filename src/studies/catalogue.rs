@@ -13,10 +13,10 @@ use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
-use super::results::{Reported, Results, StudyError, Style};
-use super::run::{self, Open, Rotations, RunOptions};
+use super::results::{ReportedStudy, Results, StudyError, Style};
+use super::run::{self, OpenFolder, RotationsOutput, RunOptions};
 use super::runner::{Runner, Task, Watch};
-use super::spread::{self, Way};
+use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
@@ -35,20 +35,20 @@ pub struct Options {
     pub point_m: Option<Vector2<f64>>,
     /// The movements of a springing that `spread` follows.
     #[serde(skip)]
-    pub ways: Vec<Way>,
+    pub directions: Vec<Direction>,
     /// The files and pictures of a run.
     #[serde(skip)]
     pub run: RunOptions,
 }
 
 /// The source of the rows of a study.
-pub enum Rows<'w> {
+pub enum RowSource<'w> {
     /// They are computed: for a task in its folder, where the work can be resumed, otherwise in memory.
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
     /// There is one row, a history, whose files are written while it is computed.
-    Stream(Open<'w>, Rotations<'w>, Watch<'w>),
+    Stream(OpenFolder<'w>, RotationsOutput<'w>, Watch<'w>),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -56,11 +56,11 @@ pub type ChooseStyle<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Re
 
 /// The result of a computation.
 #[derive(Debug)]
-pub enum Done {
+pub enum Computation {
     /// All cases, and the file that keeps their rows until the results are written; `None` if the rows are in memory.
-    Whole(Results, Option<PartFile>),
+    Complete(Results, Option<PartFile>),
     /// A part of the cases.
-    Part {
+    Partial {
         /// The file that keeps their rows.
         part: PartFile,
         /// The number of cases in the file.
@@ -71,7 +71,7 @@ pub enum Done {
 }
 
 /// Computes a study of scenarios that differ only in their models of motion; most studies take one.
-type Compute = fn(&[Scenario], &Options, Style, Rows<'_>) -> Result<Done, StudyError>;
+type Compute = fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>;
 
 /// A study that a scenario describes.
 #[derive(Clone, Copy, Debug)]
@@ -99,11 +99,11 @@ pub const RUN: StudyKind = StudyKind {
     files: &run::FILES,
     has_parts: false,
     run: |scenarios, options, style, rows| {
-        let Rows::Stream(open, rotations, watch) = rows else {
+        let RowSource::Stream(open, rotations, watch) = rows else {
             return Err(StudyError::scenario("a run has no parts"));
         };
         let (options, figure) = (&options.run, style.figure);
-        run::results(scenarios, options, figure, open, rotations, watch).map(whole)
+        run::results(scenarios, options, figure, open, rotations, watch).map(complete)
     },
 };
 /// The map of the pulses that overturn the structure, over two quantities.
@@ -120,10 +120,10 @@ pub const THRESHOLD: StudyKind = StudyKind {
     files: &threshold::FILES,
     has_parts: false,
     run: |scenarios, options, style, rows| {
-        let Rows::Compute(runner, _, watch) = rows else {
+        let RowSource::Compute(runner, _, watch) = rows else {
             return Err(StudyError::scenario("a threshold has no parts"));
         };
-        threshold::results(scenarios, &options.factors, style.figure, &runner, watch).map(whole)
+        threshold::results(scenarios, &options.factors, style.figure, &runner, watch).map(complete)
     },
 };
 /// The threshold for each value of a key along a range.
@@ -144,7 +144,7 @@ pub const CAPACITY: StudyKind = StudyKind {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
-        Ok(whole(capacity::report(scenario, &sides, style.figure)?))
+        Ok(complete(capacity::report(scenario, &sides, style.figure)?))
     },
 };
 /// The movement of a springing at which the arch falls.
@@ -153,8 +153,13 @@ pub const SPREAD: StudyKind = StudyKind {
     files: &spread::FILES,
     has_parts: false,
     run: |scenarios, options, style, _| {
-        let found = spread::spread(&scenarios[0], &options.ways).map_err(StudyError::scenario)?;
-        Ok(whole(spread::report(&scenarios[0], &found, style.figure)?))
+        let found =
+            spread::spread(&scenarios[0], &options.directions).map_err(StudyError::scenario)?;
+        Ok(complete(spread::report(
+            &scenarios[0],
+            &found,
+            style.figure,
+        )?))
     },
 };
 /// The check of the first mechanism by the Circolare 7/2019.
@@ -171,7 +176,7 @@ pub const VERIFY: StudyKind = StudyKind {
             return Err(StudyError::scenario(message));
         }
         let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-        Ok(whole(verify::report(scenario, &check)?))
+        Ok(complete(verify::report(scenario, &check)?))
     },
 };
 /// Endings and courses of histories for samples of the uncertain numbers.
@@ -198,8 +203,8 @@ pub const UNCERTAIN_MAP: StudyKind =
         computed(CellsOfSamples::of(&scenarios[0]), style, rows)
     });
 
-const fn whole(results: Results) -> Done {
-    Done::Whole(results, None)
+const fn complete(results: Results) -> Computation {
+    Computation::Complete(results, None)
 }
 
 impl StudyKind {
@@ -225,7 +230,7 @@ impl StudyKind {
         Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 
-    const fn of<S: Reported>(run: Compute) -> Self {
+    const fn of<S: ReportedStudy>(run: Compute) -> Self {
         Self {
             name: S::NAME,
             files: S::FILES,
@@ -243,35 +248,37 @@ impl StudyKind {
         scenarios: &[Scenario],
         options: &Options,
         style: Style,
-        rows: Rows<'_>,
-    ) -> Result<Done, StudyError> {
+        rows: RowSource<'_>,
+    ) -> Result<Computation, StudyError> {
         (self.run)(scenarios, options, style, rows)
     }
 }
 
 /// Finds the rows of a study, and turns them into results if they are those of all cases.
-fn computed<S: Reported>(
+fn computed<S: ReportedStudy>(
     study: Result<S, String>,
     style: Style,
-    rows: Rows<'_>,
-) -> Result<Done, StudyError> {
+    rows: RowSource<'_>,
+) -> Result<Computation, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
-        Rows::Stream(..) => {
+        RowSource::Stream(..) => {
             return Err(StudyError::scenario("a study of many cases is no history"));
         }
-        Rows::Merge(parts) => (part::merge(parts)?.1, None),
-        Rows::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
-        Rows::Compute(runner, Some(task), watch) => match runner.rows_in(&study, task, watch)? {
-            (Some(rows), part) => (rows, Some(part)),
-            (None, part) => {
-                let all = study.count();
-                let cases = task.shard.cases(all).count();
-                return Ok(Done::Part { part, cases, all });
+        RowSource::Merge(parts) => (part::merge(parts)?.1, None),
+        RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
+        RowSource::Compute(runner, Some(task), watch) => {
+            match runner.rows_in(&study, task, watch)? {
+                (Some(rows), part) => (rows, Some(part)),
+                (None, part) => {
+                    let all = study.count();
+                    let cases = task.shard.cases(all).count();
+                    return Ok(Computation::Partial { part, cases, all });
+                }
             }
-        },
+        }
     };
-    Ok(Done::Whole(study.results(rows, style)?, part))
+    Ok(Computation::Complete(study.results(rows, style)?, part))
 }
 
 /// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
@@ -312,8 +319,8 @@ pub fn merge(
         serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
     let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
     let (scenarios, options) = (std::slice::from_ref(&scenario), options.unwrap_or_default());
-    match kind.compute(scenarios, &options, style, Rows::Merge(parts))? {
-        Done::Whole(results, _) => Ok((kind, results)),
-        Done::Part { .. } => unreachable!("all parts are joined"),
+    match kind.compute(scenarios, &options, style, RowSource::Merge(parts))? {
+        Computation::Complete(results, _) => Ok((kind, results)),
+        Computation::Partial { .. } => unreachable!("all parts are joined"),
     }
 }

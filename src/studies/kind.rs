@@ -92,7 +92,7 @@ pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key> {
 mod tests {
     use super::*;
 
-    /// Lightness, and how far a colour is from grey towards red and towards yellow (CIELAB, D65).
+    /// Returns a colour in the CIELAB space (D65): lightness, green to red, and blue to yellow.
     fn lab(fill: &str) -> [f64; 3] {
         let channel = |at: usize| {
             let value = f64::from(u8::from_str_radix(&fill[at..at + 2], 16).unwrap()) / 255.0;
@@ -116,7 +116,7 @@ mod tests {
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 
-    /// Kinds that lie side by side in maps differ in colour by more than the eye overlooks.
+    /// Colours of neighbouring kinds in maps differ visibly.
     #[test]
     fn outcomes_without_overturning_differ_in_colour() {
         let quiet = [

@@ -14,10 +14,10 @@ use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::Figure;
-use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
+use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::{FARTHEST, Scene};
-use crate::output::sheet::{Height, Sheet};
+use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::output::text::Text;
 use crate::scenario::DimensionSide;
@@ -33,7 +33,7 @@ const ABOVE_PX: f64 = 42.0;
 
 /// A structure that rocks as four links.
 #[derive(Clone, Copy)]
-struct Subject<'a> {
+struct FourLinkStructure<'a> {
     model: &'a FourLinks,
     /// First sway of the chain.
     first: Sway,
@@ -41,14 +41,14 @@ struct Subject<'a> {
 }
 
 /// A mechanism at the rotations at which it is drawn.
-struct Open<'a> {
+struct DrawnMechanism<'a> {
     link: &'a ArchLink,
     sway: Sway,
     poses: Vec<Pose>,
     hinges: Vec<OpenHinge>,
 }
 
-impl Open<'_> {
+impl DrawnMechanism<'_> {
     /// Returns the rotations in words.
     fn rotations(&self) -> String {
         let names = ["left", "middle", "right"].iter().zip(&self.poses);
@@ -57,9 +57,9 @@ impl Open<'_> {
     }
 }
 
-impl<'a> Subject<'a> {
+impl<'a> FourLinkStructure<'a> {
     /// Returns the mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
-    fn open(&self, impacts: usize) -> Option<Open<'a>> {
+    fn drawn_mechanism(&self, impacts: usize) -> Option<DrawnMechanism<'a>> {
         let link = self.model.chain_from(self.first).link(impacts)?;
         let sway = self.first.before(impacts);
         let (mut poses, mut places_m) = (Vec::new(), Vec::new());
@@ -67,7 +67,7 @@ impl<'a> Subject<'a> {
         let mechanism = &link.link.mechanism;
         self.model.place_m(mechanism, at, &mut poses, &mut places_m);
         let hinges = self.model.hinges(impacts, sway).into_iter().zip(places_m);
-        Some(Open {
+        Some(DrawnMechanism {
             link,
             sway,
             poses,
@@ -94,9 +94,9 @@ impl<'a> Subject<'a> {
     }
 
     /// Places the structure around `middle` in a part of the sheet.
-    fn at(&self, middle: f64, part: Frame) -> Spot<'a> {
-        let place = Place::over(self.scene.blocks_m(), middle, part);
-        Spot { of: *self, place }
+    fn at(&self, middle: f64, part: Frame) -> PlacedStructure<'a> {
+        let place = SheetTransform::over(self.scene.blocks_m(), middle, part);
+        PlacedStructure { of: *self, place }
     }
 }
 
@@ -105,12 +105,12 @@ fn open_at(hinge: Hinge, position_m: Vector2<f64>) -> OpenHinge {
 }
 
 /// A structure on the sheet.
-struct Spot<'a> {
-    of: Subject<'a>,
-    place: Place,
+struct PlacedStructure<'a> {
+    of: FourLinkStructure<'a>,
+    place: SheetTransform,
 }
 
-impl Spot<'_> {
+impl PlacedStructure<'_> {
     /// Converts a point in the frame of a sway to pixels.
     fn px(&self, point: Vector2<f64>, sway: Sway) -> Vector2<f64> {
         self.place.px(self.of.metres(point, sway))
@@ -121,7 +121,7 @@ impl Spot<'_> {
     }
 
     /// Draws the open mechanism over the structure at rest.
-    fn mechanism(&self, drawing: &mut Drawing, open: &Open<'_>) {
+    fn mechanism(&self, drawing: &mut Drawing, open: &DrawnMechanism<'_>) {
         let view = self.view(&open.poses, &open.hinges);
         view.draw_carried(drawing, true);
         view.draw_built(drawing, "built");
@@ -133,7 +133,7 @@ impl Spot<'_> {
     }
 
     /// Draws the hinges with their letters, from left to right. The elements are named `hinge A` and so on, with `mark` after the letter.
-    fn hinges(&self, drawing: &mut Drawing, open: &Open<'_>, mark: &str) {
+    fn hinges(&self, drawing: &mut Drawing, open: &DrawnMechanism<'_>, mark: &str) {
         let profile = self.of.profile(Sway::Right);
         let hinges = open.link.mechanism.hinges_from_left(profile, open.sway);
         for (letter, (section, edge)) in HINGES.into_iter().zip(hinges) {
@@ -188,13 +188,13 @@ fn shape(profile: &dyn Profile) -> String {
 /// of the rotations of its limit position.
 #[must_use]
 pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> String {
-    let of = Subject {
+    let of = FourLinkStructure {
         model,
         first,
         scene,
     };
     let open = of
-        .open(0)
+        .drawn_mechanism(0)
         .expect("a chain begins with the mechanism that starts");
     let incipient = &model.chain_from(first).incipient;
     let title = format!(
@@ -223,22 +223,25 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
         sheet.gap(ABOVE_PX);
         let cells = (first_cell..2).take(columns).zip([0.5, 1.5]);
         let (of, open) = (&of, &open);
-        sheet.part(Height::Structure(arch_px, arch_px), move |drawing, part| {
-            for (cell, middle) in cells {
-                let middle = middle * cell_px + 0.5 * (left - right);
-                let spot = of.at(middle, part);
-                if cell == 1 {
-                    spot.mechanism(drawing, open);
-                    continue;
+        sheet.part(
+            PartHeight::Structure(arch_px, arch_px),
+            move |drawing, part| {
+                for (cell, middle) in cells {
+                    let middle = middle * cell_px + 0.5 * (left - right);
+                    let placed = of.at(middle, part);
+                    if cell == 1 {
+                        placed.mechanism(drawing, open);
+                        continue;
+                    }
+                    draw_dimensions(drawing, &placed.place, scene);
+                    let view = placed.view(&[], &[]);
+                    view.draw_carried(drawing, true);
+                    view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
+                    placed.resultants(drawing, "thrust line", &incipient.thrust_line, first);
+                    placed.hinges(drawing, open, "");
                 }
-                draw_dimensions(drawing, &spot.place, scene);
-                let view = spot.view(&[], &[]);
-                view.draw_carried(drawing, true);
-                view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
-                spot.resultants(drawing, "thrust line", &incipient.thrust_line, first);
-                spot.hinges(drawing, open, "");
-            }
-        });
+            },
+        );
         if first_cell == 0 {
             sheet.gap(room_px(scene, DimensionSide::Below));
         }
@@ -252,13 +255,13 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
 /// and the impulse line. `None` if this impact or one before it stops the arch.
 #[must_use]
 pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<String> {
-    let of = Subject {
+    let of = FourLinkStructure {
         model: impact.model,
         first: impact.first,
         scene,
     };
-    let before = of.open(impact.index.checked_sub(1)?)?;
-    let after = of.open(impact.index)?;
+    let before = of.drawn_mechanism(impact.index.checked_sub(1)?)?;
+    let after = of.drawn_mechanism(impact.index)?;
     let title = format!(
         "Impact {}{}: restitution (kinetic energy after/before) r = {:.6}; {}",
         impact.index,
@@ -269,7 +272,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     // Narrow pictures have short captions, and dimensions in words.
     let is_wide = figure.columns(2, 340.0) == 2;
     let texts = if is_wide {
-        let [old, new] = [&before, &after].map(Open::rotations);
+        let [old, new] = [&before, &after].map(DrawnMechanism::rotations);
         [
             format!("u before the impact, hinges A to D, drawn at rotations of {old}"),
             format!("u' after the impact, hinges A' to D', drawn at rotations of {new}"),
@@ -281,10 +284,10 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     sheet.gap(ABOVE_PX);
     let half_px = 0.5 * figure.width_px;
     let arch_px = of.height_px((0.8 * half_px).min(half_px - 2.0 * LETTER_PX));
-    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
+    sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         for (open, middle) in [(&before, 0.5), (&after, 1.5)] {
-            let spot = of.at(middle * half_px, part);
-            spot.mechanism(drawing, open);
+            let placed = of.at(middle * half_px, part);
+            placed.mechanism(drawing, open);
         }
     });
     sheet.captions(34.0, &[&texts[0], &texts[1]]);
@@ -294,12 +297,12 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let width_px = (0.71 * figure.width_px).min(figure.width_px - left - right);
     let middle = 0.5 * (figure.width_px + left - right);
     let arch_px = of.height_px(width_px);
-    sheet.part(Height::Structure(arch_px, arch_px), |drawing, part| {
-        let spot = of.at(middle, part);
+    sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
+        let placed = of.at(middle, part);
         if is_wide {
-            draw_dimensions(drawing, &spot.place, scene);
+            draw_dimensions(drawing, &placed.place, scene);
         }
-        spot.impact(drawing, &before, &after);
+        placed.impact(drawing, &before, &after);
     });
     let text = if is_wide {
         "Impulse line through the hinges A' to D' of u', at the edges about which the arch turns after the \
@@ -317,9 +320,14 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     Some(sheet.finish())
 }
 
-impl Spot<'_> {
+impl PlacedStructure<'_> {
     /// Draws the bodies into which the mechanisms before and after an impact divide the structure, the impulse line, and the hinges of both.
-    fn impact(&self, drawing: &mut Drawing, before: &Open<'_>, after: &Open<'_>) {
+    fn impact(
+        &self,
+        drawing: &mut Drawing,
+        before: &DrawnMechanism<'_>,
+        after: &DrawnMechanism<'_>,
+    ) {
         let (sway, seen) = (after.sway, self.of.profile(Sway::Right));
         // Both mechanisms are in the frame of the new one, which is mirrored if it sways left.
         let profile = self.of.profile(sway);

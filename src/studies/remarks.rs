@@ -45,25 +45,25 @@ pub struct Remarks {
     incomplete: usize,
     /// The longest steps of the cases, in seconds; absent if a tolerance sets the steps.
     #[serde(skip_serializing_if = "Option::is_none")]
-    longest_step_s: Option<Extent>,
+    longest_step_s: Option<StepRange>,
     /// The shortest steps of the cases, in seconds; absent if a tolerance sets the steps.
     #[serde(skip_serializing_if = "Option::is_none")]
-    shortest_step_s: Option<Extent>,
+    shortest_step_s: Option<StepRange>,
 }
 
 /// The smallest and the largest of some values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-struct Extent {
+struct StepRange {
     /// The smallest.
     min: f64,
     /// The largest.
     max: f64,
 }
 
-impl Extent {
+impl StepRange {
     /// Returns the extent with one more value.
-    fn with(extent: Option<Self>, value: f64) -> Option<Self> {
-        let ends = extent.map_or((value, value), |Self { min, max }| {
+    fn with(range: Option<Self>, value: f64) -> Option<Self> {
+        let ends = range.map_or((value, value), |Self { min, max }| {
             (min.min(value), max.max(value))
         });
         let (min, max) = ends;
@@ -89,8 +89,8 @@ impl Remarks {
         self.histories += 1;
         self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
         if let Some(steps) = ending.steps {
-            self.longest_step_s = Extent::with(self.longest_step_s, steps.longest_s);
-            self.shortest_step_s = Extent::with(self.shortest_step_s, steps.shortest_s);
+            self.longest_step_s = StepRange::with(self.longest_step_s, steps.longest_s);
+            self.shortest_step_s = StepRange::with(self.shortest_step_s, steps.shortest_s);
         }
     }
 }
@@ -201,10 +201,10 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
 }
 
 /// Position of an outcome in the list of counts, and its name.
-pub(crate) type Words = (u8, &'static str);
+pub(crate) type OutcomeLabel = (u8, &'static str);
 
 /// Returns the outcome of a case in words.
-pub(crate) const fn in_words(ending: &Ending) -> Words {
+pub(crate) const fn outcome_label(ending: &Ending) -> OutcomeLabel {
     match (&ending.uncertain, ending.outcome) {
         (Some(_), _) => (5, "uncertain"),
         (None, Outcome::NeverMoved) => (0, "never moved"),
@@ -217,7 +217,7 @@ pub(crate) const fn in_words(ending: &Ending) -> Words {
 }
 
 /// Returns the number of cases with each outcome, in words.
-pub(crate) fn counts(cases: impl Iterator<Item = Words>) -> String {
+pub(crate) fn outcome_counts(cases: impl Iterator<Item = OutcomeLabel>) -> String {
     let mut counts = BTreeMap::new();
     for words in cases {
         *counts.entry(words).or_insert(0_usize) += 1;

@@ -60,7 +60,7 @@ impl From<SimulationError> for StudyError {
 }
 
 /// A study that makes results of its rows.
-pub trait Reported: Study {
+pub trait ReportedStudy: Study {
     /// The names of all files that its results may have, the seal last.
     const FILES: &'static [&'static str];
 
@@ -133,15 +133,15 @@ impl Results {
 
 /// A result without files, as JSON and in words.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Answer {
+pub struct PrintedResult {
     /// All numbers.
     pub json: Value,
-    /// The answer in words.
+    /// The result in words.
     pub text: String,
 }
 
-impl Answer {
-    /// Makes an answer of a summary, whose words are a template.
+impl PrintedResult {
+    /// Makes the result of a summary, whose words are a template.
     pub(super) fn of(summary: &(impl Serialize + Template)) -> Result<Self, OutputError> {
         Ok(Self {
             json: summary_of(summary)?,

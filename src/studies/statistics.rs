@@ -200,7 +200,7 @@ mod tests {
                 "{share:?}"
             );
         }
-        // If none or all have it, one end is known: 0 of 20 is 0 to 0.1611, 29 of 29 is 0.8830 to 1.
+        // If no sample or every sample has the property, one end is exact: 0 of 20 is 0 to 0.1611, 29 of 29 is 0.8830 to 1.
         let none = Share::of(0, 20).unwrap();
         assert!(none.low == 0.0 && (none.high - 0.1611).abs() < 5e-5);
         let all = Share::of(29, 29).unwrap();
@@ -219,18 +219,18 @@ mod tests {
         assert_eq!(quantile(&[], 0.5), None);
         let [low, median, high] = band(vec![f64::INFINITY, 1.0, 2.0], quantile).unwrap();
         assert_eq!([low, median, high], [1.0, 2.0, f64::INFINITY]);
-        // Between a value and infinity nothing is known, on either side.
+        // A quantile between a value and infinity is infinite.
         assert_eq!(quantile(&[1.0, f64::INFINITY], 0.5), Some(f64::INFINITY));
         assert_eq!(quantile(&[-f64::INFINITY, 1.0], 0.5), Some(-f64::INFINITY));
     }
 
-    /// Eight intensities that overturn: the lower neighbour of the median is 0.342.
+    /// Eight intensities that overturn; the lower neighbour of the median is 0.342.
     #[test]
     fn fractiles_of_few_values_lie_between_them() {
         let eight = [0.243, 0.281, 0.330, 0.342, 0.503, 0.559, 0.848, 0.859];
         let of = |part| fractile(&eight, part).unwrap();
         assert!((of(0.5) - (0.342_f64 * 0.503).sqrt()).abs() < 1e-12);
-        // 16 % of eight is the place 0.78 after the first.
+        // The 16 % fractile of eight values lies 0.78 after the first.
         let known = 0.243 * (0.281_f64 / 0.243).powf(0.78);
         assert!((of(0.16) - known).abs() < 1e-12, "{}", of(0.16));
         // Three values and their reciprocals have reciprocal fractiles.
@@ -239,7 +239,7 @@ mod tests {
                 * fractile(&[0.125, 1.0, 2.0], 1.0 - part).unwrap();
             assert!((product - 1.0).abs() < 1e-12, "{part}");
         }
-        // Beyond half of the values nothing is known of the median.
+        // If half of the values are infinite, the median is infinite.
         let half = [0.2, 0.3, f64::INFINITY, f64::INFINITY];
         assert_eq!(fractile(&half, 0.5), Some(f64::INFINITY));
         assert_eq!(fractile(&half, 0.375), Some(0.3));
@@ -254,14 +254,14 @@ mod tests {
         assert_eq!(correlation([(1.0, 2.0), (2.0, 2.0)].into_iter()), None);
     }
 
-    /// The mean of 100 draws has the variance that theory gives: that of one draw over their number.
+    /// The variance of the mean of 100 draws is that of one draw divided by 100.
     #[test]
     fn bootstraps_draw_evenly() {
         let means: Vec<f64> = bootstrap(100)
             .map(|drawn| drawn.iter().sum::<usize>() as f64 / 100.0)
             .collect();
         let [mean, variance] = moments(&means);
-        // Of 0 to 99: mean 49.5, variance 833.25; bounds at four standard errors.
+        // Numbers 0 to 99 have mean 49.5 and variance 833.25; the bounds are four standard errors.
         assert!(
             (mean - 49.5).abs() < 4.0 * (8.3325_f64 / 300.0).sqrt(),
             "{mean}"

@@ -11,7 +11,7 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::settling::{Follower, Movement, Movements, SettlingError};
 use archrock::mechanics::sway::Sway;
 use archrock::mechanics::tie::{Anchor, Tie};
-use archrock::studies::spread::{Way, spread};
+use archrock::studies::spread::{Direction, spread};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
@@ -48,9 +48,9 @@ fn right([spread, settlement]: [f64; 2]) -> impl Fn(f64) -> Movements {
 }
 
 /// Where an arch falls.
-fn falls_at(row: &Row, way: [f64; 2]) -> f64 {
+fn falls_at(row: &Row, direction: [f64; 2]) -> f64 {
     let mut follower = Follower::new(row).unwrap();
-    match follower.move_supports(right(way), 0.0, 1.6).unwrap() {
+    match follower.move_supports(right(direction), 0.0, 1.6).unwrap() {
         Some(at) => at,
         None => panic!("it stands"),
     }
@@ -421,7 +421,7 @@ impl Blocks {
 /// ends; and half way there the crown is as low. Thin and thick semicircles, and one that is flatter.
 #[test]
 fn an_arch_falls_where_its_least_energy_is_lost() {
-    for (embrace_deg, thickness, voussoirs, way, steps) in [
+    for (embrace_deg, thickness, voussoirs, direction, steps) in [
         (180.0, 0.12, 12, OUT, 20),
         (180.0, 0.15, 20, OUT, 40),
         (180.0, 0.20, 16, OUT, 30),
@@ -430,18 +430,19 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
         (180.0, 0.15, 16, INWARDS, 20),
         (157.5, 0.20, 12, DIAGONAL, 30),
     ] {
-        let what = format!("{embrace_deg} degrees, {thickness}, {voussoirs}, {way:?}");
+        let what = format!("{embrace_deg} degrees, {thickness}, {voussoirs}, {direction:?}");
         let row = arch(embrace_deg, thickness, voussoirs);
-        let falls_at = falls_at(&row, way);
+        let falls_at = falls_at(&row, direction);
         let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
         let stride = falls_at / (f64::from(steps) - 0.5);
         for step in 1..=steps {
-            blocks.support = way.map(|part| part * stride * f64::from(step));
+            blocks.support = direction.map(|part| part * stride * f64::from(step));
             let stands = blocks.settle();
             assert_eq!(stands, step < steps, "{what}: step {step}");
             if step == steps / 2 {
                 let mut follower = Follower::new(&row).unwrap();
-                let reached = follower.move_supports(right(way), 0.0, stride * f64::from(step));
+                let reached =
+                    follower.move_supports(right(direction), 0.0, stride * f64::from(step));
                 assert_eq!(reached.unwrap(), None);
                 let crown = row.joints[voussoirs / 2].extrados_m;
                 let pose = follower.stance.placement.poses[voussoirs / 2 - 1];
@@ -457,19 +458,19 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
 /// the push at which the arch falls is that of the programme in the last place where it rests under a growing push.
 #[test]
 fn both_pushes_are_those_of_programmes_in_moved_places() {
-    for (embrace_deg, thickness, voussoirs, way, at) in [
+    for (embrace_deg, thickness, voussoirs, direction, at) in [
         (180.0, 0.15, 16, OUT, 0.04),
         (180.0, 0.15, 16, DOWN, 0.1),
         (157.5, 0.15, 12, OUT, 0.08),
     ] {
-        let what = format!("{embrace_deg} degrees, {way:?}");
+        let what = format!("{embrace_deg} degrees, {direction:?}");
         let row = arch(embrace_deg, thickness, voussoirs);
         let mut follower = Follower::new(&row).unwrap();
-        follower.move_supports(right(way), 0.0, at).unwrap();
+        follower.move_supports(right(direction), 0.0, at).unwrap();
         let [first_g, capacity_g] = pushes_g(&follower, Sway::Right);
         let mut blocks = Blocks::new(embrace_deg, thickness, voussoirs);
         for step in 1..=20 {
-            blocks.support = way.map(|part| part * at * f64::from(step) / 20.0);
+            blocks.support = direction.map(|part| part * at * f64::from(step) / 20.0);
             assert!(blocks.settle(), "{what}");
         }
         assert!(
@@ -549,7 +550,7 @@ fn tied(
 fn a_tied_arch_follows_as_its_least_energy_does() {
     let unbounded = f64::INFINITY;
     let (mut most, mut yielded) = (3, 0.0_f64);
-    for (stiffness, prestress, yields_at, ground, way, stride, steps, falls) in [
+    for (stiffness, prestress, yields_at, ground, direction, stride, steps, falls) in [
         (1.0, 0.05, unbounded, false, OUT, 0.01, 12, false),
         (1.0, 0.05, unbounded, true, OUT, 0.005, 10, false),
         (5.0, 0.03, unbounded, false, DOWN, 0.009, 22, false),
@@ -567,14 +568,14 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
         (150.0, 0.0, 0.1, false, OUT, 0.0025, 12, false),
         (150.0, 0.0, 0.1, false, DOWN, 0.01, 24, false),
     ] {
-        let what = format!("{stiffness} {prestress} {yields_at} {ground} {way:?}");
+        let what = format!("{stiffness} {prestress} {yields_at} {ground} {direction:?}");
         let (row, mut blocks) = tied(16, stiffness, prestress, yields_at, ground);
         let weight_n = row.mass_kg() * 9.81;
         let mut follower = Follower::new(&row).unwrap();
         for step in 1..=steps {
             let [from, to] = [step - 1, step].map(|step| stride * f64::from(step));
-            let reached = follower.move_supports(right(way), from, to).unwrap();
-            blocks.support = way.map(|part| part * to);
+            let reached = follower.move_supports(right(direction), from, to).unwrap();
+            blocks.support = direction.map(|part| part * to);
             let stands = blocks.settle();
             let last = falls && step == steps;
             assert_eq!((reached.is_none(), stands), (!last, !last), "{what}: {to}");
@@ -617,7 +618,7 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
 /// of 1000 short ones, to a millionth of the radius, of the weight and of gravity.
 #[test]
 fn ties_yield_in_long_steps_as_in_short_ones() {
-    for (way, end_m) in [(OUT, 0.03), (DOWN, 0.24)] {
+    for (direction, end_m) in [(OUT, 0.03), (DOWN, 0.24)] {
         let law = |yields_at| [75.0, 0.0, yields_at];
         let (row, _) = with_bars(16, |blocks| {
             let bars = [(4, 0.06), (3, 0.04)];
@@ -629,8 +630,8 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
             let at_m = |piece: u32| end_m * f64::from(piece) / f64::from(pieces);
             for piece in 0..pieces {
                 let ends_m = [piece, piece + 1].map(at_m);
-                let reached = follower.move_supports(right(way), ends_m[0], ends_m[1]);
-                assert_eq!(reached, Ok(None), "{way:?} {ends_m:?}");
+                let reached = follower.move_supports(right(direction), ends_m[0], ends_m[1]);
+                assert_eq!(reached, Ok(None), "{direction:?} {ends_m:?}");
             }
             let weight_n = row.mass_kg() * 9.81;
             let ties = follower.stance.ties.iter();
@@ -642,9 +643,9 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
             }
             numbers
         });
-        assert!(one[0].max(one[2]) > 1e-3, "{way:?}: {one:?}");
+        assert!(one[0].max(one[2]) > 1e-3, "{direction:?}: {one:?}");
         for (one, many) in one.iter().zip(&many) {
-            assert!((one - many).abs() < 1e-6, "{way:?}: {one} {many}");
+            assert!((one - many).abs() < 1e-6, "{direction:?}: {one} {many}");
         }
     }
 }
@@ -654,7 +655,7 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
 #[test]
 fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
     let (mut most, mut pulling) = (3, 0);
-    for (stiffnesses, way, stride, steps) in [
+    for (stiffnesses, direction, stride, steps) in [
         ([150.0, 100.0], OUT, 0.005, 12),
         ([150.0, 100.0], DOWN, 0.02, 20),
     ] {
@@ -669,10 +670,10 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
         let mut follower = Follower::new(&row).unwrap();
         for step in 1..=steps {
             let [from, to] = [step - 1, step].map(|step| stride * f64::from(step));
-            let what = format!("{stiffnesses:?} {way:?} {to}");
-            let reached = follower.move_supports(right(way), from, to).unwrap();
+            let what = format!("{stiffnesses:?} {direction:?} {to}");
+            let reached = follower.move_supports(right(direction), from, to).unwrap();
             assert_eq!(reached, None, "{what}");
-            blocks.support = way.map(|part| part * to);
+            blocks.support = direction.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
             let crown = row.joints[8].extrados_m;
             let drop = (crown - follower.stance.placement.poses[7].of(crown)).y;
@@ -706,8 +707,8 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     let row = scenario.structure.row().unwrap();
     let movements = scenario.motion.supports().unwrap();
     let mut follower = Follower::new(&row).unwrap();
-    let way = |part: f64| movements * part;
-    follower.move_supports(way, 0.0, 1.0).unwrap();
+    let direction = |part: f64| movements * part;
+    follower.move_supports(direction, 0.0, 1.0).unwrap();
     let hinges = &follower.hinges.as_ref().unwrap().hinges;
     assert_eq!(hinges.len(), 4);
     let force_n = follower.stance.forces_n().next().unwrap();
@@ -736,11 +737,11 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     }
 
     let angles_deg = [90.0, 0.0];
-    let ways = angles_deg.map(|angle_deg| Way {
+    let directions = angles_deg.map(|angle_deg| Direction {
         springing: Sway::Right,
         angle_deg,
     });
-    let found = spread(&scenario, &ways).unwrap();
+    let found = spread(&scenario, &directions).unwrap();
     printed(
         folder.path(),
         &["spread", "a.toml", "--angle", "90", "--angle", "0"],
@@ -795,13 +796,13 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
 /// A growing push is borne until the arch with its bar falls, by either computation within the same step.
 #[test]
 fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
-    for (stiffness, prestress, way, at) in [(1.0, 0.05, OUT, 0.06), (20.0, 0.0, DOWN, 0.06)] {
+    for (stiffness, prestress, direction, at) in [(1.0, 0.05, OUT, 0.06), (20.0, 0.0, DOWN, 0.06)] {
         let (row, mut blocks) = tied(16, stiffness, prestress, f64::INFINITY, false);
         let mut follower = Follower::new(&row).unwrap();
-        follower.move_supports(right(way), 0.0, at).unwrap();
+        follower.move_supports(right(direction), 0.0, at).unwrap();
         let [_, capacity_g] = pushes_g(&follower, Sway::Right);
         for step in 1..=20 {
-            blocks.support = way.map(|part| part * at * f64::from(step) / 20.0);
+            blocks.support = direction.map(|part| part * at * f64::from(step) / 20.0);
             assert!(blocks.settle());
         }
         let stride = capacity_g / 29.5;
@@ -816,7 +817,7 @@ fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
 /// of the tie, on three hinges and on four. Its tie breaks where the rigid one has stretched so far.
 #[test]
 fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
-    for (stiffness, prestress, yields_at, way, at) in [
+    for (stiffness, prestress, yields_at, direction, at) in [
         (1.0, 0.05, f64::INFINITY, OUT, 0.06),
         (150.0, 0.03, f64::INFINITY, DOWN, 0.12),
         (150.0, 0.0, 0.1, OUT, 0.03),
@@ -824,7 +825,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
         let (row, _) = tied(16, stiffness, prestress, yields_at, false);
         let weight_n = row.mass_kg() * 9.81;
         let mut follower = Follower::new(&row).unwrap();
-        follower.move_supports(right(way), 0.0, at).unwrap();
+        follower.move_supports(right(direction), 0.0, at).unwrap();
         let rigid = follower.stance.ties[0];
         let joints = |normal_pa_m: f64| {
             let properties = ElasticProperties {
@@ -832,7 +833,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
                 ..ElasticProperties::of_stiffness(normal_pa_m)
             };
             let joints = ElasticStructure::of_row(&row, &properties).unwrap();
-            joints.on_supports(right(way)(at).displacements())
+            joints.on_supports(right(direction)(at).displacements())
         };
         let mut last = f64::INFINITY;
         for normal_pa_m in [1e9, 1e11, 1e13] {
@@ -890,8 +891,8 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
             right: movement(far + off),
         };
         let mut follower = Follower::new(&row).unwrap();
-        let way = |part: f64| along * part;
-        assert_eq!(follower.move_supports(way, 0.0, 1.0).unwrap(), None);
+        let direction = |part: f64| along * part;
+        assert_eq!(follower.move_supports(direction, 0.0, 1.0).unwrap(), None);
         let built = Follower::new(&row).unwrap();
         for sway in [Sway::Right, Sway::Left] {
             let [now, then] =
@@ -998,7 +999,7 @@ fn an_arch_that_turns_as_a_whole_leans() {
 fn paths_are_those_of_another_program() {
     let e = Edge::Extrados;
     let i = Edge::Intrados;
-    for (embrace_deg, thickness, voussoirs, way, expected) in [
+    for (embrace_deg, thickness, voussoirs, direction, expected) in [
         (180.0, 0.15, 20, OUT, 0.107_852),
         (180.0, 0.15, 36, OUT, 0.111_646_18),
         (180.0, 0.15, 72, OUT, 0.123_689),
@@ -1012,15 +1013,15 @@ fn paths_are_those_of_another_program() {
         (140.0, 0.15, 72, OUT, 0.221_228),
         (140.0, 0.20, 36, DIAGONAL, 0.448_308),
     ] {
-        let found = falls_at(&arch(embrace_deg, thickness, voussoirs), way);
+        let found = falls_at(&arch(embrace_deg, thickness, voussoirs), direction);
         // They are known to six digits.
         assert!(
             (found - expected).abs() < 6e-7,
-            "{embrace_deg} {thickness} {way:?}: {found}"
+            "{embrace_deg} {thickness} {direction:?}: {found}"
         );
     }
     let semicircle = arch(180.0, 0.15, 36);
-    for (way, at, thrust, hinges) in [
+    for (direction, at, thrust, hinges) in [
         (
             OUT,
             0.027_912,
@@ -1053,7 +1054,7 @@ fn paths_are_those_of_another_program() {
         ),
     ] {
         let mut follower = Follower::new(&semicircle).unwrap();
-        follower.move_supports(right(way), 0.0, at).unwrap();
+        follower.move_supports(right(direction), 0.0, at).unwrap();
         let state = follower.state().unwrap();
         // The movement is given to six digits, and the thrust changes up to three times as fast as it.
         assert!(
@@ -1254,15 +1255,15 @@ fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
         let ring = Ring::new(thickness, f64::to_radians(embrace_deg)).unwrap();
         for radius_m in [1.0, 2.0, 3.0, 4.0, 6.0, 8.0] {
             let row = Row::arch(&ring, voussoirs, radius_m, 1.0, 2000.0).unwrap();
-            let way = |part: f64| right([-1.0, 0.0])(radius_m * part);
+            let direction = |part: f64| right([-1.0, 0.0])(radius_m * part);
             let Some(at) = Follower::new(&row)
-                .and_then(|mut scout| scout.move_supports(way, 0.0, 1.7))
+                .and_then(|mut scout| scout.move_supports(direction, 0.0, 1.7))
                 .unwrap()
             else {
                 panic!("it stands");
             };
             let mut follower = Follower::new(&row).unwrap();
-            follower.move_supports(way, 0.0, at).unwrap();
+            follower.move_supports(direction, 0.0, at).unwrap();
             let state = follower.state().unwrap();
             assert!(state.right_reaction.linear.x.abs() < 1e-9);
             for sway in [Sway::Right, Sway::Left] {
@@ -1284,7 +1285,7 @@ fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
 fn pins_may_change_sides() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.18\nembrace_deg = 100.0\nvoussoirs = 20\n";
     let scenario = parsed(text);
-    let down = Way {
+    let down = Direction {
         springing: Sway::Right,
         angle_deg: 90.0,
     };
@@ -1414,22 +1415,22 @@ fn what_has_no_two_springings_has_no_spread() {
 /// jams, and neither its weights nor its iterations are the reason.
 #[test]
 fn a_flat_thick_arch_jams() {
-    let way = |embrace_deg, way| {
+    let direction = |embrace_deg, direction| {
         let row = arch(embrace_deg, 0.41, 12);
         Follower::new(&row)
             .unwrap()
-            .move_supports(right(way), 0.0, 1e-3)
+            .move_supports(right(direction), 0.0, 1e-3)
     };
     for jams in [INWARDS, DOWN] {
-        let error = way(97.0, jams).unwrap_err();
+        let error = direction(97.0, jams).unwrap_err();
         assert!(
             matches!(error, SettlingError::Contact(ContactError::Jammed(_))),
             "{error}"
         );
     }
-    assert_eq!(way(97.0, OUT), Ok(None));
+    assert_eq!(direction(97.0, OUT), Ok(None));
     // (1 + 0.205) cos(51.5 degrees) = 0.750 is below 1 - 0.205.
-    assert_eq!(way(103.0, INWARDS), Ok(None));
+    assert_eq!(direction(103.0, INWARDS), Ok(None));
 
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.41\nembrace_deg = 97.0\nvoussoirs = 12\n[free_hinges]\n";
     let folder = tempfile::tempdir().unwrap();

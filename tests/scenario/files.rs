@@ -5,8 +5,8 @@ use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
 use archrock::scenario::FreeTable;
 use archrock::scenario::{
-    Ground, Motion, Place, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
-    shown, shown_lines,
+    Ground, Motion, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
+    TextPosition, shown, shown_lines,
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
 use proptest::prelude::*;
@@ -22,7 +22,7 @@ fn assert_errors(text: &str, expected: &[(usize, usize, &[&str])]) {
     let errors = parse(text).expect_err("the text is faulty");
     assert_eq!(errors.0.len(), expected.len(), "{errors}");
     for (error, &(line, column, words)) in errors.0.iter().zip(expected) {
-        assert_eq!(error.place, Some(Place { line, column }), "{error}");
+        assert_eq!(error.place, Some(TextPosition { line, column }), "{error}");
         for word in words {
             assert!(error.message.contains(word), "{word:?} is not in: {error}");
         }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use crate::common::program::{archrock, stderr};
-use archrock::scenario::{Assignment, Changes, Scenario, Source};
+use archrock::scenario::{Assignment, ReadOptions, Scenario, Source};
 
 const TEXT: &str = "title = \"x\"\n\
                     [arch]\n\
@@ -16,10 +16,10 @@ const TEXT: &str = "title = \"x\"\n\
 
 fn read(set: &[&str]) -> Result<Scenario, String> {
     let set: Vec<Assignment> = set.iter().map(|one| one.parse().unwrap()).collect();
-    let changes = Changes {
+    let changes = ReadOptions {
         hinges: None,
         set: &set,
-        ..Changes::default()
+        ..ReadOptions::default()
     };
     Scenario::of(&Source::of_text(TEXT, "s.toml"), &changes).map_err(|errors| errors.to_string())
 }
@@ -116,10 +116,10 @@ fn a_wrong_assignment_is_refused_like_a_wrong_line() {
     assert_eq!(errors.lines().count(), 2, "{errors}");
     let text = TEXT.replace("5.0", "-5.0");
     let set = ["arch.embrace_deg=200".parse().unwrap()];
-    let changes = Changes {
+    let changes = ReadOptions {
         hinges: None,
         set: &set,
-        ..Changes::default()
+        ..ReadOptions::default()
     };
     let errors = Scenario::of(&Source::of_text(&text, "s.toml"), &changes).unwrap_err();
     let errors = errors.to_string();
@@ -149,10 +149,10 @@ fn entries_of_lists_are_counted_from_one() {
     let text = loads([500.0, 800.0]);
     let read = |set: &str| {
         let set = [set.parse().unwrap()];
-        let changes = Changes {
+        let changes = ReadOptions {
             hinges: None,
             set: &set,
-            ..Changes::default()
+            ..ReadOptions::default()
         };
         Scenario::of(&Source::of_text(&text, "s.toml"), &changes)
     };

@@ -7,7 +7,7 @@ use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::settling::Held;
 use archrock::mechanics::stability::onset;
 use archrock::scenario::Structure;
-use archrock::studies::capacity::{self, NoCapacity};
+use archrock::studies::capacity::{self, CapacityCurveError};
 use archrock::{
     Column, FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
 };
@@ -17,7 +17,7 @@ use nalgebra::Vector2;
 fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
-) -> Result<[Capacity; 2], NoCapacity> {
+) -> Result<[Capacity; 2], CapacityCurveError> {
     capacity::capacity(scenario, point_m).map(Into::into)
 }
 
@@ -210,7 +210,7 @@ fn curves_begin_at_no_displacement_and_no_period() {
 fn control_points_must_be_on_the_structure_and_move() {
     let scenario = parsed(POINTED);
     let outside = capacity(&scenario, Some(Vector2::new(0.0, 0.0))).unwrap_err();
-    assert_eq!(outside, NoCapacity::Outside(Vector2::zeros()));
+    assert_eq!(outside, CapacityCurveError::Outside(Vector2::zeros()));
     // The left pier stands still while the arch sways right, because the hinges are in the arch and at the right springing.
     let still = capacity(&scenario, Some(Vector2::new(-3.5, -1.0))).unwrap_err();
     assert!(
@@ -220,7 +220,7 @@ fn control_points_must_be_on_the_structure_and_move() {
     let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
     let refused = capacity(&parsed(lintel), None);
     assert!(
-        matches!(refused, Err(NoCapacity::FourLinks(_))),
+        matches!(refused, Err(CapacityCurveError::FourLinks(_))),
         "{refused:?}"
     );
 }

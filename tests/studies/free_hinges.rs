@@ -12,7 +12,7 @@ use crate::common::results::Table;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::repeatability::Repeatability;
 use archrock::output::Figure;
-use archrock::scenario::{Changes, Hinges, Scenario, ScenarioErrors, Source};
+use archrock::scenario::{Hinges, ReadOptions, Scenario, ScenarioErrors, Source};
 use archrock::studies::ending::Ending;
 use archrock::studies::ending::Verdict;
 use archrock::studies::map::picture::draw;
@@ -457,10 +457,10 @@ fn what_is_of_four_links_is_refused() {
 }
 
 fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
-    let changes = Changes {
+    let changes = ReadOptions {
         hinges: Some(hinges),
         set: &[],
-        ..Changes::default()
+        ..ReadOptions::default()
     };
     Scenario::of(&Source::of_file(file)?, &changes)
 }

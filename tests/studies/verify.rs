@@ -8,8 +8,8 @@ use crate::common::prose::{golden, shows};
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
-    ByDisplacement, GoverningSide, Mechanism, Method, NoCheck, SideCheck, StateCheck, Summary,
-    page, verify, words,
+    DisplacementCheck, GoverningSide, Mechanism, Method, SideCheck, StateCheck, Summary,
+    VerifyError, page, verify, words,
 };
 use archrock::{Scenario, Sway};
 use nalgebra::Vector2;
@@ -41,7 +41,7 @@ fn governing(check: &Summary, state: LimitState) -> Option<(GoverningSide, Metho
     Some((one.side?, one.method?, one.zeta_e?))
 }
 
-fn displacement(check: &Summary, state: LimitState, sway: Sway) -> ByDisplacement {
+fn displacement(check: &Summary, state: LimitState, sway: Sway) -> DisplacementCheck {
     side(check, state, sway).displacement.unwrap()
 }
 
@@ -160,7 +160,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
     let zeta_e = ["0.97332", "0.49300", "1.27654", "0.53135"];
     for (((structure, sway), d0), zeta_e) in cases().iter().zip(d0).zip(zeta_e) {
         let check = check(&format!("{structure}{DEMAND}"));
-        let way = check.mechanisms[sway].way.as_ref().unwrap();
+        let way = check.mechanisms[sway].curves.as_ref().unwrap();
         let crown = way.crown.as_ref().unwrap();
         printed(crown.end().oscillator_displacement_m, d0);
         let own = displacement(&check, LimitState::Slv, *sway);
@@ -463,7 +463,7 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
     for structure in [LOCKS] {
         let check = check(&format!("{structure}{DEMAND}"));
         for (sway, mechanism) in &check.mechanisms {
-            assert!(mechanism.way.is_none() && mechanism.no_curve.is_some());
+            assert!(mechanism.curves.is_none() && mechanism.no_curve.is_some());
             // The virtual work of the bodies reproduces the push of limit analysis.
             let model = parsed(structure).model().unwrap();
             let incipient_g = model.incipient_acceleration_g(*sway).unwrap();
@@ -479,7 +479,7 @@ fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
         let only =
             format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
         let error = verify(&parsed(&only)).unwrap_err();
-        assert!(matches!(error, NoCheck::NoCurve(_)));
+        assert!(matches!(error, VerifyError::NoCurve(_)));
         assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
     }
 }
@@ -504,7 +504,7 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
     let delta = |one: &Mechanism| Vector2::new(one.bodies[0].delta_x, one.bodies[0].delta_y);
     assert!((delta(own) - delta(block)).norm() < 1e-9);
     let crowns = [own, block].map(|one| {
-        let way = one.way.as_ref().unwrap();
+        let way = one.curves.as_ref().unwrap();
         assert!((way.friction_up_to(0.6) - 0.2).abs() < 1e-9);
         way.crown.as_ref().unwrap().end().displacement_m
     });
@@ -528,7 +528,7 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
         (&taper, Sway::Left, 0.5, taper_centre_m),
     ] {
         let mechanism = &check.mechanisms[&sway];
-        let way = mechanism.way.as_ref().unwrap();
+        let way = mechanism.curves.as_ref().unwrap();
         let (alpha0, slenderness) = (b_m / h_m, f64::atan2(b_m, h_m));
         assert!((mechanism.alpha0 / alpha0 - 1.0).abs() < 1e-9);
         assert!((way.centre.end().oscillator_displacement_m / b_m - 1.0).abs() < 1e-9);
@@ -579,7 +579,7 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     };
     let error = verify(&parsed(&with(0.3))).unwrap_err();
     assert!(
-        matches!(error, NoCheck::Slides { coefficient, at_g, .. } if coefficient == 0.3 && (at_g - 0.3).abs() < 1e-9),
+        matches!(error, VerifyError::Slides { coefficient, at_g, .. } if coefficient == 0.3 && (at_g - 0.3).abs() < 1e-9),
         "{error}"
     );
     let enough = parsed(&with(0.52));
@@ -595,7 +595,7 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     let slides = format!("{arch}[free_hinges]\nfriction_coefficient = 0.42\n{DEMAND}");
     let error = verify(&parsed(&slides)).unwrap_err();
     assert!(
-        matches!(error, NoCheck::Slides { coefficient, at_g, .. } if coefficient == 0.42 && (at_g - 0.1204).abs() < 5e-5),
+        matches!(error, VerifyError::Slides { coefficient, at_g, .. } if coefficient == 0.42 && (at_g - 0.1204).abs() < 5e-5),
         "{error}"
     );
     let warned = check(&format!("{arch}{DEMAND}")).warnings;

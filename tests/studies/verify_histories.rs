@@ -11,7 +11,9 @@ use crate::common::prose::{shows, skeleton};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::scenario::LimitState;
-use archrock::studies::verify::{Counted, Histories, NoCheck, RecordPeaks, Summary, verify, words};
+use archrock::studies::verify::{
+    ComparedPeak, Histories, RecordPeaks, Summary, VerifyError, verify, words,
+};
 use archrock::{Request, Scenario, State, Sway};
 use nalgebra::{Rotation2, Vector2};
 use serde_json::Value;
@@ -311,7 +313,7 @@ fn passes_of(histories: &Histories) -> [Option<bool>; 2] {
 #[test]
 fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     let seven = &*SEVEN;
-    assert!(seven.demand == Counted::Mean && passes_of(seven) == [Some(true); 2]);
+    assert!(seven.demand == ComparedPeak::Mean && passes_of(seven) == [Some(true); 2]);
     for (side, own) in seven.sides.iter() {
         let peaks_m = peaks(&seven.records, side);
         let mean_m = peaks_m.iter().sum::<f64>() / 7.0;
@@ -352,7 +354,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         let largest_m = peaks(&few.records, Sway::Right)
             .into_iter()
             .fold(0.0, f64::max);
-        assert!(few.demand == Counted::Largest && own.demand_m == Some(largest_m));
+        assert!(few.demand == ComparedPeak::Largest && own.demand_m == Some(largest_m));
         assert_eq!(own.mean_interval_m, None);
         let within =
             [own.capacity_m, own.capacity_over_fc_m].map(|allowed_m| largest_m <= allowed_m);
@@ -538,7 +540,7 @@ fn records_that_make_no_check_are_refused() {
     );
     assert!(!matches!(
         verify(&Scenario::parse(COLUMN, "a").unwrap()),
-        Err(NoCheck::Histories { .. })
+        Err(VerifyError::Histories { .. })
     ));
 }
 

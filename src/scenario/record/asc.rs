@@ -5,14 +5,14 @@
 use std::collections::HashMap;
 
 use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number};
-use super::unit::{Recorded, Unit};
+use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
 /// Largest number of lines of the header.
 const MAX_HEADER_LINES: usize = 200;
 
 /// Reads the samples; the first is at time zero.
-pub(super) fn parse(text: &str, quantity: Recorded) -> Parsed<Contents> {
+pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> {
     const STEP: &str = "SAMPLING_INTERVAL_S";
     let (mut header, mut last) = (HashMap::new(), 0);
     for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
@@ -45,10 +45,10 @@ pub(super) fn parse(text: &str, quantity: Recorded) -> Parsed<Contents> {
     Ok(Contents::new(values.evenly(step_s, step_line, STEP)?, unit))
 }
 
-fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
+fn check_quantity(held: &str, quantity: RecordedQuantity) -> Result<(), String> {
     let wanted = match quantity {
-        Recorded::Acceleration => "an acceleration history",
-        Recorded::Velocity => "a velocity history",
+        RecordedQuantity::Acceleration => "an acceleration history",
+        RecordedQuantity::Velocity => "a velocity history",
     };
     let unless = match held {
         "VELOCITY" => ", unless you give `quantity = \"velocity\"`",
@@ -62,7 +62,7 @@ fn check_quantity(held: &str, quantity: Recorded) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Contents, Format, Layout, Recorded, Unit};
+    use crate::scenario::record::{Contents, Format, Layout, RecordedQuantity, Unit};
 
     fn asc() -> Layout {
         Layout::new(Format::Asc)
@@ -88,7 +88,7 @@ mod tests {
         let contents = asc().parse(text.as_bytes()).unwrap();
         assert_eq!(contents.unit, Unit::Gravity);
         let velocities = Layout {
-            quantity: Recorded::Velocity,
+            quantity: RecordedQuantity::Velocity,
             ..asc()
         };
         assert_fault(FILE, &velocities, 6, "leave out `quantity");

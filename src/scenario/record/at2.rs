@@ -7,7 +7,7 @@
 use super::samples::{
     Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
 };
-use super::unit::{Recorded, Unit};
+use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
 /// Largest number of lines in which the end of the header is searched for.
@@ -16,9 +16,13 @@ const MAX_HEADER_LINES: usize = 64;
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
 /// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
-pub(super) fn parse(text: &str, unit: Option<Unit>, quantity: Recorded) -> Parsed<Contents> {
+pub(super) fn parse(
+    text: &str,
+    unit: Option<Unit>,
+    quantity: RecordedQuantity,
+) -> Parsed<Contents> {
     let (line, [count, step_s], named) = header(text, unit, quantity)?;
-    let gravity = Some(Unit::Gravity).filter(|_| quantity == Recorded::Acceleration);
+    let gravity = Some(Unit::Gravity).filter(|_| quantity == RecordedQuantity::Acceleration);
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
     let unit = unit.or(named).or(gravity);
     let unit = unit.ok_or_else(|| LineFault::on(line)(missing))?;
@@ -53,7 +57,7 @@ const STEP: &str = "DT";
 fn header(
     text: &str,
     known: Option<Unit>,
-    quantity: Recorded,
+    quantity: RecordedQuantity,
 ) -> Parsed<(usize, [f64; 2], Option<Unit>)> {
     let (mut unit, mut items, mut last) = (None, Vec::new(), 1);
     for (text, line) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
@@ -140,7 +144,7 @@ fn leading_number(word: &str) -> Option<f64> {
 }
 
 /// Returns an error if a line of the header shows that the file contains another quantity.
-fn check_quantity(line: &str, wanted: Recorded) -> Result<(), String> {
+fn check_quantity(line: &str, wanted: RecordedQuantity) -> Result<(), String> {
     let line = line.to_ascii_uppercase();
     let holds = |name: &str| line.contains(&format!("{name} TIME"));
     let (velocities, accelerations) = (holds("VELOCITY"), holds("ACCELERATION"));
@@ -148,10 +152,10 @@ fn check_quantity(line: &str, wanted: Recorded) -> Result<(), String> {
         _ if holds("DISPLACEMENT") => {
             "the file holds a displacement history; must be an acceleration or velocity history"
         }
-        Recorded::Acceleration if velocities && !accelerations => {
+        RecordedQuantity::Acceleration if velocities && !accelerations => {
             "the file holds a velocity history: give `quantity = \"velocity\"`"
         }
-        Recorded::Velocity if accelerations => {
+        RecordedQuantity::Velocity if accelerations => {
             "the file holds an acceleration history: leave out `quantity = \"velocity\"`"
         }
         _ => return Ok(()),
@@ -171,7 +175,7 @@ fn unit_named(line: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::{assert_fault, parse};
-    use crate::scenario::record::{Format, Layout, Recorded, Unit};
+    use crate::scenario::record::{Format, Layout, RecordedQuantity, Unit};
 
     #[test]
     fn headers_of_all_wordings_are_read() {
@@ -222,7 +226,7 @@ mod tests {
             values("1,-2-3\n\n 4\r\n\u{1a}").unwrap(),
             [1.0, -2.0, -3.0, 4.0]
         );
-        // Numbers without even a sign between them are not guessed.
+        // Numbers without a sign or blank between them are an error.
         for line in [
             "0.12340.5678 0 0 0",
             ".12E-03.56E-03 0 0",
@@ -315,7 +319,7 @@ mod tests {
     #[test]
     fn velocities_are_read_where_they_are_announced() {
         let velocities = |unit| Layout {
-            quantity: Recorded::Velocity,
+            quantity: RecordedQuantity::Velocity,
             unit,
             ..Layout::new(Format::At2)
         };

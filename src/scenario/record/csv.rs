@@ -426,7 +426,7 @@ mod tests {
                 columns(name("t"), name("a")),
             ),
             ("a,t\n1,0\n-2,.5\n", columns(number(2), number(1))),
-            // Quotation marks keep delimiters, line breaks and the like inside a cell.
+            // Quoted cells may contain delimiters and line breaks.
             (
                 "\"x; \"\"raw\"\"\",t,\"a\"\n\"1,5\",0,1\n;,\"0.5\", \"-2\" \n",
                 columns(name("t"), name("a")),
@@ -459,7 +459,7 @@ mod tests {
             "`x` is not a finite number",
         );
         fault("t,a\n0,1\n1,\"2\n3\"\n", 4, "`2` is not a finite number");
-        // A quotation mark that is never closed quotes everything after it.
+        // Without a closing quotation mark all further text is quoted.
         fault("t,a\n0,1\n1,\"2\n2,3\n", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,\"2\n2,3", 4, "`2` is not a finite number");
         fault("t,a\n0,1\n1,inf\n", 3, "`inf` is not a finite number");
@@ -471,7 +471,7 @@ mod tests {
         fault("t,a\n0,1\n-1,2\n", 3, "does not increase");
         fault("t,a\n0,1\n1e7,2\n", 3, "out of range");
         fault("t,a\n0,1\n", 2, "number of samples is 1");
-        // A first row that holds one proper number is not a header.
+        // A first row with a number is not a header.
         assert_fault("0,1x\n1,2\n", &numbered(), 1, "`1x`");
     }
 
@@ -503,7 +503,7 @@ mod tests {
         };
         let text = "time  acc\n0 1\n0.5 -2\n";
         assert_eq!(parse(text, &named), Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
-        // A name with a blank in it would count as two.
+        // A name with a blank would be two names.
         let text = "time (s) acc (g)\n0 1\n0.5 -2\n";
         assert_fault(text, &named, 1, "4 names between blanks for 2 columns");
     }
@@ -556,7 +556,7 @@ mod tests {
             1,
             "`Station X` is not a finite number; numbers begin on line 5: give `skip_rows = 4` if the table does",
         );
-        // Lines keep their numbers.
+        // Errors have the line numbers of the file.
         let text = text.replace("-2", "x");
         assert_fault(&text, &skipping(3), 6, "`x` is not a finite number");
         assert_fault("a\nb\n", &skipping(5), 2, "there are no samples");

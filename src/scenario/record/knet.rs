@@ -108,7 +108,7 @@ mod tests {
         }
     }
 
-    /// Without the mean over time, the velocity at the end is zero.
+    /// If the mean over time is removed, the velocity at the end is zero.
     #[test]
     fn the_offset_goes_only_where_that_is_asked_for() {
         let layout = Layout {

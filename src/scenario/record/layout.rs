@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
-use super::unit::{Recorded, Unit, any_unit};
+use super::unit::{RecordedQuantity, Unit, any_unit};
 use crate::scenario::prelude::*;
 
 named! {
@@ -81,7 +81,7 @@ pub struct Layout {
     pub decimal: Decimal,
     /// The quantity that the samples measure.
     #[serde(skip_serializing_if = "is_default")]
-    pub quantity: Recorded,
+    pub quantity: RecordedQuantity,
     /// True to subtract the mean over time from the accelerations.
     #[serde(skip_serializing_if = "is_default")]
     pub remove_mean: bool,
@@ -175,14 +175,14 @@ impl Layout {
         let acceleration_column = table.optional("acceleration_column", &any_column());
         let wrapped = table.or("wrapped", &switch(), false);
         let decimals = one_of(Decimal::ALL, Decimal::name);
-        let quantities = one_of(Recorded::ALL, Recorded::name);
+        let quantities = one_of(RecordedQuantity::ALL, RecordedQuantity::name);
         let mut layout = Self {
             acceleration_column,
             wrapped,
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
             decimal: table.or("decimal", &decimals, Decimal::Point),
             unit: table.optional("unit", &any_unit()),
-            quantity: table.or("quantity", &quantities, Recorded::Acceleration),
+            quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
             remove_mean: table.or("remove_mean", &switch(), false),
             ..Self::new(format.unwrap_or_default())
         };
@@ -196,7 +196,7 @@ impl Layout {
         if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
             table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
-        let is_velocity = quantity == Recorded::Velocity;
+        let is_velocity = quantity == RecordedQuantity::Velocity;
         let wrong = "does not apply to a file of K-NET, which holds accelerations";
         let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
         let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";

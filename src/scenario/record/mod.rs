@@ -38,7 +38,7 @@ use std::sync::Arc;
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;
 pub use samples::{Contents, LineFault};
-pub use unit::{Recorded, Unit};
+pub use unit::{RecordedQuantity, Unit};
 
 use super::assignment::Assignment;
 use super::error::ScenarioErrors;
@@ -178,7 +178,10 @@ impl Record {
     }
 
     /// Reads `[ground.record]` and makes the motion.
-    pub(super) fn read(table: &mut Table<'_>, known: Known<'_>) -> Reading<(Self, GroundMotion)> {
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        known: KnownRecords<'_>,
+    ) -> ReadResult<(Self, GroundMotion)> {
         let components = one_of(Component::ALL, Component::name);
         let component = table.or("component", &components, Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
@@ -189,7 +192,7 @@ impl Record {
             "cannot be combined with `component = \"vertical\"`; give one record per direction";
         table.refuse(is_second, "vertical", wrong)?;
         table.sound()?;
-        let gravity_m_s2 = known.1.ok_or(Reported)?;
+        let gravity_m_s2 = known.1.ok_or(FaultRecorded)?;
         let record = Self {
             main: main?,
             component,
@@ -206,7 +209,7 @@ impl Record {
 }
 
 /// Input for reading records: records already in memory, and gravity if `[simulation]` gives a valid value.
-pub(super) type Known<'a> = (&'a [Series], Option<f64>);
+pub(super) type KnownRecords<'a> = (&'a [Series], Option<f64>);
 
 impl Series {
     /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
@@ -335,8 +338,8 @@ impl Series {
     /// Returns the unscaled accelerations in the unit of the file; for velocities, in that unit per second.
     fn accelerations(&self) -> Cow<'_, [(f64, f64)]> {
         match self.unit.quantity() {
-            Recorded::Acceleration => Cow::Borrowed(&*self.samples),
-            Recorded::Velocity => {
+            RecordedQuantity::Acceleration => Cow::Borrowed(&*self.samples),
+            RecordedQuantity::Velocity => {
                 let constants = self.samples.windows(2).flat_map(|pair| {
                     let [(from_s, from), (to_s, to)] = [pair[0], pair[1]];
                     let acceleration = (to - from) / (to_s - from_s);
@@ -367,7 +370,7 @@ impl Series {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }
 
-    fn read(table: &mut Table<'_>, known: Known<'_>, start_s: f64) -> Reading<Self> {
+    fn read(table: &mut Table<'_>, known: KnownRecords<'_>, start_s: f64) -> ReadResult<Self> {
         let (known, gravity_m_s2) = known;
         let file = table.required("file", &text());
         let format = Format::read_or_ending(table, &file);
@@ -385,12 +388,12 @@ impl Series {
         };
         let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
         let series = series.scaled(scaling);
-        series.check(table, start_s, gravity_m_s2.ok_or(Reported)?)?;
+        series.check(table, start_s, gravity_m_s2.ok_or(FaultRecorded)?)?;
         Ok(series)
     }
 
     /// Checks that the record is a possible motion of the ground.
-    fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> Reading<()> {
+    fn check(&self, table: &mut Table<'_>, start_s: f64, gravity_m_s2: f64) -> ReadResult<()> {
         let is_zero = matches!(self.scaling, Scaling::PeakG(_)) && self.peak() == 0.0;
         let wrong = "cannot be reached: the record is zero throughout";
         table.refuse(is_zero, "peak_g", wrong)?;
@@ -508,7 +511,7 @@ mod tests {
     }
 
     proptest! {
-        /// Noise and damaged files are either read, in order, or refused.
+        /// Random and damaged files are either read with ascending times, or are an error.
         #[test]
         fn readers_never_panic(
             noise in any::<String>(),

@@ -5,7 +5,7 @@ use crate::scenario::prelude::*;
 named! {
     /// The quantity that the samples of a record measure.
     #[derive(Default)]
-    pub enum Recorded {
+    pub enum RecordedQuantity {
         /// Accelerations, joined by straight lines.
         #[default]
         Acceleration = "acceleration",
@@ -35,10 +35,12 @@ named! {
 impl Unit {
     /// Returns the quantity that the unit measures.
     #[must_use]
-    pub const fn quantity(self) -> Recorded {
+    pub const fn quantity(self) -> RecordedQuantity {
         match self {
-            Self::Gravity | Self::MetrePerS2 | Self::CentimetrePerS2 => Recorded::Acceleration,
-            Self::MetrePerS | Self::CentimetrePerS => Recorded::Velocity,
+            Self::Gravity | Self::MetrePerS2 | Self::CentimetrePerS2 => {
+                RecordedQuantity::Acceleration
+            }
+            Self::MetrePerS | Self::CentimetrePerS => RecordedQuantity::Velocity,
         }
     }
 
@@ -54,17 +56,21 @@ impl Unit {
     /// Returns the message that the unit belongs to the other quantity, with the remedy.
     pub(super) const fn other_quantity(self) -> &'static str {
         match self.quantity() {
-            Recorded::Velocity => {
+            RecordedQuantity::Velocity => {
                 "a unit of velocity; give `quantity = \"velocity\"` if the record is one of velocities"
             }
-            Recorded::Acceleration => {
+            RecordedQuantity::Acceleration => {
                 "a unit of acceleration; leave out `quantity = \"velocity\"` if the record is one of accelerations"
             }
         }
     }
 
     /// Returns the unit in a header, which must be a unit of this quantity. `remedy` is for unknown units.
-    pub(super) fn of_header(text: &str, quantity: Recorded, remedy: &str) -> Result<Self, String> {
+    pub(super) fn of_header(
+        text: &str,
+        quantity: RecordedQuantity,
+        remedy: &str,
+    ) -> Result<Self, String> {
         let wrong = match Self::written(text) {
             Some(unit) if unit.quantity() == quantity => return Ok(unit),
             Some(unit) => format!(", {}", unit.other_quantity()),

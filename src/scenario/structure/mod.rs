@@ -63,29 +63,29 @@ impl Structure {
         table: &mut Table<'_>,
         hinges: Hinges,
         gravity_m_s2: Option<f64>,
-    ) -> Reading<(Self, Vec<TieTable>)> {
+    ) -> ReadResult<(Self, Vec<TieTable>)> {
         let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
-        let alone = beside.as_ref().is_ok_and(Additions::is_nothing);
+        let alone = beside.as_ref().is_ok_and(Additions::is_empty);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
         let column = table.table("column", |table| read_column(table, free_hinges));
-        let shape = masonry::read_shapes(table).map(Read::Shape);
+        let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.relate(&[OneOf(&tables, None)])?;
-        let read = arch.or(column.map(Read::Column)).or(shape);
-        let read = read.ok_or(Reported)?;
-        let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(Reported)?);
+        let read = arch.or(column.map(StructureTable::Column)).or(shape);
+        let read = read.ok_or(FaultRecorded)?;
+        let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
         let ties = beside.ties.clone();
         let structure = match read {
-            Read::Arch(arch) => Self::Arch(arch),
-            Read::Column(column) if beside.is_ties_at_most() => {
+            StructureTable::Arch(arch) => Self::Arch(arch),
+            StructureTable::Column(column) if beside.is_ties_at_most() => {
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
-            Read::Column(_) => {
+            StructureTable::Column(_) => {
                 return Err(beside.refused(table, "applies to an arch, not to a column"));
             }
-            Read::Shape(shape) => {
+            StructureTable::Shape(shape) => {
                 let masonry = beside.complete(table, shape, gravity_m_s2)?;
                 Self::Masonry(Box::new(masonry))
             }
@@ -244,7 +244,7 @@ fn four_link_row<L: Into<ImpactLaw>>(
 }
 
 /// The contents of a table that describes a structure.
-enum Read {
+enum StructureTable {
     Arch(Arch),
     Column(Column),
     Shape(Shape),
@@ -252,7 +252,7 @@ enum Read {
 
 /// Reads `[arch]`. With `alone` the arch has no piers, fill, loads or ties; with equal voussoirs or none it must then start as four links. With
 /// free hinges it must have voussoirs and stand.
-fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<Read> {
+fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResult<StructureTable> {
     let circular = Circular::read(table);
     let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
@@ -282,12 +282,12 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> Reading<R
             let wrong = format!("does not fit: {:?} must be {}", error.value, error.allowed);
             table.wrong(error.argument, wrong)
         });
-        return Ok(Read::Shape(Shape::Circular(arch?)));
+        return Ok(StructureTable::Shape(Shape::Circular(arch?)));
     }
     match arch.incipient() {
-        Ok(_) => Ok(Read::Arch(arch)),
+        Ok(_) => Ok(StructureTable::Arch(arch)),
         Err(LimitError::OtherMechanism(_) | LimitError::NoPush) if free_hinges => {
-            Ok(Read::Arch(arch))
+            Ok(StructureTable::Arch(arch))
         }
         Err(error) => {
             let keys = ["thickness_m", "thickness_ratio"];
@@ -331,7 +331,7 @@ const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
 
 /// Reads `[column]`. Drums and a taper need a model with joints.
-fn read_column(table: &mut Table<'_>, free_hinges: bool) -> Reading<Column> {
+fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);

@@ -20,7 +20,7 @@ use crate::scenario::{Scenario, Structure};
 
 /// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoCapacity {
+pub enum CapacityCurveError {
     /// The structure does not move as a mechanism of one degree of freedom.
     #[error(transparent)]
     FourLinks(#[from] FourLinkError),
@@ -46,7 +46,7 @@ pub enum NoCapacity {
 pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
-) -> Result<Sides<Capacity>, NoCapacity> {
+) -> Result<Sides<Capacity>, CapacityCurveError> {
     if let Some(row) = held_row(&scenario.structure)? {
         return of_row(&row, point_m, scenario.gravity_m_s2());
     }
@@ -62,7 +62,8 @@ pub fn capacity(
         let gravity_m_s2 = scenario.gravity_m_s2();
         let control = Control::point(bodies.body_point(control));
         let masses = bodies.masses(structure);
-        Capacity::new(sway, displaced, &masses, control, gravity_m_s2).map_err(NoCapacity::from)
+        Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
+            .map_err(CapacityCurveError::from)
     };
     Sides::try_of(side)
 }
@@ -81,9 +82,9 @@ fn of_row(
     row: &Row,
     point_m: Option<Vector2<f64>>,
     gravity_m_s2: f64,
-) -> Result<Sides<Capacity>, NoCapacity> {
+) -> Result<Sides<Capacity>, CapacityCurveError> {
     let control = control(row, point_m)?;
-    let side = |sway| -> Result<Capacity, NoCapacity> {
+    let side = |sway| -> Result<Capacity, CapacityCurveError> {
         let held = Held::new(row, sway)?;
         let bodies = Bodies::of_row(&held);
         let (masses, control) = (
@@ -101,10 +102,12 @@ fn of_row(
 fn control(
     structure: &dyn Parts,
     point_m: Option<Vector2<f64>>,
-) -> Result<(f64, Vector2<f64>), NoCapacity> {
+) -> Result<(f64, Vector2<f64>), CapacityCurveError> {
     match point_m {
         Some(at_m) => {
-            let place = structure.place_of(at_m).ok_or(NoCapacity::Outside(at_m))?;
+            let place = structure
+                .place_of(at_m)
+                .ok_or(CapacityCurveError::Outside(at_m))?;
             Ok((place, at_m))
         }
         None => Ok(structure.crown()),

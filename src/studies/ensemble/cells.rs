@@ -10,7 +10,7 @@ use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Spacing, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
 use crate::studies::map::{CellResult, OverturningMap, described};
-use crate::studies::results::{Reported, Results, Style};
+use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
@@ -295,7 +295,7 @@ impl CellsOfSamples<'_> {
     }
 }
 
-impl Reported for CellsOfSamples<'_> {
+impl ReportedStudy for CellsOfSamples<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {

@@ -12,7 +12,7 @@ use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
 use crate::output::axes::Scale;
 use crate::output::chart::Mark;
-use crate::output::panels::{MAIN, Panels, Subject, around};
+use crate::output::panels::{MAIN, Panels, Subject, scale_around};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
@@ -353,7 +353,7 @@ impl Histories {
         panels.ground(90.0, &subject, None);
         let values = bands.iter();
         let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
-        let y = around(&[], values, 6);
+        let y = scale_around(&[], values, 6);
         let model = scenario.model().ok();
         let body = model.and_then(|model| model.bodies().get(self.body).cloned());
         let of_body = body.filter(|name| !name.is_empty());

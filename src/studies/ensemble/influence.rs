@@ -7,7 +7,7 @@ use super::matters::Matters;
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
 use crate::output::chart::LEFT_PX;
-use crate::output::sheet::{Height, Sheet};
+use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::scenario::Uncertain;
 
@@ -143,7 +143,7 @@ pub(super) fn draw(figure: Figure, title: &str, influences: &[Influence<'_>]) ->
             format!("share in {answer}, alone, with its 95 % interval; (r) rank correlation");
         sheet.caption(14.0, &caption);
         sheet.gap(6.0);
-        let height = Height::Fixed(ROW_PX * numbers.len() as f64);
+        let height = PartHeight::Fixed(ROW_PX * numbers.len() as f64);
         sheet.part(height, move |drawing, part| {
             let axes = Axes {
                 frame: figure.right_of(LEFT_PX, part),

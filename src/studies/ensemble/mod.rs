@@ -20,7 +20,7 @@ use serde::de::DeserializeOwned;
 pub use self::report::Findings;
 pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
-use super::results::{Reported, Results, Style};
+use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
@@ -133,7 +133,7 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
     }
 }
 
-impl<Q: Question> Reported for Ensemble<'_, Q> {
+impl<Q: Question> ReportedStudy for Ensemble<'_, Q> {
     const FILES: &'static [&'static str] = Q::FILES;
 
     fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError> {

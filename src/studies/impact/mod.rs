@@ -3,8 +3,8 @@
 mod report;
 
 pub use self::report::chain;
-use self::report::{ByModel, Certificate, Summary, chain_of_four_links};
-use super::results::{Answer, StudyError};
+use self::report::{Certificate, ModelComparison, Summary, chain_of_four_links};
+use super::results::{PrintedResult, StudyError};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
@@ -76,19 +76,19 @@ impl<'a> LinkImpact<'a> {
     }
 
     /// Computes this impact by the models that obey the momentum theorems, and by the model of the scenario.
-    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ByModel> {
+    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ModelComparison> {
         use ImpactModel::{MaxRestitution, Mirrored, SameSections};
         let known = [MaxRestitution, SameSections, Mirrored];
         let own = Some(own).filter(|own| !known.contains(own));
         let (profile, sites) = (self.profile(), self.chain().sites);
         let models = known.into_iter().chain(own);
         models
-            .map(|model| ByModel::of(self, model, impact_by(before, profile, sites, model)))
+            .map(|model| ModelComparison::of(self, model, impact_by(before, profile, sites, model)))
             .collect()
     }
 
     /// Computes the largest restitution of all admissible motions.
-    fn certified(
+    fn largest_restitution(
         &self,
         before: &FourLink,
         joints: Option<usize>,
@@ -103,7 +103,7 @@ impl<'a> LinkImpact<'a> {
 
 /// A question about the impacts of four links.
 #[derive(Clone, Copy, Debug)]
-pub struct Question {
+pub struct ImpactOptions {
     /// Number of impacts.
     pub count: usize,
     /// True to compare the impact models.
@@ -123,10 +123,10 @@ pub fn chain_answer(
     model: &dyn MechanismModel,
     first: Sway,
     count: usize,
-) -> Result<Answer, StudyError> {
+) -> Result<PrintedResult, StudyError> {
     let impacts = |side| chain(model, side, count);
     let summary = Summary::new(scenario, model, (&[first], count), impacts);
-    Ok(Answer::of(&summary)?)
+    Ok(PrintedResult::of(&summary)?)
 }
 
 /// Computes the chain of four links with its impulses, and the requested details of one impact.
@@ -136,9 +136,9 @@ pub fn chain_answer(
 pub fn four_links_answer(
     scenario: &Scenario,
     impact: &LinkImpact<'_>,
-    question: &Question,
-) -> Result<Answer, StudyError> {
-    let (model, count) = (impact.model, question.count);
+    options: &ImpactOptions,
+) -> Result<PrintedResult, StudyError> {
+    let (model, count) = (impact.model, options.count);
     // An arch of equal voussoirs, or without voussoirs, is symmetric: both chains are mirror images.
     let sides = match scenario.structure.is_symmetric() {
         true => &[impact.first][..],
@@ -148,14 +148,14 @@ pub fn four_links_answer(
     let mut summary = Summary::new(scenario, model, (sides, count), impacts);
     summary.chosen = format!("impact {}{}", impact.index, impact.after_first());
     if let Some(before) = impact.before().map(|link| &link.mechanism) {
-        if question.models {
+        if options.models {
             summary.models = Some(impact.by_models(before, summary.model));
         }
-        if question.certificate {
-            let projection = impact.certified(before, question.joints);
+        if options.certificate {
+            let projection = impact.largest_restitution(before, options.joints);
             let projection = projection.map_err(StudyError::failed)?;
             summary.certificate = Some(Certificate::of(impact, &projection));
         }
     }
-    Ok(Answer::of(&summary)?)
+    Ok(PrintedResult::of(&summary)?)
 }

@@ -34,13 +34,13 @@ pub struct Summary {
     pub impacts_after_left: Option<Vec<ChainImpact>>,
     /// One impact by all impact models; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub models: Option<Vec<ByModel>>,
+    pub models: Option<Vec<ModelComparison>>,
     /// The largest restitution of all admissible motions; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// The mechanism before the first impact of each chain.
     #[serde(skip)]
-    pub(super) starts: Vec<Stance>,
+    pub(super) starts: Vec<SwayingMechanism>,
     /// The requested number of impacts.
     #[serde(skip)]
     pub(super) count: usize,
@@ -62,9 +62,9 @@ pub struct ChainImpact {
     /// Kinetic energy after the impact over that before.
     pub restitution: f64,
     /// The mechanism before the impact.
-    pub before: Stance,
+    pub before: SwayingMechanism,
     /// The mechanism after the impact.
-    pub after: Stance,
+    pub after: SwayingMechanism,
     /// Impulses; absent unless the structure moves as four links.
     #[serde(flatten)]
     pub impulses: Option<Impulses>,
@@ -81,7 +81,7 @@ pub struct Impulses {
 
 /// A mechanism, given by its sway and hinges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Stance {
+pub struct SwayingMechanism {
     /// The side to which the mechanism sways.
     pub sway: Sway,
     /// Hinges of the mechanism from left to right.
@@ -101,7 +101,7 @@ pub struct HingeImpulse {
 
 /// The position of a section.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Place {
+pub struct SectionPosition {
     /// Joint of a row, counted from the left; absent for a ring.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joint: Option<usize>,
@@ -143,7 +143,7 @@ pub struct LineExtremes {
 
 /// An impact by an impact model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ByModel {
+pub struct ModelComparison {
     /// The impact model.
     pub model: &'static str,
     /// The impact; null if no mechanism can follow by this model.
@@ -156,7 +156,7 @@ pub struct ModelImpact {
     /// Kinetic energy after the impact over that before.
     pub restitution: f64,
     /// The mechanism that follows.
-    pub after: Stance,
+    pub after: SwayingMechanism,
     /// The impulses.
     #[serde(flatten)]
     pub impulses: Impulses,
@@ -194,7 +194,7 @@ pub struct Certificate {
 pub struct OpenedJoint {
     /// Position of the joint.
     #[serde(flatten)]
-    pub place: Place,
+    pub place: SectionPosition,
     /// The edge about which it opens.
     pub edge: Edge,
     /// Opening rate over the closing rate.
@@ -211,7 +211,7 @@ struct Zone {
     rate: f64,
 }
 
-impl Stance {
+impl SwayingMechanism {
     fn of(model: &dyn MechanismModel, first: Sway, index: usize) -> Self {
         let sway = first.before(index);
         let hinges = model.hinges_after(index, sway);
@@ -226,8 +226,8 @@ pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<Chain
         Some(ChainImpact {
             index,
             restitution: model.restitution_from(first, index)?,
-            before: Stance::of(model, first, index - 1),
-            after: Stance::of(model, first, index),
+            before: SwayingMechanism::of(model, first, index - 1),
+            after: SwayingMechanism::of(model, first, index),
             impulses: None,
         })
     });
@@ -264,7 +264,7 @@ impl Impulses {
     }
 }
 
-impl Place {
+impl SectionPosition {
     fn of(profile: &dyn Profile, section: f64) -> Self {
         let joint = profile.joint(section);
         Self {
@@ -285,7 +285,7 @@ fn cell(joint: &Option<usize>, angle_deg: &Option<f64>) -> String {
 impl LineExtremes {
     fn of(impact: &LinkImpact<'_>, line: &ImpulseLine) -> Self {
         let extremes = line.extremes_from_left(impact.chain().sites, impact.sway());
-        let at = |section: f64| Place::of(impact.profile(), section);
+        let at = |section: f64| SectionPosition::of(impact.profile(), section);
         let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         let (eccentricity, normal) = (extremes.eccentricity_ratio, extremes.normal);
         let friction = extremes.friction_ratio;
@@ -325,14 +325,14 @@ impl LineExtremes {
     }
 }
 
-impl ByModel {
+impl ModelComparison {
     pub(super) fn of(impact: &LinkImpact<'_>, model: ImpactModel, found: Option<Impact>) -> Self {
         let (sway, profile) = (impact.sway(), impact.profile());
         let found = found.map(|found| {
             let hinges = found.mechanism.named_hinges_from_left(profile, sway).into();
             ModelImpact {
                 restitution: found.restitution,
-                after: Stance { sway, hinges },
+                after: SwayingMechanism { sway, hinges },
                 impulses: Impulses::of(impact, found.impulse_line.as_ref()),
             }
         });
@@ -348,7 +348,7 @@ impl Certificate {
         let (sway, profile) = (impact.sway(), impact.profile());
         let from_left = |joint: usize| sway.from_left(profile, projection.joints[joint].angle_rad);
         let opened = projection.opened().map(|(joint, edge, rate)| OpenedJoint {
-            place: Place::of(profile, from_left(joint)),
+            place: SectionPosition::of(profile, from_left(joint)),
             edge,
             opening_rate_ratio: rate,
         });
@@ -406,7 +406,9 @@ impl Summary {
         chain: impl Fn(Sway) -> Vec<ChainImpact>,
     ) -> Self {
         let impact = scenario.motion.impact();
-        let starts = sides.iter().map(|side| Stance::of(model, *side, 0));
+        let starts = sides
+            .iter()
+            .map(|side| SwayingMechanism::of(model, *side, 0));
         Self {
             impacts: chain(sides[0]),
             impacts_after_left: sides.get(1).map(|side| chain(*side)),
@@ -421,7 +423,7 @@ impl Summary {
     }
 
     /// Returns the chains, each with the mechanism before its first impact.
-    fn chains(&self) -> impl Iterator<Item = (&Stance, &[ChainImpact])> {
+    fn chains(&self) -> impl Iterator<Item = (&SwayingMechanism, &[ChainImpact])> {
         let left = self.impacts_after_left.as_deref();
         let chains = [Some(&*self.impacts), left].into_iter().flatten();
         self.starts.iter().zip(chains)
@@ -492,7 +494,7 @@ impl LinkImpact<'_> {
         let name = profile.joint(0.0).map_or("angle_deg", |_| "joint");
         let columns = [
             column(name, |section: &f64| {
-                let Place { joint, angle_deg } = Place::of(profile, *section);
+                let SectionPosition { joint, angle_deg } = SectionPosition::of(profile, *section);
                 joint.map_or_else(|| Cell::from(angle_deg), Cell::from)
             }),
             column("eccentricity_ratio", |place| {

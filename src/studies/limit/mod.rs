@@ -7,7 +7,7 @@ pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, Summary, TieLimits,
     Ties, YieldingJoint, YieldingTies,
 };
-use super::results::{Answer, StudyError};
+use super::results::{PrintedResult, StudyError};
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::four_links::FourLinkError;
@@ -25,8 +25,8 @@ use crate::scenario::Scenario;
 ///
 /// # Errors
 /// When the structure cannot stand, or the analysis does not apply or fails.
-pub fn limit(scenario: &Scenario) -> Result<Answer, StudyError> {
-    Ok(Answer::of(&summary(scenario)?)?)
+pub fn limit(scenario: &Scenario) -> Result<PrintedResult, StudyError> {
+    Ok(PrintedResult::of(&summary(scenario)?)?)
 }
 
 impl From<FrictionError> for StudyError {

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::picture::{self, Drawn};
 use super::{CellResult, CellRow, Described, OverturningMap, described};
 use crate::output::Figure;
-use crate::output::page::{escaped, filled, script_safe};
+use crate::output::page::{escaped, fill_template, script_safe};
 use crate::scenario::{Ground, Quantity, toml_text};
 use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
@@ -51,7 +51,7 @@ impl Cells<'_> {
     /// Makes the page from a picture for the screen.
     pub(crate) fn page(&self, title: &str, map: &OverturningMap<'_>, drawn: &Drawn) -> String {
         let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        filled(
+        fill_template(
             include_str!("page/page.html"),
             &[
                 ("PROGRAM", &version),

@@ -7,13 +7,13 @@ use crate::output::OutputError;
 use crate::output::table::{Column, column, csv};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED, number};
-use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, counts, in_words};
-use crate::studies::results::{Reported, Results, Style};
+use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, outcome_counts, outcome_label};
+use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::run::Scales;
 
 const SUMMARY: &str = "map.json";
 
-impl Reported for OverturningMap<'_> {
+impl ReportedStudy for OverturningMap<'_> {
     const FILES: &'static [&'static str] = &["map.svg", "map.html", SUMMARY, "map.csv"];
 
     fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
@@ -85,12 +85,12 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
         {
             (4, "still rocking at the end, which counts as survived")
         }
-        CellResult::Ended(ending) => in_words(ending),
+        CellResult::Ended(ending) => outcome_label(ending),
         CellResult::CannotStand => (7, "unable to stand"),
         CellResult::NotFourLinks => (8, "too thick for four links"),
         CellResult::Failed(_) => (9, "failed"),
     };
-    let counts = counts(cells.iter().map(words));
+    let counts = outcome_counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];
     if map.repeat {
         lines.push(format!(

@@ -1,6 +1,6 @@
 //! Caveats of a history, in sentences for words, warnings and the verdict.
 
-use crate::dynamics::history::{Outcome, Summary};
+use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::model::Model;
 use crate::dynamics::peak::Peak;
 use crate::dynamics::thrust::EXCESS_LEVELS;
@@ -13,7 +13,7 @@ pub(super) const STRAIGHT_RAD: f64 = 5e-7;
 pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
 
 /// Returns the peak of the first half cycle that rocks, in radians.
-pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
+pub(super) fn first_peak_rad(history: &History) -> Option<f64> {
     let cycles = history.half_cycles().into_iter();
     let mut peaks = cycles.map(|cycle| cycle.peak_rad);
     peaks.find(|peak_rad| *peak_rad > STRAIGHT_RAD)
@@ -22,7 +22,7 @@ pub(super) fn first_peak_rad(history: &Summary) -> Option<f64> {
 /// Returns warnings about a run: unlikely numbers of its scenario, and limits of its history. The texts name no options, because the Python
 /// package prints them too.
 #[must_use]
-pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Vec<String> {
+pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(model);
     let structure = &scenario.structure;
     // The ground cannot pull a column down. An arch moves as four links as long as its thrust line stays almost inside.
@@ -31,15 +31,18 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Ve
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
     let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
     warnings.extend(no_verdict(scenario, history));
-    if leaves && let Some(trust) = trust(history, structure, Some("compare with free hinges")) {
-        warnings.push(trust.join(" "));
+    if leaves
+        && let Some(four_link_limits) =
+            four_link_limits(history, structure, Some("compare with free hinges"))
+    {
+        warnings.push(four_link_limits.join(" "));
     }
-    warnings.extend(friction_need(scenario, history));
+    warnings.extend(friction_condition(scenario, history));
     warnings
 }
 
 /// Returns the reason why a run has no verdict, and the remedy; `None` for a complete run.
-pub(super) fn no_verdict(scenario: &Scenario, history: &Summary) -> Option<String> {
+pub(super) fn no_verdict(scenario: &Scenario, history: &History) -> Option<String> {
     let (end_s, ground_s) = (history.end_s, scenario.ground_motion().end_s());
     let why = if end_s < ground_s {
         format!("the run ends at {end_s:.4} s and the ground moves until {ground_s:.4} s")
@@ -62,7 +65,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
 }
 
 /// Returns the friction that a motion without sliding needs; `None` if stone certainly has it.
-pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<String> {
+pub(super) fn friction_condition(scenario: &Scenario, history: &History) -> Option<String> {
     let needed = history.thrust.as_ref()?.largest_friction.value;
     let [low, high] = STONE_FRICTION;
     if scenario.motion.friction_coefficient().is_some() || needed <= low {
@@ -77,7 +80,7 @@ pub(super) fn friction_need(scenario: &Scenario, history: &Summary) -> Option<St
 }
 
 /// Returns a conjunction and the quality of four links, for an excess of the thrust line in thicknesses.
-const fn grade(excess_ratio: f64) -> [&'static str; 2] {
+const fn quality(excess_ratio: f64) -> [&'static str; 2] {
     if excess_ratio <= EXCESS_LEVELS[0] {
         ["and", "four links suffice"]
     } else if excess_ratio <= EXCESS_LEVELS[1] {
@@ -88,18 +91,18 @@ const fn grade(excess_ratio: f64) -> [&'static str; 2] {
 }
 
 /// Returns the quality of four links of an arch that rocked.
-pub(super) fn four_links(scenario: &Scenario, history: &Summary) -> Option<String> {
+pub(super) fn four_link_quality(scenario: &Scenario, history: &History) -> Option<String> {
     let is_arch = scenario.structure.thrusts();
     let four = scenario.motion.hinges() == Hinges::Four && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
-    Some(grade(thrust.largest_excess.value).join(" "))
+    Some(quality(thrust.largest_excess.value).join(" "))
 }
 
 /// Returns the limits of four links, or of a column on its toe, in parts of a sentence, with `advice` if four links are not enough. `None` if
 /// the structure did not rock; empty for a column that never needs tension at its base.
-pub(super) fn trust(
-    history: &Summary,
+pub(super) fn four_link_limits(
+    history: &History,
     structure: &Structure,
     advice: Option<&str>,
 ) -> Option<Vec<String>> {
@@ -113,10 +116,10 @@ pub(super) fn trust(
         );
         return Some(Vec::from_iter((value > 0.0).then_some(flies)));
     }
-    let [_, grade] = grade(value);
+    let [_, quality] = quality(value);
     if value <= close {
         return Some(vec![format!(
-            "{grade}: the thrust line leaves the arch by {value:.4} t at most"
+            "{quality}: the thrust line leaves the arch by {value:.4} t at most"
         )]);
     }
     let above = value > most;
@@ -128,7 +131,7 @@ pub(super) fn trust(
     let compare = advice.map_or(String::new(), |advice| format!("; {give}{advice}"));
     Some(vec![
         format!(
-            "{grade}{safe}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),"
+            "{quality}{safe}: the thrust line leaves the arch by up to {value:.3} t (at {time_s:.4} s),"
         ),
         format!(
             "and stays within {most} t for {:.1} % of the rocking time{compare}",

@@ -2,22 +2,22 @@
 
 use std::fmt::Write as _;
 
-use super::{OneModel, Run};
-use crate::dynamics::history::{Outcome, Summary};
+use super::{ModelResults, Run};
+use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::VariationResult;
 use crate::scenario::Hinges;
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
-pub(super) fn compared(runs: &[OneModel<'_>]) -> String {
+pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
     let rows: Vec<[String; 3]> = runs
         .iter()
-        .map(|OneModel { run, history, .. }| {
+        .map(|ModelResults { run, history, .. }| {
             let peak = match history.outcome {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
             };
-            [run.name().to_owned(), ends(history), peak]
+            [run.name().to_owned(), outcome_words(history), peak]
         })
         .collect();
     let header = ["model", "what happened", "largest rotation"].map(str::to_owned);
@@ -30,10 +30,10 @@ pub(super) fn compared(runs: &[OneModel<'_>]) -> String {
         let line = format!("  {model:0$}  {ends:1$}  {peak}", wide[0], wide[1]);
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    text + &believed(runs)
+    text + &conclusion(runs)
 }
 
-fn ends(history: &Summary) -> String {
+fn outcome_words(history: &History) -> String {
     match history.outcome {
         outcome @ (Outcome::NeverMoved | Outcome::Vibrates) => outcome.to_string(),
         outcome => format!("{outcome} at {:.4} s", history.outcome_time_s),
@@ -42,7 +42,7 @@ fn ends(history: &Summary) -> String {
 
 /// Returns the conclusion: the model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other
 /// models.
-fn believed(runs: &[OneModel<'_>]) -> String {
+fn conclusion(runs: &[ModelResults<'_>]) -> String {
     let trust = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
     let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
         return String::new();
@@ -57,9 +57,9 @@ fn believed(runs: &[OneModel<'_>]) -> String {
         Outcome::Overturned(_) => "overturns",
         _ => "survives",
     };
-    let mut text = match otherwise(own, varied) {
-        Some(otherwise) => format!(
-            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {otherwise}\n"
+    let mut text = match changed_outcome(own, varied) {
+        Some(changed_outcome) => format!(
+            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {changed_outcome}\n"
         ),
         None if is_elastic && !all_agree(own, varied) => {
             format!(
@@ -90,8 +90,8 @@ fn believed(runs: &[OneModel<'_>]) -> String {
 }
 
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.
-pub(super) fn otherwise(own: &Summary, varied: &[VariationResult]) -> Option<String> {
-    let (opposite, otherwise) = match Verdict::from(own.outcome) {
+pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Option<String> {
+    let (opposite, changed_outcome) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),
         Verdict::Survives => (Verdict::Overturns, "overturns"),
         Verdict::Incomplete | Verdict::Uncertain => return None,
@@ -103,11 +103,11 @@ pub(super) fn otherwise(own: &Summary, varied: &[VariationResult]) -> Option<Str
             (other == opposite).then_some(name.as_str())
         });
     let others: Vec<&str> = others.collect();
-    (!others.is_empty()).then(|| format!("{otherwise} with {}", others.join(" and with ")))
+    (!others.is_empty()).then(|| format!("{changed_outcome} with {}", others.join(" and with ")))
 }
 
 /// Returns true if the motion was computed with other properties, and all outcomes agree.
-fn all_agree(own: &Summary, varied: &[VariationResult]) -> bool {
+fn all_agree(own: &History, varied: &[VariationResult]) -> bool {
     let own = Verdict::from(own.outcome);
     let ends = varied.iter().map(|one| one.result.as_ref());
     let mut agree = ends.map(|end| end.is_ok_and(|other| Verdict::from(other.outcome) == own));

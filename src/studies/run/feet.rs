@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use crate::dynamics::history::Summary;
+use crate::dynamics::history::Summary as History;
 use crate::scenario::Scenario;
 
 /// Displacements of the right foot relative to the left one, to the right and upwards.
@@ -21,7 +21,7 @@ pub struct FeetApart {
 
 impl FeetApart {
     /// Computes the displacements in a run; `None` if both feet move together.
-    pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
+    pub(super) fn of(scenario: &Scenario, history: &History) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
         let step_s = scenario.simulation.output_step_s;

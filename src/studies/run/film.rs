@@ -1,69 +1,41 @@
-//! The frames of an animation: a history thinned to a limited number of samples.
+//! The film of a run: numbered pictures of the deformed structure in a subfolder of the results.
 
-use crate::dynamics::history::Sample;
-use crate::output::envelope::Thinned;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// The frames: every sample, or every second, fourth, eighth and so on, up to a given number; and the last sample.
-#[derive(Clone, Debug)]
-pub(super) struct Film {
-    thinned: Thinned<Sample>,
-    last: Option<Sample>,
+use crate::output::{Folder, OutputError};
+
+/// The folder of a film, in that of the results.
+pub const FILM: &str = "film";
+
+/// Beginning of the names of the pictures.
+const PICTURE_PREFIX: &str = "frame-";
+
+/// Returns the pictures of a film that are in its folder.
+#[must_use]
+pub fn pictures_in(film: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(film).into_iter().flatten().flatten();
+    let is_picture = |entry: &fs::DirEntry| {
+        let name = entry.file_name();
+        name.to_str()
+            .is_some_and(|name| name.starts_with(PICTURE_PREFIX))
+    };
+    entries
+        .filter(is_picture)
+        .map(|entry| entry.path())
+        .collect()
 }
 
-impl Film {
-    /// Makes an empty film with at most this number of frames plus the last one.
-    pub(super) const fn new(most: usize) -> Self {
-        Self {
-            thinned: Thinned::new(most),
-            last: None,
+/// Adds the pictures of a film to the results. They replace those of an earlier film.
+pub(super) fn add(folder: &mut Folder, pictures: &[String]) -> Result<(), OutputError> {
+    for old in pictures_in(&folder.path().join(FILM)) {
+        if let Some(name) = old.file_name().and_then(|name| name.to_str()) {
+            folder.forget(&format!("{FILM}/{name}"));
         }
     }
-
-    /// Adds a sample. Samples come in the order of time.
-    pub(super) fn push(&mut self, sample: &Sample) {
-        if self.thinned.next(|_, _| ()).is_none() {
-            self.thinned.columns.push(sample.clone());
-        }
-        self.last = Some(sample.clone());
+    for (number, picture) in (1..).zip(pictures) {
+        let name = format!("{FILM}/{PICTURE_PREFIX}{number:04}.svg");
+        folder.add(&name, picture.as_bytes())?;
     }
-
-    /// Returns the frames in order of time.
-    pub(super) fn frames(&self) -> Vec<&Sample> {
-        let kept = &self.thinned.columns;
-        let is_kept = |last: &&Sample| kept.last().is_some_and(|kept| kept.time_s >= last.time_s);
-        let last = self.last.as_ref().filter(|last| !is_kept(last));
-        kept.iter().chain(last).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_evenly_spaced_and_end_with_the_last_sample() {
-        for count in [1, 7, 8, 9, 100, 1023, 1024] {
-            let mut film = Film::new(8);
-            for i in 0..count {
-                film.push(&Sample {
-                    time_s: f64::from(i),
-                    ..Sample::default()
-                });
-            }
-            let times_s: Vec<f64> = film.frames().iter().map(|frame| frame.time_s).collect();
-            assert!(
-                times_s.len() <= 9 && (count < 9 || times_s.len() > 4),
-                "{times_s:?}"
-            );
-            assert_eq!(times_s.last(), Some(&f64::from(count - 1)));
-            let even = times_s.len() - 1;
-            let steps = times_s[..even].windows(2).map(|pair| pair[1] - pair[0]);
-            assert!(
-                steps
-                    .collect::<Vec<_>>()
-                    .windows(2)
-                    .all(|pair| pair[0] == pair[1])
-            );
-        }
-    }
+    Ok(())
 }

@@ -1,5 +1,13 @@
-//! A run: one history of a scenario, with its model of motion, as tables, pictures, a page, a summary and words.
+//! A run: one history of a scenario, with its model of motion, as tables, pictures, a page, a summary and printed words.
+//!
+//! In this module `history` is the result of the model of motion, `summary` is `summary.json`, `report` is `report.html`, and `words` is the
+//! printed text. A `sample` is the state of the structure at an instant; results of samples of `[uncertain]` are called `uncertainty`. A model
+//! of blocks has a [`Model::row`]; all others are mechanisms.
+//!
+//! The tables are written during the computation, into files that were opened before it. All other files are [`Results`], as in all studies;
+//! only the pictures of a film, whose number is unknown before, are added to the folder.
 
+mod animation;
 mod caveats;
 mod comparison;
 mod feet;
@@ -17,28 +25,28 @@ mod tables;
 mod words;
 
 use std::fmt::Write as _;
-use std::fs;
 use std::io;
 use std::mem;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use nalgebra::Vector2;
 use serde_json::Value;
 
 pub use self::caveats::warnings;
-use self::comparison::compared;
+use self::comparison::comparison_words;
+pub use self::film::{FILM, pictures_in};
 use self::overlay::Curves;
 use self::picture::Timeline;
-pub use self::points::MOST_POINTS;
-use self::points::Points;
+pub use self::points::MAX_POINTS;
+use self::points::ObservedPoints;
 use self::report::Report;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
-pub use self::summary::{Ended, summary};
-use self::summary::{Evidence, Summary};
+use self::summary::{ComputedRun, Summary};
+pub use self::summary::{OutcomeSummary, summary};
 pub use self::words::heading;
-use self::words::{Notable, VerdictLine, Words};
+use self::words::{NotableImpacts, VerdictLine, Words};
 use super::results::{Results, StudyError};
 use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
@@ -86,25 +94,25 @@ pub struct RunOptions {
     /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
     /// Pictures a second of a film of the structure; `None` without film.
-    pub film_a_second: Option<f64>,
+    pub film_rate_hz: Option<f64>,
     /// Factor on the displacements in snapshots and film; `None`: they are not exaggerated.
     pub exaggeration: Option<f64>,
     /// Whether to write a table of the poses of all bodies.
     pub poses: bool,
-    /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MOST_POINTS`].
+    /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
-    /// The report on the samples of `[uncertain]` for each model, with which its page begins; empty without samples.
-    pub samples: Vec<String>,
+    /// The words about the samples of `[uncertain]` for each model, with which its page begins; empty without samples.
+    pub uncertainty: Vec<String>,
 }
 
 /// Opens the folder for the results of a scenario with its model of motion, for files of these names; `None`: no files are written.
-pub type Open<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option<Folder>, String>;
+pub type OpenFolder<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option<Folder>, String>;
 
 /// Receives the rotations in place of a file.
-pub type Rotations<'w> = Option<Box<dyn io::Write + 'w>>;
+pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
 
 /// The results of one model of motion.
-struct OneModel<'r> {
+struct ModelResults<'r> {
     run: &'r Run<'r>,
     /// The folder of its files, if there is one.
     folder: Option<PathBuf>,
@@ -124,10 +132,10 @@ struct Run<'a> {
     model: Box<dyn Model>,
     options: &'a RunOptions,
     figure: Figure,
-    /// The models of all runs that are reported together.
-    beside: &'a [Hinges],
+    /// The models of motion of all runs whose words are printed together.
+    all_models: &'a [Hinges],
     scales: Option<Scales>,
-    points: Points,
+    points: ObservedPoints,
 }
 
 /// Checks that options of a run fit a scenario.
@@ -147,21 +155,21 @@ pub fn results(
     scenarios: &[Scenario],
     options: &RunOptions,
     figure: Figure,
-    open: Open<'_>,
-    mut rotations: Rotations<'_>,
+    open: OpenFolder<'_>,
+    mut rotations: RotationsOutput<'_>,
     watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
-    let beside = scenarios.iter().map(|one| one.motion.hinges());
-    let beside: Vec<Hinges> = beside.collect();
+    let all_models = scenarios.iter().map(|one| one.motion.hinges());
+    let all_models: Vec<Hinges> = all_models.collect();
     let runs = scenarios.iter();
-    let runs = runs.map(|one| Run::new(one, options, figure, &beside));
+    let runs = runs.map(|one| Run::new(one, options, figure, &all_models));
     let runs: Result<Vec<Run<'_>>, String> = runs.collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
         // Opened before the history starts, so a folder that cannot be written costs no simulation.
         let folder = open(run.scenario, &run.files()).map_err(StudyError::Scenario)?;
-        let samples = options.samples.get(number).map_or("", String::as_str);
-        all.push(run.compute(folder, rotations.take(), samples, &mut *watch)?);
+        let uncertainty = options.uncertainty.get(number).map_or("", String::as_str);
+        all.push(run.compute(folder, rotations.take(), uncertainty, &mut *watch)?);
     }
     let mut results = Results::default();
     if let [one] = &mut all[..] {
@@ -169,7 +177,7 @@ pub fn results(
         results.summary = one.summary.take();
         return Ok(results);
     }
-    results.words = compared(&all);
+    results.words = comparison_words(&all);
     for one in &mut all {
         let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
         let model = one.run.scenario.motion.hinges();
@@ -189,39 +197,36 @@ impl<'a> Run<'a> {
         scenario: &'a Scenario,
         options: &'a RunOptions,
         figure: Figure,
-        beside: &'a [Hinges],
+        all_models: &'a [Hinges],
     ) -> Result<Self, String> {
-        if options.dimensionless && scenario.motion.hinges().has_joints() {
-            return Err(
-                "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to \
-                 measure by"
-                    .to_owned(),
-            );
-        }
         let model = scenario.model().map_err(|error| error.to_string())?;
-        let scales = match model.as_mechanisms().filter(|_| options.dimensionless) {
-            Some(model) => {
+        let scales = match (options.dimensionless, model.as_mechanisms()) {
+            (false, _) => None,
+            (true, Some(model)) => {
                 let scales = Scales::new(model, scenario.gravity_m_s2());
                 let why_not = "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out";
                 Some(scales.ok_or(why_not)?)
             }
-            None => None,
+            (true, None) => {
+                let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
+                return Err(why_not.to_owned());
+            }
         };
-        let points = Points::new(scene(scenario, &*model), &options.points_m)?;
+        let points = ObservedPoints::new(scene(scenario, &*model), &options.points_m)?;
         Ok(Self {
             scenario,
             model,
             options,
             figure,
-            beside,
+            all_models,
             scales,
             points,
         })
     }
 
-    /// The name of its model in words.
+    /// The label of its model.
     fn name(&self) -> &'static str {
-        self.scenario.motion.words()
+        self.scenario.motion.label()
     }
 
     /// The files that it writes, the seal last.
@@ -240,18 +245,18 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(is_written).collect()
     }
 
-    /// Simulates the scenario and writes its files into the folder, if there is one. The page begins with the report on the `samples` of
+    /// Simulates the scenario and writes its files into the folder, if there is one. The page begins with the words about the samples of
     /// `[uncertain]`. Rotations go to `rotations` instead, if it is given.
     fn compute(
         &self,
         mut folder: Option<Folder>,
-        rotations: Rotations<'_>,
-        samples: &str,
+        rotations: RotationsOutput<'_>,
+        uncertainty: &str,
         watch: Watch<'_>,
-    ) -> Result<OneModel<'_>, StudyError> {
+    ) -> Result<ModelResults<'_>, StudyError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
-        let mut collected = Collected::new(self, folder.is_some());
+        let mut drawings = Drawings::new(self, folder.is_some());
         let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = match self.options.no_repeat {
@@ -259,62 +264,90 @@ impl<'a> Run<'a> {
             false => scenario.variations().map_err(StudyError::failed)?,
         };
         let variations = Variations::start(variations, ground, &request);
-        let all = (request.end_s * MILLISECONDS).round() as usize;
+        let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
-            let mut recording = Recording {
+            let mut recorder = RunRecorder {
                 tables: Tables::new(self, folder.as_mut(), rotations)?,
-                collected: &mut collected,
+                drawings: &mut drawings,
                 watch: &mut *watch,
-                all,
-                broken: Ok(()),
+                duration_ms,
+                status: Ok(()),
             };
-            let history = model.simulate(ground, &request, Some(&mut recording))?;
-            recording.broken?;
-            (history, recording.tables.finish()?)
+            let history = model.simulate(ground, &request, Some(&mut recorder))?;
+            recorder.status?;
+            (history, recorder.tables.finish()?)
         };
         let repeated = repetitions.map(|repetitions| {
             // Repetitions that were started are finished.
-            let _ = watch(Progress { done: all, all });
+            let _ = watch(Progress {
+                done: duration_ms,
+                all: duration_ms,
+            });
             repetitions.compare(&history)
         });
         let varied = variations.wait();
-        let evidence = Evidence {
+        let computed = ComputedRun {
             scenario,
             model,
             history: &history,
             repeated: repeated.as_ref(),
             varied: &varied,
         };
-        let summary = Summary::of(&evidence, collected.points.peaks());
+        let summary = Summary::of(&computed, drawings.points.peaks());
         let words = Words {
-            evidence,
+            computed,
             summary: &summary,
-            impacts: &collected.notable,
-            beside: self.beside,
+            impacts: &drawings.notable,
+            all_models: self.all_models,
         };
-        let (verdict, mut words) = (render(&VerdictLine(evidence)), render(&words));
+        let (verdict, mut words) = (render(&VerdictLine(computed)), render(&words));
         words.insert_str(0, "  ");
         let summary = summary_of(&summary)?;
         let path = folder.as_ref().map(|folder| folder.path().to_owned());
-        if let Some(mut folder) = folder {
-            let opening = [samples, &verdict];
-            collected.write(self, &mut folder, &history, opening, &mut words)?;
-            folder.write(SUMMARY, pretty(&summary))?;
-            let counted = format!("{ROTATIONS} ({rows} rows)");
-            let files = self.files().join(", ").replacen(ROTATIONS, &counted, 1);
-            let path = folder.path().display();
-            let _ = writeln!(words, "  results in {path}: {files}");
-            folder.complete()?;
+        if let Some(folder) = folder {
+            let mut files = drawings.files(self, &history, [uncertainty, &verdict], &words);
+            files.push((SUMMARY, pretty(&summary).into_bytes()));
+            words += &self.write(folder, files, &drawings, rows)?;
         }
-        Ok(OneModel {
+        Ok(ModelResults {
             run: self,
             folder: path,
             words: format!("  {verdict}{words}"),
             summary,
             history,
             varied,
-            curves: collected.curves,
+            curves: drawings.curves,
         })
+    }
+
+    /// Writes the files and the film into the folder. Returns the lines about them; `rows` is the number of samples in the tables.
+    fn write(
+        &self,
+        mut folder: Folder,
+        files: Vec<(&'static str, Vec<u8>)>,
+        drawings: &Drawings,
+        rows: usize,
+    ) -> Result<String, OutputError> {
+        let mut words = drawings.add_film(self, &mut folder)?;
+        if let Some(snapshots) = &drawings.snapshots {
+            words += &snapshots.outside_times_text();
+        }
+        let counted = format!("{ROTATIONS} ({rows} rows)");
+        let names = self.files().join(", ").replacen(ROTATIONS, &counted, 1);
+        let path = folder.path().display();
+        let _ = writeln!(words, "  results in {path}: {names}");
+        let results = Results {
+            files,
+            ..Results::default()
+        };
+        results.write(folder)?;
+        Ok(words)
+    }
+
+    /// The title of its pictures.
+    fn title(&self) -> &str {
+        let title = self.scenario.title.as_deref();
+        title.unwrap_or("Rocking history")
     }
 
     /// The subject of the pictures.
@@ -330,7 +363,7 @@ impl<'a> Run<'a> {
 }
 
 /// One picture of several models of motion.
-fn overlay(all: &[OneModel<'_>]) -> String {
+fn overlay(all: &[ModelResults<'_>]) -> String {
     let names: Vec<_> = all.iter().map(|one| one.run.name()).collect();
     let first = all[0].run;
     let mut title = names.join(" and ");
@@ -356,74 +389,43 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     scene
 }
 
-/// The folder of a film, in that of the results.
-pub const FILM: &str = "film";
-
-/// Beginning of the names of its pictures.
-const FRAME: &str = "frame-";
-
-/// The pictures of a film that are in its folder.
-#[must_use]
-pub fn frames(film: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(film).into_iter().flatten().flatten();
-    let is_frame = |entry: &fs::DirEntry| {
-        let name = entry.file_name();
-        name.to_str().is_some_and(|name| name.starts_with(FRAME))
-    };
-    entries.filter(is_frame).map(|entry| entry.path()).collect()
-}
-
-/// Adds the numbered pictures of a film, which replace those of an earlier one.
-fn write_film(folder: &mut Folder, stills: &[String]) -> Result<(), OutputError> {
-    for old in frames(&folder.path().join(FILM)) {
-        if let Some(name) = old.file_name().and_then(|name| name.to_str()) {
-            folder.forget(&format!("{FILM}/{name}"));
-        }
-    }
-    for (number, still) in (1..).zip(stills) {
-        folder.add(&format!("{FILM}/{FRAME}{number:04}.svg"), still.as_bytes())?;
-    }
-    Ok(())
-}
-
-/// Data of a history for its words and pictures.
-struct Collected {
-    picture: Timeline,
+/// Collects the samples and events of a history for its pictures, its page and its words.
+struct Drawings {
+    timeline: Timeline,
     report: Option<Report>,
-    /// Those of a film first: their number is printed first.
-    snapshots: Vec<Snapshots>,
-    notable: Notable,
-    points: Points,
+    film: Option<Snapshots>,
+    snapshots: Option<Snapshots>,
+    notable: NotableImpacts,
+    points: ObservedPoints,
     curves: Curves,
 }
 
-impl Collected {
-    /// The page and the snapshots are collected only if there is a folder.
+impl Drawings {
+    /// The page, the film and the snapshots are collected only if there is a folder.
     fn new(run: &Run<'_>, has_folder: bool) -> Self {
         let (model, options) = (&*run.model, &run.options);
         let factor = options.exaggeration.unwrap_or(1.0);
         let snapshots = || Snapshots::new(scene(run.scenario, model), factor);
-        let film = options.film_a_second;
-        let film = film.map(|a_second| snapshots().every(1.0 / a_second));
-        let times_s = Some(&options.snapshots_s).filter(|times_s| !times_s.is_empty());
-        let chosen = times_s.map(|times_s| snapshots().at(times_s));
-        let snapshots = film.into_iter().chain(chosen).filter(|_| has_folder);
+        let film_rate_hz = options.film_rate_hz.filter(|_| has_folder);
+        let times_s =
+            Some(&options.snapshots_s).filter(|times_s| has_folder && !times_s.is_empty());
         Self {
-            picture: Timeline::new(model),
+            timeline: Timeline::new(model),
             report: (has_folder && !options.no_report).then(|| Report::new(run.scenario, model)),
-            snapshots: snapshots.collect(),
-            notable: Notable::default(),
+            film: film_rate_hz.map(|rate_hz| snapshots().every(1.0 / rate_hz)),
+            snapshots: times_s.map(|times_s| snapshots().at(times_s)),
+            notable: NotableImpacts::default(),
             points: run.points.clone(),
             curves: Curves::default(),
         }
     }
 
     fn sample(&mut self, sample: &Sample) {
-        self.picture.sample(sample);
+        self.timeline.sample(sample);
         if let Some(report) = &mut self.report {
             report.push(sample);
         }
-        for snapshots in &mut self.snapshots {
+        for snapshots in self.film.iter_mut().chain(&mut self.snapshots) {
             snapshots.push(sample);
         }
         self.points.push(sample);
@@ -432,59 +434,65 @@ impl Collected {
 
     fn event(&mut self, event: &Event) {
         self.notable.note(event);
-        self.picture.event(event);
+        self.timeline.event(event);
     }
 
-    /// Writes the pictures, and the page with the text so far; then adds the notes about the snapshots to that text.
-    fn write(
+    /// Makes the pictures, and the page with the words.
+    fn files(
         &self,
         run: &Run<'_>,
-        folder: &mut Folder,
         history: &History,
         opening: [&str; 2],
-        words: &mut String,
-    ) -> Result<(), OutputError> {
-        let (scenario, figure) = (run.scenario, run.figure);
-        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        words: &str,
+    ) -> Vec<(&'static str, Vec<u8>)> {
+        let (figure, title) = (run.figure, run.title());
         let subject = run.subject(title);
-        let picture = self.picture.draw(figure, &subject, history, &self.points);
-        folder.write(PICTURE, picture)?;
-        if let Some(report) = &self.report {
-            let page = report.page(scenario, history, Some(&self.points), opening, words);
-            folder.write(REPORT, page)?;
-        }
-        for snapshots in &self.snapshots {
-            if snapshots.is_film() {
-                let stills = snapshots.stills(figure, title);
-                write_film(folder, &stills)?;
-                let (count, path) = (stills.len(), folder.path().join(FILM));
-                let path = path.display();
-                let _ = writeln!(words, "  {count} pictures of a film in {path}");
-            } else {
-                folder.write(SNAPSHOTS, snapshots.draw(figure, title))?;
-                *words += &snapshots.outside();
-            }
-        }
-        Ok(())
+        let picture = self.timeline.draw(figure, &subject, history, &self.points);
+        let report = self.report.as_ref().map(|report| {
+            let points = Some(&self.points);
+            report.page(run.scenario, history, points, opening, words)
+        });
+        let snapshots = self.snapshots.as_ref();
+        let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
+        let files = [
+            (PICTURE, Some(picture)),
+            (REPORT, report),
+            (SNAPSHOTS, snapshots),
+        ];
+        let files = files.into_iter();
+        let files = files.filter_map(|(name, text)| Some((name, text?.into_bytes())));
+        files.collect()
+    }
+
+    /// Adds the film to the folder. Returns a line with the number of its pictures; empty without film.
+    fn add_film(&self, run: &Run<'_>, folder: &mut Folder) -> Result<String, OutputError> {
+        let Some(film) = &self.film else {
+            return Ok(String::new());
+        };
+        let pictures = film.film_pictures(run.figure, run.title());
+        film::add(folder, &pictures)?;
+        let (count, path) = (pictures.len(), folder.path().join(FILM));
+        let path = path.display();
+        Ok(format!("  {count} pictures of a film in {path}\n"))
     }
 }
 
 /// A table that is written during the computation.
-type Running<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
+type StreamedTable<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
 
 /// The tables of a run.
 #[derive(Default)]
 struct Tables<'f> {
-    samples: Vec<Running<'f, Sample>>,
+    samples: Vec<StreamedTable<'f, Sample>>,
     /// Each with whether it has rows for impacts alone.
-    events: Vec<(bool, Running<'f, Event>)>,
+    events: Vec<(bool, StreamedTable<'f, Event>)>,
 }
 
 impl<'f> Tables<'f> {
     fn new(
         run: &Run<'_>,
         folder: Option<&'f mut Folder>,
-        rotations: Rotations<'f>,
+        rotations: RotationsOutput<'f>,
     ) -> Result<Self, OutputError> {
         type File<'f> = Box<dyn io::Write + 'f>;
         let model = &*run.model;
@@ -542,37 +550,37 @@ impl<'f> Tables<'f> {
 }
 
 /// Passes samples and events on to the tables and pictures.
-struct Recording<'r, 'f> {
+struct RunRecorder<'r, 'f> {
     tables: Tables<'f>,
-    collected: &'r mut Collected,
+    drawings: &'r mut Drawings,
     watch: Watch<'r>,
     /// The simulated time, in milliseconds.
-    all: usize,
-    /// The reason to end the history: a table that could not be written, or the work was cancelled.
-    broken: Result<(), StudyError>,
+    duration_ms: usize,
+    /// The error that ends the history: a table could not be written, or the work was cancelled.
+    status: Result<(), StudyError>,
 }
 
 /// Milliseconds in a second, for the progress.
 const MILLISECONDS: f64 = 1e3;
 
-impl Recording<'_, '_> {
-    /// Breaks off for a reason.
+impl RunRecorder<'_, '_> {
+    /// Ends the history after an error.
     const fn flow(&self) -> ControlFlow<()> {
-        match self.broken {
+        match self.status {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         }
     }
 }
 
-impl Recorder for Recording<'_, '_> {
+impl Recorder for RunRecorder<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         // All is done only while the history is repeated.
-        let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.all);
+        let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.duration_ms);
         let done = done.min(all.saturating_sub(1));
         let progress = Progress { done, all };
-        self.collected.sample(sample);
-        self.broken = match (self.watch)(progress) {
+        self.drawings.sample(sample);
+        self.status = match (self.watch)(progress) {
             ControlFlow::Continue(()) => self.tables.sample(sample).map_err(StudyError::from),
             ControlFlow::Break(()) => Err(RunnerError::Cancelled(progress).into()),
         };
@@ -580,36 +588,36 @@ impl Recorder for Recording<'_, '_> {
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.collected.event(event);
+        self.drawings.event(event);
         // If a failed table ended the history, that end is not an event.
-        if self.broken.is_ok() {
-            self.broken = self.tables.event(event).map_err(StudyError::from);
+        if self.status.is_ok() {
+            self.status = self.tables.event(event).map_err(StudyError::from);
         }
         self.flow()
     }
 
     fn wants_thrust_line(&self) -> bool {
-        self.collected.report.is_some() || !self.collected.snapshots.is_empty()
+        let drawings = &self.drawings;
+        let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
+        drawings.report.is_some() || shows_structure
     }
 
     fn wants_fall(&self) -> bool {
-        let mut snapshots = self.collected.snapshots.iter();
-        self.collected.report.is_some() || snapshots.any(Snapshots::is_film)
+        self.drawings.report.is_some() || self.drawings.film.is_some()
     }
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
-        if let Some(report) = &mut self.collected.report {
+        if let Some(report) = &mut self.drawings.report {
             report.push_fall(sample);
         }
-        let snapshots = self.collected.snapshots.iter_mut();
-        for film in snapshots.filter(|snapshots| snapshots.is_film()) {
+        if let Some(film) = &mut self.drawings.film {
             film.push(sample);
         }
         ControlFlow::Continue(())
     }
 
     fn fell(&mut self, end: FallEnd) {
-        if let Some(report) = &mut self.collected.report {
+        if let Some(report) = &mut self.drawings.report {
             report.end_fall(end);
         }
     }

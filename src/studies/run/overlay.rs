@@ -5,7 +5,7 @@ use crate::mechanics::sway::Sway;
 use crate::output::Figure;
 use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
-use crate::output::panels::{Panels, Subject, around};
+use crate::output::panels::{Panels, Subject, scale_around};
 use crate::output::svg::CURVES;
 
 /// Curves of a history that every model of motion has, thinned.
@@ -54,7 +54,7 @@ pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]
     panels.panel(
         "Largest rotation (rad), swaying left positive",
         280.0,
-        around(&rotations, [], 6),
+        scale_around(&rotations, [], 6),
         None,
         rotations,
     );
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
     use crate::dynamics::history::State;
 
-    /// A column that sways right turns clockwise: its rotation is negative here as in its table and on its page.
+    /// A column that sways right turns clockwise. Its rotation is negative, as in the table and on the page.
     #[test]
     fn a_sway_to_the_right_is_negative_as_everywhere() {
         for (sway, rotation_rad) in [(Sway::Right, -0.02), (Sway::Left, 0.03)] {

@@ -8,7 +8,7 @@ use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::scene::{Piece, Scene};
 
 /// Largest integer of an encoded rotation or displacement.
-pub(super) const MOST: f64 = 32767.0;
+pub(super) const LARGEST_I16: f64 = 32767.0;
 
 /// Returns the distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
 /// encoded in each frame.
@@ -49,30 +49,30 @@ pub(super) fn body_number(body: Option<usize>) -> i64 {
 }
 
 /// Encodes a fraction from 0 to 1 as a byte from 0 to 255, rounded up: only zero becomes zero.
-pub(super) fn eighth(part: f64) -> u8 {
+pub(super) fn byte_rounded_up(part: f64) -> u8 {
     (255.0 * part).ceil().clamp(0.0, 255.0) as u8
 }
 
 /// Encodes values as integer multiples of a unit. Returns the encoded values and the unit, with which the largest value just fits.
-pub(super) fn whole(values: impl Iterator<Item = f64> + Clone) -> (String, f64) {
+pub(super) fn quantized(values: impl Iterator<Item = f64> + Clone) -> (String, f64) {
     let most = values
         .clone()
         .fold(0.0, |most: f64, value| most.max(value.abs()));
-    let unit = if most > 0.0 { most / MOST } else { 1.0 };
-    let whole = values.map(|value| ((value / unit).round() as i16).to_le_bytes());
-    (encoded(whole), unit)
+    let unit = if most > 0.0 { most / LARGEST_I16 } else { 1.0 };
+    let quantized = values.map(|value| ((value / unit).round() as i16).to_le_bytes());
+    (encoded(quantized), unit)
 }
 
 pub(super) fn encoded<const N: usize>(values: impl Iterator<Item = [u8; N]>) -> String {
     BASE64_STANDARD.encode(values.flatten().collect::<Vec<u8>>())
 }
 
-pub(super) fn floats(values: impl Iterator<Item = f64>) -> String {
+pub(super) fn encoded_f32(values: impl Iterator<Item = f64>) -> String {
     encoded(values.map(|value| (value as f32).to_le_bytes()))
 }
 
 /// Encodes the times of a curve, followed by its values.
 pub(super) fn curve(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let (times_s, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
-    floats(times_s.into_iter().chain(values))
+    encoded_f32(times_s.into_iter().chain(values))
 }

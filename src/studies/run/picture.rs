@@ -1,8 +1,8 @@
 //! `history.svg`: curves of a history over a shared time axis.
 
 use super::open_joints::OpenJoints;
-use super::points::Points;
-use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary};
+use super::points::ObservedPoints;
+use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary as History};
 use crate::dynamics::model::Model;
 use crate::mechanics::sway::Sway;
 use crate::output::Figure;
@@ -10,7 +10,9 @@ use crate::output::axes::Scale;
 use crate::output::chart::{Mark, Shape};
 use crate::output::envelope::{COLUMNS, Envelope};
 use crate::output::figure::Panel;
-use crate::output::panels::{MAIN, Panels, States, Subject, around, overturning, overturns};
+use crate::output::panels::{
+    MAIN, Panels, StateHistory, Subject, overturning, overturns, scale_around,
+};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 
@@ -19,7 +21,7 @@ pub(super) const LARGEST_EXCESS: f64 = 1.0;
 
 /// A half cycle that comes near the unstable equilibrium or passes it.
 #[derive(Clone, Copy, Debug)]
-struct FarCycle {
+struct NearCriticalCycle {
     phase: usize,
     /// The body whose rotation is the coordinate of the mechanism.
     body: usize,
@@ -30,7 +32,7 @@ struct FarCycle {
 }
 
 /// Fraction of the unstable rotation, or of the barrier, from which the limit is drawn.
-const FAR: f64 = 0.25;
+const NEAR_CRITICAL_RATIO: f64 = 0.25;
 
 /// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {
@@ -60,9 +62,9 @@ pub(super) struct Timeline {
     phase: usize,
     phase_from_s: f64,
     /// Half cycles that come near the unstable equilibrium.
-    far: Vec<FarCycle>,
+    near_critical: Vec<NearCriticalCycle>,
     /// The states of mechanisms over time, and their impacts.
-    states: States,
+    states: StateHistory,
     impacts_s: Vec<f64>,
     end_s: f64,
 }
@@ -113,7 +115,7 @@ impl Timeline {
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
-        self.note_if_far(sample);
+        self.note_near_critical(sample);
         if let Some(joints) = &mut self.joints {
             joints.push(sample);
         }
@@ -130,7 +132,7 @@ impl Timeline {
     }
 
     /// Adds the half cycle of a sample if the sample is near the unstable equilibrium.
-    fn note_if_far(&mut self, sample: &Sample) {
+    fn note_near_critical(&mut self, sample: &Sample) {
         if sample.phase != self.phase {
             (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);
         }
@@ -143,32 +145,34 @@ impl Timeline {
             Sway::Right => 0,
             Sway::Left => sample.rotations_rad.len() - 1,
         };
-        let last = self.far.last_mut();
+        let last = self.near_critical.last_mut();
         match last.filter(|cycle| cycle.phase == sample.phase) {
             Some(cycle) => cycle.to_s = sample.time_s,
-            None if ratio.abs() >= FAR => self.far.push(FarCycle {
-                phase: sample.phase,
-                body,
-                from_s: self.phase_from_s,
-                to_s: sample.time_s,
-                unstable_rad: sample.rotations_rad[body] / ratio.abs(),
-            }),
+            None if ratio.abs() >= NEAR_CRITICAL_RATIO => {
+                self.near_critical.push(NearCriticalCycle {
+                    phase: sample.phase,
+                    body,
+                    from_s: self.phase_from_s,
+                    to_s: sample.time_s,
+                    unstable_rad: sample.rotations_rad[body] / ratio.abs(),
+                })
+            }
             None => {}
         }
     }
 
-    /// Draws the picture, with the summary of the history.
+    /// Draws the picture of the history.
     pub(super) fn draw(
         &self,
         figure: Figure,
         subject: &Subject<'_>,
-        summary: &Summary,
-        points: &Points,
+        history: &History,
+        points: &ObservedPoints,
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
         let mut panels = Panels::new(figure, subject.title, span_s);
-        let states = match summary.row() {
-            Some(row) => &states(summary, &row.half_cycles),
+        let states = match history.row() {
+            Some(row) => &states(history, &row.half_cycles),
             None => &self.states,
         };
         let states = Some(states);
@@ -183,10 +187,10 @@ impl Timeline {
         }
         if shows(Panel::Rotation) {
             let (mut marks, y) = match self.joints {
-                Some(_) => self.rotations_of_row(&mut panels, summary.largest_body()),
+                Some(_) => self.rotations_of_row(&mut panels, history.largest_body()),
                 None => self.rotations(&mut panels),
             };
-            let overturned_s = summary.overturned_s();
+            let overturned_s = history.overturned_s();
             marks.extend(overturned_s.map(|time_s| overturning(time_s, y)));
             panels.panel("Rotation (rad)", rotation_px, y, states, marks);
         }
@@ -213,12 +217,12 @@ impl Timeline {
             };
             let mut curves = vec![energy];
             // A barrier far above the curve would flatten the curve.
-            let over_barrier = summary.peak_potential_over_barrier();
-            if over_barrier.is_some_and(|peak| peak >= FAR) {
+            let over_barrier = history.peak_potential_over_barrier();
+            if over_barrier.is_some_and(|peak| peak >= NEAR_CRITICAL_RATIO) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Mark::curve("barrier", BARRIER, ends));
-                let words = "gravity alone overturns the first mechanism";
-                panels.keys.push(Key::line(words, BARRIER));
+                let label = "gravity alone overturns the first mechanism";
+                panels.keys.push(Key::line(label, BARRIER));
             }
             panels.curves(label, energy_px, curves, states);
         }
@@ -226,14 +230,14 @@ impl Timeline {
             let excess = Mark::curve("excess", MAIN, self.excess_ratio.points());
             panels.curves("Thrust line outside / t", energy_px, vec![excess], states);
         }
-        if shows(Panel::Rotation) && summary.overturned_s().is_some() {
+        if shows(Panel::Rotation) && history.overturned_s().is_some() {
             panels.keys.push(overturns());
         }
-        panels.finish(summary.outcome != Outcome::NeverMoved)
+        panels.finish(history.outcome != Outcome::NeverMoved)
     }
 
     /// Adds the panel of the right foot, if it moves.
-    fn add_feet(&self, panels: &mut Panels, states: Option<&States>) {
+    fn add_feet(&self, panels: &mut Panels, states: Option<&StateHistory>) {
         let names = ["right foot to the right", "right foot upwards"];
         let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
         let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
@@ -255,22 +259,22 @@ impl Timeline {
                 panels.keys.push(Key::line(body, stroke));
             }
         }
-        marks.extend(self.far.iter().map(|cycle| {
+        marks.extend(self.near_critical.iter().map(|cycle| {
             let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
             Mark::curve("unstable", unstable(cycle.body), ends)
         }));
-        let y = around(&marks, [], 6);
+        let y = scale_around(&marks, [], 6);
         let ticks = Shape::Ticks(self.impacts_s.clone());
         marks.push(Mark::new("impact", IMPACT, ticks));
         if !self.impacts_s.is_empty() {
             panels.keys.push(Key::new("impacts", Sign::Tick(IMPACT)));
         }
-        if let Some(cycle) = self.far.first() {
-            let words = match self.bodies.len() {
+        if let Some(cycle) = self.near_critical.first() {
+            let label = match self.bodies.len() {
                 1 => "unstable rotation",
                 _ => "unstable rotation of the body of that colour alone: others may go beyond it",
             };
-            panels.keys.push(Key::line(words, unstable(cycle.body)));
+            panels.keys.push(Key::line(label, unstable(cycle.body)));
         }
         (marks, y)
     }
@@ -289,22 +293,22 @@ impl Timeline {
             let keys = [Key::line(name, LARGEST), Key::line("others", BLOCK)];
             panels.keys.extend(keys);
         }
-        let y = around(&marks, [], 6);
+        let y = scale_around(&marks, [], 6);
         (marks, y)
     }
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn states(summary: &Summary, half_cycles: &[HalfCycle]) -> States {
-    let end = match summary.outcome {
+fn states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
+    let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
         _ => None,
     };
     let cycles = half_cycles.iter();
     let changes = cycles.map(|cycle| (cycle.start_s, State::Rocking(cycle.sway)));
-    let end = end.map(|state| (summary.outcome_time_s, state));
-    States {
+    let end = end.map(|state| (history.outcome_time_s, state));
+    StateHistory {
         start: State::Rest,
         changes: changes.chain(end).collect(),
     }

@@ -9,25 +9,25 @@ use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
 use crate::output::mechanisms::columns;
-use crate::output::panels::{Panels, States};
-use crate::output::point::Point;
+use crate::output::panels::{Panels, StateHistory};
+use crate::output::point::StructurePoint;
 use crate::output::scene::Scene;
 use crate::output::svg::CURVES;
 use crate::output::table::{Cell, Column, several};
 
 /// Largest number of points: each has two curves with different strokes in the pictures.
-pub const MOST_POINTS: usize = CURVES.len() / 2;
+pub const MAX_POINTS: usize = CURVES.len() / 2;
 
 /// Observed points of a structure. Collects their displacements from the undeformed structure, relative to the ground.
 #[derive(Clone, Debug)]
-pub struct Points {
+pub struct ObservedPoints {
     scene: Scene,
-    watched: Vec<Watched>,
+    observed: Vec<ObservedPoint>,
 }
 
 #[derive(Clone, Debug)]
-struct Watched {
-    point: Point,
+struct ObservedPoint {
+    point: StructurePoint,
     /// Name of the point in columns; empty if there is only one point.
     name: String,
     /// Displacements to the right and upwards.
@@ -45,19 +45,19 @@ struct Displacement {
 /// The axes of displacements in columns, with words for the positive direction.
 const AXES: [(&str, &str); 2] = [("x", "to the right"), ("y", "up")];
 
-impl Points {
+impl ObservedPoints {
     /// Makes observed points of a structure from their undeformed positions in metres.
     ///
     /// # Errors
     /// When a point is outside the structure, or there are too many points.
     pub(super) fn new(scene: Scene, places_m: &[Vector2<f64>]) -> Result<Self, String> {
-        if places_m.len() > MOST_POINTS {
+        if places_m.len() > MAX_POINTS {
             return Err(format!(
-                "--point is given {} times: at most {MOST_POINTS} points are watched at once",
+                "--point is given {} times: at most {MAX_POINTS} points are watched at once",
                 places_m.len()
             ));
         }
-        let mut watched = Vec::new();
+        let mut observed = Vec::new();
         for (index, at_m) in places_m.iter().enumerate() {
             let point = scene.point(*at_m).map_err(|nearest_m| {
                 let [low_m, high_m] = scene.bounds_m();
@@ -69,7 +69,7 @@ impl Points {
                     place(high_m)
                 )
             })?;
-            watched.push(Watched {
+            observed.push(ObservedPoint {
                 point,
                 name: match places_m.len() {
                     1 => String::new(),
@@ -78,19 +78,19 @@ impl Points {
                 displacements: Default::default(),
             });
         }
-        Ok(Self { scene, watched })
+        Ok(Self { scene, observed })
     }
 
     /// Returns true if there are observed points.
     pub(super) const fn any(&self) -> bool {
-        !self.watched.is_empty()
+        !self.observed.is_empty()
     }
 
     /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
-        for watched in &mut self.watched {
-            let displaced_m = displacement_m(&self.scene, &watched.point, sample);
-            for (along, displaced_m) in watched.displacements.iter_mut().zip(displaced_m.iter()) {
+        for observed in &mut self.observed {
+            let displaced_m = displacement_m(&self.scene, &observed.point, sample);
+            for (along, displaced_m) in observed.displacements.iter_mut().zip(displaced_m.iter()) {
                 along.millimetres.push(sample.time_s, 1e3 * displaced_m);
                 if displaced_m.abs() > along.farthest_m.abs() {
                     (along.farthest_m, along.time_s) = (*displaced_m, sample.time_s);
@@ -102,25 +102,25 @@ impl Points {
     /// Returns the columns of the points in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; with several
     /// points `point_1_x_m` and so on.
     pub(super) fn columns(&self) -> Vec<Column<'static, Sample>> {
-        let column = |watched: &Watched| {
-            let (scene, point) = (self.scene.clone(), watched.point);
-            let name = std::slice::from_ref(&watched.name);
+        let column = |observed: &ObservedPoint| {
+            let (scene, point) = (self.scene.clone(), observed.point);
+            let name = std::slice::from_ref(&observed.name);
             let names = AXES.map(|(axis, _)| columns(name, "point", &format!("{axis}_m")));
             several(names.into_iter().flatten(), move |sample, cells| {
                 let displaced_m = displacement_m(&scene, &point, sample);
                 cells.extend(displaced_m.iter().map(|along_m| Cell::from(*along_m)));
             })
         };
-        self.watched.iter().map(column).collect()
+        self.observed.iter().map(column).collect()
     }
 
     /// Returns the largest displacements of the points.
     pub(super) fn peaks(&self) -> Vec<PointPeaks> {
-        let peaks = self.watched.iter().map(|watched| {
-            let [x, y] = &watched.displacements;
+        let peaks = self.observed.iter().map(|observed| {
+            let [x, y] = &observed.displacements;
             PointPeaks {
-                x_m: watched.point.at_m.x,
-                y_m: watched.point.at_m.y,
+                x_m: observed.point.at_m.x,
+                y_m: observed.point.at_m.y,
                 peak_x_m: x.farthest_m,
                 peak_x_time_s: x.time_s,
                 peak_y_m: y.farthest_m,
@@ -131,11 +131,11 @@ impl Points {
     }
 
     /// Adds the panel of the displacements.
-    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&States>) {
+    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&StateHistory>) {
         let displacements = self
-            .watched
+            .observed
             .iter()
-            .flat_map(|watched| &watched.displacements);
+            .flat_map(|observed| &observed.displacements);
         let named = self.names().into_iter().flatten().zip(CURVES);
         let curves: Vec<Mark> = named
             .zip(displacements)
@@ -149,7 +149,7 @@ impl Points {
 
     /// Returns the names of the curves of each point, for displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
-        let places = self.watched.iter().map(|one| place(one.point.at_m));
+        let places = self.observed.iter().map(|one| place(one.point.at_m));
         let named = places.map(|at| AXES.map(|(_, positive)| format!("point {at}, {positive}")));
         named.collect()
     }
@@ -157,27 +157,27 @@ impl Points {
     /// Returns the bodies that carry the points while these hinges are open.
     pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let marks = self
-            .watched
+            .observed
             .iter()
-            .map(|one| self.scene.mark(&one.point, hinges));
+            .map(|one| self.scene.body_point(&one.point, hinges));
         marks.map(|mark| mark.body).collect()
     }
 
     /// Returns the positions and named curves of the points, in millimetres, for the page.
     pub(super) fn on_page(&self) -> Value {
-        let point = |(watched, names): (&Watched, [String; 2])| {
-            let curves = watched.displacements.iter().zip(names);
+        let point = |(observed, names): (&ObservedPoint, [String; 2])| {
+            let curves = observed.displacements.iter().zip(names);
             let curves = curves.map(
                 |(along, name)| json!({ "name": name, "curve": curve(along.millimetres.points()) }),
             );
-            json!({ "at_m": watched.point.at_m, "curves": curves.collect::<Vec<_>>() })
+            json!({ "at_m": observed.point.at_m, "curves": curves.collect::<Vec<_>>() })
         };
-        self.watched.iter().zip(self.names()).map(point).collect()
+        self.observed.iter().zip(self.names()).map(point).collect()
     }
 }
 
-fn displacement_m(scene: &Scene, point: &Point, sample: &Sample) -> Vector2<f64> {
-    let mark = scene.mark(point, &sample.hinges);
+fn displacement_m(scene: &Scene, point: &StructurePoint, sample: &Sample) -> Vector2<f64> {
+    let mark = scene.body_point(point, &sample.hinges);
     mark.moved(&sample.poses, 1.0) - point.at_m
 }
 

@@ -1,4 +1,4 @@
-//! `report.html`: a self-contained page with the structure in motion, curves over time, and the report in words.
+//! `report.html`: a self-contained page with the structure in motion, curves over time, and the printed words.
 //!
 //! The page needs no network. Frames are encoded in base 64: times as 64-bit numbers, motion of the ground as 32-bit numbers, rotations,
 //! displacements and thrust as 16-bit multiples of a unit, states and joints as 8-bit numbers. Frames and curves are thinned, so that the page
@@ -8,15 +8,16 @@ use nalgebra::Vector2;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::film::Film;
+use super::animation::Animation;
 use super::packed::{
-    MOST, body_number, curve, eighth, encoded, floats, layouts, piece as drawn_piece, whole,
+    LARGEST_I16, body_number, byte_rounded_up, curve, encoded, encoded_f32, layouts,
+    piece as drawn_piece, quantized,
 };
 use super::picture::LARGEST_EXCESS;
-use super::points::Points;
+use super::points::ObservedPoints;
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
-use crate::dynamics::history::{OpenHinge, Sample, State, Summary};
+use crate::dynamics::history::{OpenHinge, Sample, State, Summary as History};
 use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::Pose;
@@ -25,17 +26,17 @@ use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
 use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
-use crate::output::page::{escaped, filled, script_safe};
-use crate::output::scene::{FARTHEST, Mark, Piece, Scene};
+use crate::output::page::{escaped, fill_template, script_safe};
+use crate::output::scene::{BodyPoint, FARTHEST, Piece, Scene};
 use crate::scenario::Scenario;
 use crate::scenario::metres;
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
 /// Largest number of frames of a page: one every hundredth of a second, for ten seconds.
-const MOST_FRAMES: usize = 1001;
+const MAX_FRAMES: usize = 1001;
 /// Smallest limit on the number of frames, for any number of blocks.
-const FEWEST_FRAMES: usize = 101;
+const MIN_FRAMES: usize = 101;
 /// Ratio of the largest number of frames of a history to that of its fall.
 const FALL_SHARE: usize = 6;
 /// Number of columns to which a curve is thinned.
@@ -56,9 +57,9 @@ pub struct Report {
     scene: Scene,
     bodies: Vec<String>,
     gravity_m_s2: f64,
-    film: Film,
+    motion: Animation,
     /// The fall after the structure has overturned.
-    fall: Film,
+    fall: Animation,
     fall_end: Option<FallEnd>,
     energy: Envelope,
     in_barriers: bool,
@@ -66,7 +67,7 @@ pub struct Report {
 }
 
 impl Report {
-    /// Makes an empty report for the structure of a scenario and its model of motion.
+    /// Makes an empty page for the structure of a scenario and its model of motion.
     #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
@@ -74,13 +75,13 @@ impl Report {
         let pressing = pressed.map_or(0, |row| row.joints.len());
         // Rotation and displacement of each body, each section, each closed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;
-        let most = (FRAME_BYTES / bytes).clamp(FEWEST_FRAMES, MOST_FRAMES);
+        let most = (FRAME_BYTES / bytes).clamp(MIN_FRAMES, MAX_FRAMES);
         Self {
             scene,
             bodies,
             gravity_m_s2: scenario.gravity_m_s2(),
-            film: Film::new(most),
-            fall: Film::new(most / FALL_SHARE),
+            motion: Animation::new(most),
+            fall: Animation::new(most / FALL_SHARE),
             fall_end: None,
             energy: Envelope::of_columns(CURVE_COLUMNS),
             in_barriers: false,
@@ -91,7 +92,7 @@ impl Report {
     /// Adds a sample. Samples come in the order of time.
     pub fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
-        self.film.push(sample);
+        self.motion.push(sample);
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
@@ -109,32 +110,32 @@ impl Report {
         self.fall_end = Some(end);
     }
 
-    /// Makes the page of a scenario. `samples` is the report of the samples of `[uncertain]`, empty without samples; `verdict` and `words` are
-    /// the words of `run`.
+    /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict` and `words`
+    /// are printed by `run`.
     #[must_use]
     pub fn page(
         &self,
         scenario: &Scenario,
-        history: &Summary,
-        points: Option<&Points>,
-        [samples, verdict]: [&str; 2],
+        history: &History,
+        points: Option<&ObservedPoints>,
+        [uncertainty, verdict]: [&str; 2],
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
         let title = scenario.title.as_deref().unwrap_or("Rocking history");
-        let mut frames = self.film.frames();
+        let mut frames = self.motion.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
         let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
         let what = format!("{structure}; {shaken}");
         let data = self.data(ground, &frames, ends_at, (history, points));
         let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        filled(
+        fill_template(
             include_str!("report/page.html"),
             &[
                 ("PROGRAM", &program),
                 ("TITLE", &escaped(title)),
-                ("SAMPLES", &escaped(samples.trim_end())),
+                ("UNCERTAINTY", &escaped(uncertainty.trim_end())),
                 ("OUTCOME", &escaped(verdict.trim_end())),
                 ("WHAT", &escaped(&what)),
                 ("WORDS", &escaped(words.trim_end())),
@@ -157,7 +158,7 @@ impl Report {
         ground: &GroundMotion,
         frames: &[&Sample],
         fall_from: usize,
-        (history, points): (&Summary, Option<&Points>),
+        (history, points): (&History, Option<&ObservedPoints>),
     ) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
@@ -178,7 +179,7 @@ impl Report {
         let dimensions = self.scene.dimensions.iter().map(|dimension| {
             json!({ "ends_m": flat(dimension.ends_m), "side": dimension.side, "text": dimension.text })
         });
-        let opens_s = strongest_s(&frames[..fall_from], history);
+        let opens_s = opening_time_s(&frames[..fall_from], history);
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
@@ -195,6 +196,10 @@ impl Report {
         let end_s = frames[..fall_from]
             .last()
             .map_or(ground.start_s(), |frame| frame.time_s);
+        // A structure that has turned far enough when it overturns does not fall any further.
+        let falls = frames.last().is_some_and(|frame| frame.time_s > end_s);
+        let fall_end = self.fall_end.as_ref();
+        let fall_end = fall_end.filter(|end| falls || **end != FallEnd::Turned);
         json!({
             "bodies": self.bodies,
             "largest_body": history.largest_body(),
@@ -204,7 +209,7 @@ impl Report {
             "dimensions": list(dimensions),
             "opens_s": opens_s,
             "end_s": end_s,
-            "fall_end": self.fall_end.as_ref().map(FallEnd::to_string),
+            "fall_end": fall_end.map(FallEnd::to_string),
             "supports": supports,
             "ties": list(ties.map(|ends| ends.map(point))),
             "ties_broken_s": list(broken_s),
@@ -213,7 +218,7 @@ impl Report {
             "across": list(across),
             "layouts": list(hinges.iter().map(|open| self.layout(open, points, unit_m))),
             "frames": self.frames(ground, frames, layout_of, joints.len()),
-            "points": points.map(Points::on_page),
+            "points": points.map(ObservedPoints::on_page),
             "energy_label": energy_label,
             "curves": {
                 "ground_g": curve(curve_g(ground, self.gravity_m_s2, end_s)),
@@ -224,7 +229,7 @@ impl Report {
     }
 
     /// Returns the outlines and hinges of a layout.
-    fn layout(&self, hinges: &[OpenHinge], points: Option<&Points>, unit_m: f64) -> Value {
+    fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Value {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
             let ((body, x_m, y_m), text) = (point(mark), format!("{} kg", metres(load.mass_kg)));
@@ -264,15 +269,15 @@ impl Report {
         let times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
         let poses = || frames.iter().flat_map(|frame| &frame.poses);
         let shifts = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
-        let (rotations, rotation_unit_rad) = whole(poses().map(Pose::rotation_rad));
-        let (shifts, shift_unit_m) = whole(shifts);
+        let (rotations, rotation_unit_rad) = quantized(poses().map(Pose::rotation_rad));
+        let (shifts, shift_unit_m) = quantized(shifts);
         let ground_m = GroundVelocity::new(ground).displacements_m(&times_s);
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_acceleration_m_s2 / self.gravity_m_s2);
         let apart_m = frames.iter();
         let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
-        let thrust_unit = FARTHEST / MOST;
+        let thrust_unit = FARTHEST / LARGEST_I16;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
         let thrust = ratios.map(|ratio| match ratio {
             Some(ratio) => (ratio.clamp(-FARTHEST, FARTHEST) / thrust_unit).round() as i16,
@@ -296,7 +301,7 @@ impl Report {
         let largest_pa = stresses_pa.fold(0.0, f64::max);
         let pressed = pressures().flat_map(|pressure| {
             let [intrados, extrados] = pressure.edge_stresses_pa.map(|pa| pa / largest_pa);
-            [intrados, extrados, pressure.contact_ratio].map(eighth)
+            [intrados, extrados, pressure.contact_ratio].map(byte_rounded_up)
         });
         let states = frames.iter().map(|frame| match frame.state {
             State::Rest => 0,
@@ -311,9 +316,9 @@ impl Report {
             "shifts": shifts,
             "shift_unit_m": shift_unit_m,
             "layouts": encoded(layouts.into_iter().map(u16::to_le_bytes)),
-            "ground_m": floats(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
-            "ground_g": floats(ground_g),
-            "right_foot_m": ground.right_foot().map(|_| floats(apart_m)),
+            "ground_m": encoded_f32(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
+            "ground_g": encoded_f32(ground_g),
+            "right_foot_m": ground.right_foot().map(|_| encoded_f32(apart_m)),
             "thrust_unit": has_thrust.then_some(thrust_unit),
             "thrust": encoded(thrust.map(i16::to_le_bytes)),
             "largest_stress_pa": (largest_pa > 0.0).then_some(largest_pa),
@@ -329,7 +334,7 @@ fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
 }
 
 /// Returns the number of the body of a point, and its position.
-fn point(mark: Mark) -> (i64, f64, f64) {
+fn point(mark: BodyPoint) -> (i64, f64, f64) {
     (body_number(mark.body), mark.at_m.x, mark.at_m.y)
 }
 
@@ -338,7 +343,7 @@ fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
 }
 
 /// Returns the time at which the page opens: that of overturning, or of the largest rotation.
-fn strongest_s(frames: &[&Sample], history: &Summary) -> f64 {
+fn opening_time_s(frames: &[&Sample], history: &History) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;
     }

@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
 use crate::output::Figure;
-use crate::output::elevation::{BODIES, Place, STONE, TIE, View};
-use crate::output::scene::{Mark, Scene};
-use crate::output::sheet::{Height, Sheet};
+use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
+use crate::output::scene::{BodyPoint, Scene};
+use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
@@ -25,7 +25,7 @@ pub(super) struct Snapshots {
 }
 
 /// Largest number of pictures of a film.
-const MOST_STILLS: usize = 9999;
+const MAX_FILM_PICTURES: usize = 9999;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
 /// Smallest width of a picture.
@@ -55,16 +55,12 @@ impl Snapshots {
         self
     }
 
-    pub(super) const fn is_film(&self) -> bool {
-        self.film.is_some()
-    }
-
     /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.span_s = [self.span_s[0].min(time_s), time_s];
         if let Some((every_s, next_s)) = &mut self.film {
-            if time_s >= *next_s - 1e-9 && self.taken.len() < MOST_STILLS {
+            if time_s >= *next_s - 1e-9 && self.taken.len() < MAX_FILM_PICTURES {
                 let due_s = if next_s.is_finite() { *next_s } else { time_s };
                 *next_s = due_s + *every_s;
                 self.taken.push((time_s, Some(sample.clone())));
@@ -81,7 +77,7 @@ impl Snapshots {
     }
 
     /// Returns lines about requested times before the start or after the end of the history. Their pictures show the first or the last instant.
-    pub(super) fn outside(&self) -> String {
+    pub(super) fn outside_times_text(&self) -> String {
         let [start_s, end_s] = self.span_s;
         let line = |is_outside: &dyn Fn(f64) -> bool, place: &str| {
             let times_s = self.taken.iter().map(|(time_s, _)| *time_s);
@@ -124,7 +120,7 @@ impl Snapshots {
     }
 
     /// Draws each snapshot as a separate picture, all with one scale.
-    pub(super) fn stills(&self, figure: Figure, title: &str) -> Vec<String> {
+    pub(super) fn film_pictures(&self, figure: Figure, title: &str) -> Vec<String> {
         let shown = self.shown().into_iter();
         shown
             .map(|sample| self.sheet(figure, title, &[sample]))
@@ -142,14 +138,17 @@ impl Snapshots {
         sheet.gap(14.0);
         for samples in shown.chunks(columns) {
             let tall_px = 1.1 * scale * height_m;
-            sheet.part(Height::Structure(tall_px, tall_px), move |drawing, part| {
-                for (column, sample) in (0_u32..).zip(samples) {
-                    let middle = (f64::from(column) + 0.5) * cell_px;
-                    let sway_m = Vector2::new(0.0, 0.1 * height_m);
-                    let place = Place::over([low_m, high_m + sway_m], middle, part);
-                    self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
-                }
-            });
+            sheet.part(
+                PartHeight::Structure(tall_px, tall_px),
+                move |drawing, part| {
+                    for (column, sample) in (0_u32..).zip(samples) {
+                        let middle = (f64::from(column) + 0.5) * cell_px;
+                        let sway_m = Vector2::new(0.0, 0.1 * height_m);
+                        let place = SheetTransform::over([low_m, high_m + sway_m], middle, part);
+                        self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
+                    }
+                },
+            );
             sheet.gap(52.0);
         }
         sheet.caption(0.0, &self.caption());
@@ -178,7 +177,13 @@ impl Snapshots {
         caption
     }
 
-    fn draw_one(&self, drawing: &mut Drawing, place: Place, sample: &Sample, half_px: f64) {
+    fn draw_one(
+        &self,
+        drawing: &mut Drawing,
+        place: SheetTransform,
+        sample: &Sample,
+        half_px: f64,
+    ) {
         let left = place.at - Vector2::new(half_px, 0.0);
         let right = place.at + Vector2::new(half_px, 0.0);
         drawing.line(left, right, Stroke::new(color::GREY, 1.4, ""));
@@ -201,7 +206,7 @@ impl Snapshots {
             }
             Some(body) => (format!("body {body}"), STONE),
         });
-        let moved = |mark: &Mark| view.px(mark);
+        let moved = |mark: &BodyPoint| view.px(mark);
         let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
         for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {
             let [from, to] = ends.each_ref().map(moved);
@@ -215,7 +220,7 @@ impl Snapshots {
                 drawing.curve("tie", [from, to], TIE);
             }
         }
-        for pressed in self.scene.pressed(sample) {
+        for pressed in self.scene.compressed_joints(sample) {
             let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
             let wedge = pressed.wedge(high_m);
             let stroke = Stroke::new(color::PURPLE, 0.8, "");

@@ -20,7 +20,7 @@ use crate::scenario::{Ground, Scenario};
 
 /// A computed motion, with its repetitions and variations.
 #[derive(Clone, Copy)]
-pub struct Evidence<'a> {
+pub struct ComputedRun<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
     /// The model of motion.
@@ -33,7 +33,7 @@ pub struct Evidence<'a> {
     pub varied: &'a [VariationResult],
 }
 
-impl<'a> Evidence<'a> {
+impl<'a> ComputedRun<'a> {
     /// Returns the comparison with the repetitions; `None` if there are none, or one failed.
     pub(super) fn repeatability(&self) -> Option<&'a Repeatability> {
         self.repeated.and_then(|repeated| repeated.as_ref().ok())
@@ -68,7 +68,7 @@ pub struct Summary<'a> {
     pub warnings: Vec<String>,
     /// Outcome of the motion.
     #[serde(flatten)]
-    pub ended: Ended,
+    pub outcome: OutcomeSummary,
     /// Number of impacts; null with elastic joints, whose contact is continuous.
     pub impacts: Option<usize>,
     /// Largest rotations of the bodies, in radians.
@@ -86,16 +86,16 @@ pub struct Summary<'a> {
     pub steps: u64,
     /// Results of four links and columns.
     #[serde(flatten)]
-    pub mechanisms: Option<OfMechanisms>,
+    pub mechanisms: Option<MechanismResults>,
     /// Results of rows of blocks.
     #[serde(flatten)]
-    pub row: Option<OfRow<'a>>,
+    pub row: Option<RowResults<'a>>,
     /// The comparison with its repetitions; absent if the history was not repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub repeatability: Option<Repeated<'a>>,
+    pub repeatability: Option<RepeatabilitySummary<'a>>,
     /// The ends of the histories with other stiffness and contact, and with rigid joints.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub variations: Vec<OneVariation<'a>>,
+    pub variations: Vec<VariationSummary<'a>>,
     /// Largest displacements of the points that were chosen with `--point`, relative to the ground.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointPeaks>,
@@ -106,7 +106,7 @@ pub struct Summary<'a> {
 
 /// Outcome of a motion.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Ended {
+pub struct OutcomeSummary {
     /// `never_moved`, `vibrates`, `rest`, `overturned`, `still_rocking` or `incomplete`.
     pub outcome: &'static str,
     /// Time of the outcome, in seconds. For an overturned structure it is the last time at which the structure could still return.
@@ -127,7 +127,7 @@ pub struct FrictionDemand {
 
 /// Results of four links or of a column.
 #[derive(Clone, Debug, Serialize)]
-pub struct OfMechanisms {
+pub struct MechanismResults {
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, gravity alone overturns the structure.
     pub peak_rotation_over_critical: Option<f64>,
     /// Dimensionless numbers; absent without an unstable equilibrium.
@@ -166,7 +166,7 @@ pub struct Thrust {
 
 /// Results of a row of blocks.
 #[derive(Clone, Debug, Serialize)]
-pub struct OfRow<'a> {
+pub struct RowResults<'a> {
     /// Largest rotation of any block, in radians.
     pub largest_peak_rotation_rad: f64,
     /// Half cycles whose peak is at least a thousandth of the largest rotation.
@@ -190,7 +190,7 @@ pub struct OfRow<'a> {
 /// The comparison of a motion with its repetitions.
 #[derive(Clone, Debug, Serialize)]
 #[serde(untagged)]
-pub enum Repeated<'a> {
+pub enum RepeatabilitySummary<'a> {
     /// Comparison with all repetitions.
     Compared {
         /// Outcomes of the run itself (`own`) and of its repetitions, by name.
@@ -210,23 +210,23 @@ pub enum Repeated<'a> {
 
 /// The end of a history with other properties.
 #[derive(Clone, Debug, Serialize)]
-pub struct OneVariation<'a> {
+pub struct VariationSummary<'a> {
     /// The changed property.
     pub with: &'a str,
     /// The end of the history.
     #[serde(flatten)]
-    pub end: VariationEnd<'a>,
+    pub end: VariationOutcome<'a>,
 }
 
 /// The end of a history with other properties, or the reason why there is none.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(untagged)]
-pub enum VariationEnd<'a> {
+pub enum VariationOutcome<'a> {
     /// The history was computed.
-    Ended {
-        /// The ending.
+    Computed {
+        /// The outcome.
         #[serde(flatten)]
-        ended: Ended,
+        outcome: OutcomeSummary,
         /// Peak of the first half cycle that rocks, in radians.
         first_peak_rad: Option<f64>,
         /// Largest rotation of a block, in radians.
@@ -256,7 +256,7 @@ pub struct PointPeaks {
     pub peak_y_time_s: f64,
 }
 
-impl Ended {
+impl OutcomeSummary {
     /// Returns the outcome of a history.
     #[must_use]
     pub fn of(history: &History) -> Self {
@@ -271,8 +271,8 @@ impl Ended {
 impl<'a> Summary<'a> {
     /// Makes the summary of a history, with the peaks of the observed points.
     #[must_use]
-    pub fn of(evidence: &Evidence<'a>, points: Vec<PointPeaks>) -> Self {
-        let (scenario, model, history) = (evidence.scenario, evidence.model, evidence.history);
+    pub fn of(computed: &ComputedRun<'a>, points: Vec<PointPeaks>) -> Self {
+        let (scenario, model, history) = (computed.scenario, computed.model, computed.history);
         let mechanisms = model.as_mechanisms();
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
@@ -283,9 +283,9 @@ impl<'a> Summary<'a> {
             version: env!("CARGO_PKG_VERSION"),
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
-            verdict: evidence.verdict(),
+            verdict: computed.verdict(),
             warnings: warnings(scenario, model, history),
-            ended: Ended::of(history),
+            outcome: OutcomeSummary::of(history),
             impacts: history.known_impacts(),
             peak_rotations_rad: Named(names.into_iter().zip(peaks_rad).collect()),
             incipient_acceleration_g: Sides::of(|sway| model.incipient_acceleration_g(sway)),
@@ -295,8 +295,8 @@ impl<'a> Summary<'a> {
                 largest_friction_demand_time_s: thrust.largest_friction.time_s,
             }),
             steps: history.cost.steps,
-            mechanisms: mechanisms.map(|model| OfMechanisms::of(scenario, model, history)),
-            row: history.row().map(|row| OfRow {
+            mechanisms: mechanisms.map(|model| MechanismResults::of(scenario, model, history)),
+            row: history.row().map(|row| RowResults {
                 largest_peak_rotation_rad: history.largest_rotation_rad(),
                 half_cycles: history.half_cycles(),
                 elastic: history.elastic(),
@@ -305,20 +305,20 @@ impl<'a> Summary<'a> {
                 friction_coefficient: scenario.motion.friction_coefficient(),
                 iterations: history.cost.evaluations,
             }),
-            repeatability: evidence.repeated.map(|repeated| match repeated {
-                Ok(repeatability) => Repeated::of(repeatability),
-                Err(reason) => Repeated::Failed {
+            repeatability: computed.repeated.map(|repeated| match repeated {
+                Ok(repeatability) => RepeatabilitySummary::of(repeatability),
+                Err(reason) => RepeatabilitySummary::Failed {
                     failed: reason.to_string(),
                 },
             }),
-            variations: evidence.varied.iter().map(OneVariation::of).collect(),
+            variations: computed.varied.iter().map(VariationSummary::of).collect(),
             points,
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
         }
     }
 }
 
-impl OfMechanisms {
+impl MechanismResults {
     fn of(scenario: &Scenario, model: &dyn MechanismModel, history: &History) -> Self {
         let pushes_m_s2 = scenario.ground_motion().pushes_m_s2(history.end_s);
         let dimensionless = |scales: Scales| Dimensionless {
@@ -347,7 +347,7 @@ impl OfMechanisms {
     }
 }
 
-impl<'a> Repeated<'a> {
+impl<'a> RepeatabilitySummary<'a> {
     fn of(repeatability: &'a Repeatability) -> Self {
         let names = ["own"].into_iter();
         let names = names.chain(repeatability.repeated.iter().copied());
@@ -362,17 +362,17 @@ impl<'a> Repeated<'a> {
     }
 }
 
-impl<'a> OneVariation<'a> {
+impl<'a> VariationSummary<'a> {
     fn of(VariationResult { name, result }: &'a VariationResult) -> Self {
         Self {
             with: name,
             end: match result {
-                Ok(history) => VariationEnd::Ended {
-                    ended: Ended::of(history),
+                Ok(history) => VariationOutcome::Computed {
+                    outcome: OutcomeSummary::of(history),
                     first_peak_rad: first_peak_rad(history),
                     largest_peak_rotation_rad: history.largest_rotation_rad(),
                 },
-                Err(failed) => VariationEnd::Failed { failed },
+                Err(failed) => VariationOutcome::Failed { failed },
             },
         }
     }
@@ -388,7 +388,7 @@ pub fn summary(
     history: &History,
     repeated: Option<&Result<Repeatability, RepeatabilityError>>,
 ) -> Result<Value, OutputError> {
-    let evidence = Evidence {
+    let computed = ComputedRun {
         scenario,
         model,
         history,
@@ -398,6 +398,6 @@ pub fn summary(
     // Computing time would differ between equal histories.
     summary_of(&Summary {
         longest_step_us: None,
-        ..Summary::of(&evidence, Vec::new())
+        ..Summary::of(&computed, Vec::new())
     })
 }

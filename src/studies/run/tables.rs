@@ -278,7 +278,7 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
         of_impact("edges_opened", |impact| joint_edges(&impact.opened)),
         of_impact("energy_before_j", |impact| impact.energy_before_j),
         of_impact("energy_after_j", |impact| impact.energy_after_j),
-        of_impact("energy_taken_j", taken_j),
+        of_impact("energy_taken_j", energy_loss_j),
     ];
     if model.slips() {
         all.push(of_impact("friction_j", |impact| impact.friction_j));
@@ -287,7 +287,7 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
 }
 
 /// Returns the energy lost in an impact, in J.
-pub(super) fn taken_j(impact: &Impact) -> f64 {
+pub(super) fn energy_loss_j(impact: &Impact) -> f64 {
     impact.energy_before_j - impact.energy_after_j
 }
 
@@ -358,9 +358,9 @@ fn joint_edges(hinges: &[Hinge]) -> String {
     of_joints(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
 }
 
-fn of_joints(hinges: &[Hinge], words: impl Fn(usize, Option<Edge>) -> String) -> String {
+fn of_joints(hinges: &[Hinge], text: impl Fn(usize, Option<Edge>) -> String) -> String {
     let texts = hinges.iter().filter_map(|hinge| match *hinge {
-        Hinge::Joint { joint, edge } => Some(words(joint, edge)),
+        Hinge::Joint { joint, edge } => Some(text(joint, edge)),
         Hinge::Section { .. } | Hinge::Toe(_) => None,
     });
     texts.collect::<Vec<_>>().join(" ")

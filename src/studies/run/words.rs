@@ -4,10 +4,10 @@ use askama::Template;
 use nalgebra::Vector2;
 
 use super::caveats::{self, STONE_FRICTION, STRAIGHT_RAD};
-use super::comparison::otherwise;
+use super::comparison::changed_outcome;
 use super::points::place;
-use super::summary::{Evidence, Summary};
-use super::tables::taken_j;
+use super::summary::{ComputedRun, Summary};
+use super::tables::energy_loss_j;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, Sliding, Summary as History};
 use crate::dynamics::repeatability::{
@@ -41,7 +41,7 @@ pub fn heading(scenarios: &[Scenario]) -> String {
 /// The verdict: the outcome, its certainty, and the properties that may change it.
 #[derive(Template)]
 #[template(path = "studies/run/words/verdict.txt")]
-pub(super) struct VerdictLine<'a>(pub Evidence<'a>);
+pub(super) struct VerdictLine<'a>(pub ComputedRun<'a>);
 
 impl VerdictLine<'_> {
     /// Returns the names of the repetitions whose outcome `differs` from that of the run.
@@ -67,33 +67,33 @@ impl VerdictLine<'_> {
     }
 
     /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.
-    fn doubts(&self) -> Vec<String> {
+    fn conditions(&self) -> Vec<String> {
         let (history, varied) = (self.0.history, self.0.varied);
-        let needed = caveats::friction_need(self.0.scenario, history).into_iter();
-        let doubts = needed.chain(otherwise(history, varied));
-        doubts
+        let needed = caveats::friction_condition(self.0.scenario, history).into_iter();
+        let conditions = needed.chain(changed_outcome(history, varied));
+        conditions
             .filter(|_| history.outcome != Outcome::Incomplete)
             .collect()
     }
 }
 
-/// The other lines of the report.
+/// The lines after the verdict.
 #[derive(Template)]
 #[template(path = "studies/run/words/words.txt")]
 pub(super) struct Words<'a> {
-    pub evidence: Evidence<'a>,
+    pub computed: ComputedRun<'a>,
     pub summary: &'a Summary<'a>,
-    pub impacts: &'a Notable,
-    /// The models of motion of all runs that are reported together.
-    pub beside: &'a [Hinges],
+    pub impacts: &'a NotableImpacts,
+    /// The models of motion of all runs whose words are printed together.
+    pub all_models: &'a [Hinges],
 }
 
 /// Largest number of half cycles that are described.
-const DESCRIBED: usize = 3;
+const MAX_HALF_CYCLES: usize = 3;
 /// Slips below this fraction of the thickness of a joint are not reported.
 const LEAST_SLIP_RATIO: f64 = 1e-6;
 /// Largest number of joints whose slips are reported.
-const SLIPPED: usize = 4;
+const MAX_SLIPS: usize = 4;
 /// Distance of the thrust from the middle, in thicknesses of a joint, from which the thrust of a row at rest is reported as close to the edge.
 const NEAR_EDGE_RATIO: f64 = 0.4;
 
@@ -107,7 +107,7 @@ struct Slip {
 impl<'a> Words<'a> {
     /// Returns true if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
-        let history = self.evidence.history;
+        let history = self.computed.history;
         match history.outcome {
             Outcome::NeverMoved => true,
             Outcome::Incomplete => history.largest_rotation_rad() == 0.0 && !self.has_slipped(),
@@ -115,8 +115,13 @@ impl<'a> Words<'a> {
         }
     }
 
+    /// Returns true if the model moves a row of blocks, false for mechanisms.
+    fn is_row(&self) -> bool {
+        self.computed.model.row().is_some()
+    }
+
     fn sliding(&self) -> Option<&'a Sliding> {
-        self.evidence.history.row()?.sliding.as_ref()
+        self.computed.history.row()?.sliding.as_ref()
     }
 
     fn has_slipped(&self) -> bool {
@@ -126,7 +131,7 @@ impl<'a> Words<'a> {
 
     /// Returns true if a history has another verdict.
     fn differs(&self, other: &History) -> bool {
-        Verdict::from(other.outcome) != Verdict::from(self.evidence.history.outcome)
+        Verdict::from(other.outcome) != Verdict::from(self.computed.history.outcome)
     }
 
     /// Returns the half cycles with the largest peaks that are printed as nonzero, in order of time.
@@ -151,17 +156,17 @@ impl<'a> Words<'a> {
 
     /// Returns the first impact, and the impact of a row that takes the most energy. Impacts after overturning do not count.
     fn notable(&self) -> [Option<&'a (f64, Impact)>; 2] {
-        let until_s = self.evidence.history.overturned_s();
+        let until_s = self.computed.history.overturned_s();
         let until_s = until_s.unwrap_or(f64::INFINITY);
-        let Notable(impacts) = self.impacts;
+        let NotableImpacts(impacts) = self.impacts;
         let before = || impacts.iter().filter(|(time_s, _)| *time_s <= until_s);
         let hardest = before().next_back().filter(|_| before().count() > 1);
-        let hardest = hardest.filter(|_| self.summary.row.is_some());
+        let hardest = hardest.filter(|_| self.is_row());
         [before().next(), hardest]
     }
 
     /// Returns the fraction of the energy that an impact keeps. "1.0000" appears only if the impact takes no energy.
-    fn kept(&self, impact: &Impact) -> String {
+    fn restitution_text(&self, impact: &Impact) -> String {
         match format!("{:.4}", impact.restitution) {
             all if impact.restitution < 1.0 && all == "1.0000" => "above 0.9999".to_owned(),
             kept => kept,
@@ -193,13 +198,13 @@ impl<'a> Words<'a> {
     }
 
     fn peaks_by_body(&self) -> String {
-        let Evidence { model, history, .. } = self.evidence;
+        let ComputedRun { model, history, .. } = self.computed;
         by_body(&model.bodies(), &history.peak_rotations_rad)
     }
 
     /// Returns the joints that slipped, the largest slip first.
     fn slips(&self) -> Vec<Slip> {
-        let row = self.evidence.model.row();
+        let row = self.computed.model.row();
         let joints = row.zip(self.sliding()).into_iter();
         let joints = joints.flat_map(|(row, sliding)| {
             let slips = sliding.largest_offsets_m.iter().zip(&sliding.offsets_m);
@@ -220,30 +225,30 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the largest final slip of these joints, in mm.
-    fn most_end_mm(&self, slips: &[Slip]) -> f64 {
+    fn largest_final_slip_mm(&self, slips: &[Slip]) -> f64 {
         slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
     }
 
     /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
-    fn alike_g(&self) -> Option<f64> {
+    fn common_start_g(&self) -> Option<f64> {
         let Sides { right, left } = self.summary.incipient_acceleration_g;
         right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
     }
 
     fn in_g(&self, acceleration_m_s2: f64) -> f64 {
-        acceleration_m_s2 / self.evidence.scenario.gravity_m_s2()
+        acceleration_m_s2 / self.computed.scenario.gravity_m_s2()
     }
 
     /// Returns the largest horizontal and vertical acceleration of the ground until a time, in units of gravity.
     fn peaks_g(&self, until_s: &f64) -> Vector2<f64> {
-        let ground = self.evidence.scenario.ground_motion();
+        let ground = self.computed.scenario.ground_motion();
         ground.peaks_m_s2(*until_s).map(|peak| self.in_g(peak))
     }
 
     /// Returns each side to which the ground pushes, the largest push, and the push that starts the structure to that side, in units of gravity.
     fn pushes_g(&self) -> Vec<(Sway, f64, Option<f64>)> {
-        let ground = self.evidence.scenario.ground_motion();
-        let [right, left] = ground.pushes_m_s2(self.evidence.history.end_s);
+        let ground = self.computed.scenario.ground_motion();
+        let [right, left] = ground.pushes_m_s2(self.computed.history.end_s);
         let starts_g = self.summary.incipient_acceleration_g;
         let sides = [
             (Sway::Right, self.in_g(right), starts_g.right),
@@ -263,27 +268,27 @@ impl<'a> Words<'a> {
 
     /// Returns true if the right foot has a record.
     fn is_recorded(&self) -> bool {
-        let right = self.evidence.scenario.right_foot.as_ref();
+        let right = self.computed.scenario.right_foot.as_ref();
         right.is_some_and(|right| right.record().is_some())
     }
 
     /// Returns the feet whose records end before the ground stops, with the times.
     fn ended_records(&self) -> Vec<(&'static str, f64)> {
-        let ground = self.evidence.scenario.ground_motion();
+        let ground = self.computed.scenario.ground_motion();
         let feet = ["left", "right"].into_iter().zip(ground.ends_s());
         feet.filter(|(_, at_s)| *at_s < ground.end_s()).collect()
     }
 
     /// Returns the limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
     fn trust(&self) -> Option<Vec<String>> {
-        let (scenario, history) = (self.evidence.scenario, self.evidence.history);
-        if self.evidence.model.as_mechanisms().is_none() {
+        let (scenario, history) = (self.computed.scenario, self.computed.history);
+        if self.is_row() {
             return self.sliding().is_none().then(Vec::new);
         }
         // Advises to compare with free hinges only if the comparison was not requested.
-        let compared = self.beside.contains(&Hinges::Free);
+        let compared = self.all_models.contains(&Hinges::Free);
         let advice = (!compared).then_some("compare with --hinges both");
-        caveats::trust(history, &scenario.structure, advice)
+        caveats::four_link_limits(history, &scenario.structure, advice)
     }
 
     fn coefficient(&self, friction: &f64) -> String {
@@ -301,22 +306,22 @@ fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> Vec<&T> {
         .filter(|index| peak_rad(&cycles[*index]) > STRAIGHT_RAD)
         .collect();
     rocking.sort_by(|a, b| peak_rad(&cycles[*b]).total_cmp(&peak_rad(&cycles[*a])));
-    rocking.truncate(DESCRIBED);
+    rocking.truncate(MAX_HALF_CYCLES);
     rocking.sort_unstable();
     rocking.into_iter().map(|index| &cycles[index]).collect()
 }
 
 /// Impacts that may be described, with their times: the first impact, and each impact that takes more energy than all before.
 #[derive(Default)]
-pub(super) struct Notable(Vec<(f64, Impact)>);
+pub(super) struct NotableImpacts(Vec<(f64, Impact)>);
 
-impl Notable {
+impl NotableImpacts {
     pub(super) fn note(&mut self, event: &Event) {
         let (time_s, Some(impact)) = (event.time_s, &event.impact) else {
             return;
         };
         let hardest = self.0.last();
-        if hardest.is_none_or(|(_, hardest)| taken_j(impact) > taken_j(hardest)) {
+        if hardest.is_none_or(|(_, hardest)| energy_loss_j(impact) > energy_loss_j(hardest)) {
             self.0.push((time_s, impact.clone()));
         }
     }

@@ -33,24 +33,24 @@ const LARGEST_THRUST: f64 = 1e5;
 /// Reason why a stage with a larger thrust has no pushes.
 const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows beyond all bounds";
 /// Largest movement, in clear spans.
-const LONGEST: f64 = 1.0;
+const LONGEST_RATIO: f64 = 1.0;
 
 /// Direction in which a springing moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Way {
+pub struct Direction {
     /// The springing that moves; the other one is fixed.
     pub springing: Sway,
     /// Angle in degrees: outwards (0), down (90), inwards (180), up (-90).
     pub angle_deg: f64,
 }
 
-impl Way {
+impl Direction {
     /// Default directions: outwards, inwards and down.
-    pub const USUAL_DEG: [f64; 3] = [0.0, 180.0, 90.0];
+    pub const DEFAULT_DEG: [f64; 3] = [0.0, 180.0, 90.0];
 
     /// Returns the name of the direction in words.
     #[must_use]
-    pub fn words(&self) -> String {
+    pub fn label(&self) -> String {
         match self.angle_deg {
             0.0 => "outwards".to_owned(),
             90.0 => "down".to_owned(),
@@ -105,7 +105,7 @@ pub struct Stage {
     /// the push was not found.
     pub capacity_g: Sides<Option<f64>>,
     /// Pushes that were not found; their values are `None`.
-    pub not_found: Vec<NotFound>,
+    pub not_found: Vec<MissingPush>,
     /// Forces and rotations; `None` before the first movement.
     #[serde(skip)]
     pub state: Option<HingeState>,
@@ -136,7 +136,7 @@ named! {
 
 /// A push that was not found.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct NotFound {
+pub struct MissingPush {
     /// The push.
     pub push: Push,
     /// Direction of the push.
@@ -148,10 +148,10 @@ pub struct NotFound {
 
 /// The arch while a springing moves in one direction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Path {
+pub struct SpreadPath {
     /// The direction of the movement.
     #[serde(flatten)]
-    pub way: Way,
+    pub direction: Direction,
     /// Movement at which the arch collapses, in metres; `None` if it exceeds the clear span or is unknown.
     pub falls_at_m: Option<f64>,
     /// Movement at which the arch collapses, over the clear span; `None` as `falls_at_m`.
@@ -175,7 +175,7 @@ pub struct Summary {
     /// Weight of the arch, in N.
     pub weight_n: f64,
     /// The path for each direction.
-    pub paths: Vec<Path>,
+    pub paths: Vec<SpreadPath>,
     /// The scenario with all defaults.
     pub scenario: Value,
     /// The blocks of the arch.
@@ -188,7 +188,7 @@ pub struct Summary {
 
 /// Errors of moved springings.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoSpread {
+pub enum SpreadError {
     /// The structure is not a row of blocks.
     #[error(transparent)]
     Row(#[from] RowError),
@@ -202,7 +202,7 @@ pub enum NoSpread {
 /// # Errors
 /// When the structure is not a row of blocks between two supports, or cannot stand. If a movement cannot be computed further, its path ends
 /// there.
-pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
+pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, SpreadError> {
     let row = scenario.structure.row()?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
     let joints = &row.joints;
@@ -210,8 +210,8 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
     let clear_span_m = across.norm();
     let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
-    let paths = ways.par_iter().with_max_len(1);
-    let paths = paths.map(|way| path(&row, settled, *way, sizes));
+    let paths = directions.par_iter().with_max_len(1);
+    let paths = paths.map(|direction| path(&row, settled, *direction, sizes));
     Ok(Summary {
         paths: paths.collect::<Result<_, _>>()?,
         clear_span_m,
@@ -226,11 +226,11 @@ pub fn spread(scenario: &Scenario, ways: &[Way]) -> Result<Summary, NoSpread> {
 fn path(
     row: &Row,
     settled: Movements,
-    way: Way,
+    direction: Direction,
     [clear_span_m, weight_n]: [f64; 2],
-) -> Result<Path, SettlingError> {
-    let longest_m = LONGEST * clear_span_m;
-    let movements = |movement_m: f64| settled + way.movements(movement_m);
+) -> Result<SpreadPath, SettlingError> {
+    let longest_m = LONGEST_RATIO * clear_span_m;
+    let movements = |movement_m: f64| settled + direction.movements(movement_m);
     let mut start = Follower::new(row)?;
     // The reader of the scenario has checked that the arch stands on the moved springings.
     start.move_supports(|part| settled * part, 0.0, 1.0)?;
@@ -268,8 +268,8 @@ fn path(
     let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m, weight_n));
     let snaps = scout.snaps[before..].to_vec();
     let fall = falls_at_m.and(snaps.last());
-    Ok(Path {
-        way,
+    Ok(SpreadPath {
+        direction,
         falls_at_m,
         falls_at_part_of_clear_span: falls_at_m.map(|at_m| at_m / clear_span_m),
         falls_by: fall.map_or_else(Vec::new, |fall| fall.causes.clone()),
@@ -290,7 +290,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     let mut not_found = Vec::new();
     let mut found = |push, sway, result: Result<Option<f64>, String>| {
         result.unwrap_or_else(|reason| {
-            not_found.push(NotFound { push, sway, reason });
+            not_found.push(MissingPush { push, sway, reason });
             None
         })
     };
@@ -332,7 +332,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
 
 impl Stage {
     /// Returns the smaller push of both sides; `None` if no push moves the arch, or one of the pushes was not found.
-    fn least(&self, push: Push) -> Option<f64> {
+    fn smaller_push(&self, push: Push) -> Option<f64> {
         // A capacity is not searched for if the first motion was not found.
         let mut missing = self.not_found.iter();
         if missing.any(|missing| missing.push == push || missing.push == Push::FirstMotion) {
@@ -355,7 +355,7 @@ impl Stage {
     }
 }
 
-impl Path {
+impl SpreadPath {
     /// Returns the stages that words show.
     fn shown(&self) -> impl Iterator<Item = &Stage> {
         let last = self.stages.len() - 1;
@@ -363,11 +363,11 @@ impl Path {
     }
 
     /// Returns each push that was not found, with the number of stages and the movement of the first stage.
-    fn missing(&self) -> Vec<(usize, f64, &NotFound)> {
-        let mut missing: Vec<(usize, f64, &NotFound)> = Vec::new();
+    fn missing(&self) -> Vec<(usize, f64, &MissingPush)> {
+        let mut missing: Vec<(usize, f64, &MissingPush)> = Vec::new();
         for stage in &self.stages {
             for one in &stage.not_found {
-                let known = |(.., known): &&mut (_, _, &NotFound)| {
+                let known = |(.., known): &&mut (_, _, &MissingPush)| {
                     (known.push, known.sway) == (one.push, one.sway)
                 };
                 match missing.iter_mut().find(known) {

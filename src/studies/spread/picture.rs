@@ -2,13 +2,13 @@
 
 use nalgebra::Vector2;
 
-use super::{Path, Push, Stage, Summary};
+use super::{Push, SpreadPath, Stage, Summary};
 use crate::mechanics::blocks::Row;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
-use crate::output::elevation::{HINGE, HINGE_PX, Place, STONE, View};
-use crate::output::scene::{Mark as SceneMark, Scene, widened};
-use crate::output::sheet::{Height, Key, Sheet};
+use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
+use crate::output::scene::{BodyPoint, Scene, widened};
+use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 
 /// Largest number of pictures of the arch side by side.
@@ -32,7 +32,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene)
             .collect();
         let heights_px = cells.iter().map(|cell| cell.height_px);
         let height_px = heights_px.fold(0.0, f64::max);
-        let height = Height::Structure(height_px, height_px);
+        let height = PartHeight::Structure(height_px, height_px);
         sheet.part(height, move |drawing, part| {
             for (column, cell) in (0_u32..).zip(cells) {
                 let middle = (f64::from(column) + 0.5) * cell_px;
@@ -56,18 +56,23 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
-        let way = format!("{} {}", path.way.springing.name(), path.way.words());
+        let direction = format!(
+            "{} {}",
+            path.direction.springing.name(),
+            path.direction.label()
+        );
         let solid = Stroke::new(stroke.color, stroke.width, "");
         for (push, stroke) in [
             (Push::Capacity, solid),
             (Push::FirstMotion, thin(stroke.color)),
         ] {
             let points = path.stages.iter();
-            let points = points.filter_map(|stage| Some((stage.movement_m, stage.least(push)?)));
-            let name = format!("{}, {way}", push.name());
+            let points =
+                points.filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
+            let name = format!("{}, {direction}", push.name());
             marks.push(Mark::curve(name, stroke, points));
         }
-        keys.push(Key::line(way, solid));
+        keys.push(Key::line(direction, solid));
     }
     keys.push(Key::line("dashed: first motion", thin(color::BLACK)));
     let labels = ["movement of the springing (m)", "push (g)"];
@@ -81,7 +86,7 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
 struct Cell<'a> {
     row: &'a Row,
     scene: &'a Scene,
-    path: &'a Path,
+    path: &'a SpreadPath,
     stage: &'a Stage,
     /// Lower left and upper right corner of the undeformed and the moved arch, in metres.
     bounds_m: [Vector2<f64>; 2],
@@ -89,7 +94,7 @@ struct Cell<'a> {
 }
 
 impl<'a> Cell<'a> {
-    fn new(row: &'a Row, scene: &'a Scene, path: &'a Path, width_px: f64) -> Option<Self> {
+    fn new(row: &'a Row, scene: &'a Scene, path: &'a SpreadPath, width_px: f64) -> Option<Self> {
         let stage = path.stages.last()?;
         // Fill and loads hardly move farther than the blocks.
         let blocks = scene.pieces(&[]).into_iter();
@@ -116,7 +121,7 @@ impl<'a> Cell<'a> {
             height,
             ..part
         };
-        let place = Place::over(self.bounds_m, middle, own);
+        let place = SheetTransform::over(self.bounds_m, middle, own);
         let view = View::new(self.scene, place, &self.stage.poses, &[]);
         view.draw_carried(drawing, false);
         view.draw_built(drawing, "");
@@ -137,7 +142,7 @@ impl<'a> Cell<'a> {
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }
         }
-        let (words, end_m) = (self.path.way.words(), self.stage.movement_m);
+        let (words, end_m) = (self.path.direction.label(), self.stage.movement_m);
         let text = match (self.path.falls_at_m, &self.path.lost) {
             (Some(at_m), _) => format!("{words} {at_m:.3} m: falls"),
             (None, Some(_)) => format!("{words} {end_m:.3} m: not followed further"),
@@ -148,8 +153,8 @@ impl<'a> Cell<'a> {
     }
 
     /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
-    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> SceneMark {
+    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
         let body = Some(joint.min(self.stage.poses.len() - 1));
-        SceneMark { body, at_m }
+        BodyPoint { body, at_m }
     }
 }

@@ -1,7 +1,7 @@
 //! Files and words of moved springings.
 
 use super::picture::draw;
-use super::{Path, Stage, Summary};
+use super::{SpreadPath, Stage, Summary};
 use crate::mechanics::sides::Sides;
 use crate::output::scene::Scene;
 use crate::output::table::{Cell, column, csv, list, several};
@@ -31,7 +31,7 @@ pub fn report(
 
 /// Makes the table of all stages of all paths.
 fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
-    type Row<'a> = (&'a Path, &'a Stage);
+    type Row<'a> = (&'a SpreadPath, &'a Stage);
     let paths = spread.paths.iter();
     let rows: Vec<Row<'_>> = paths
         .flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
@@ -49,8 +49,10 @@ fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
         list(names, move |row: &Row<'_>| <[_; 2]>::from(*pushes(row.1)))
     };
     let columns = [
-        column("springing", |row: &Row<'_>| row.0.way.springing.name()),
-        column("angle_deg", |row: &Row<'_>| row.0.way.angle_deg),
+        column("springing", |row: &Row<'_>| {
+            row.0.direction.springing.name()
+        }),
+        column("angle_deg", |row: &Row<'_>| row.0.direction.angle_deg),
         column("movement_m", |row: &Row<'_>| row.1.movement_m),
         several(hinges, move |row: &Row<'_>, cells: &mut Vec<Cell<'_>>| {
             for index in 0..most {

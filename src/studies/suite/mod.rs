@@ -16,7 +16,7 @@ pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, Verdict, check_finite};
 use super::remarks::warnings;
-use super::results::{Reported, Results, Style};
+use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
 use super::threshold::survival::Survival;
 use crate::bisection::{Width, bisect};
@@ -204,7 +204,7 @@ impl Study for RecordSuite<'_> {
     }
 }
 
-impl Reported for RecordSuite<'_> {
+impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {

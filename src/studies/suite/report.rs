@@ -12,7 +12,7 @@ use crate::output::{Figure, OutputError};
 use crate::scenario::{Measure, shown};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, number, yes};
-use crate::studies::remarks::{Remarks, counts, in_words, rough_guide_of};
+use crate::studies::remarks::{Remarks, outcome_counts, outcome_label, rough_guide_of};
 use crate::studies::results::Results;
 use crate::studies::threshold::{rounded, survival};
 
@@ -180,12 +180,12 @@ impl Heading {
         measures: &[Efficiency],
         remarks: &Remarks,
     ) -> String {
-        let outcome = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), in_words);
+        let outcome = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), outcome_label);
         let mut lines = vec![format!(
             "{} cases of {}: {}",
             results.cases.len(),
             results.records_in_words(),
-            counts(results.cases.iter().map(outcome))
+            outcome_counts(results.cases.iter().map(outcome))
         )];
         let column = self.measure.column();
         let curves = results.curves().into_iter();

@@ -7,7 +7,7 @@ use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
 use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark};
-use crate::output::sheet::{Height, Key, Sheet};
+use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::studies::ending::Verdict;
 use crate::studies::kind::{self, Kind};
@@ -67,7 +67,7 @@ pub fn draw(
     sheet.legend(LEFT_PX, keys);
     for (threshold, name) in thresholds.iter().zip(&names) {
         sheet.gap(EDGE_LABELS);
-        sheet.part(Height::Fixed(STRIP), move |drawing, part| {
+        sheet.part(PartHeight::Fixed(STRIP), move |drawing, part| {
             let frame = figure.right_of(LEFT_PX, part);
             strip(drawing, &Axes { frame, x, y }, threshold);
             let at = Vector2::new(frame.left - 8.0, frame.top + 0.5 * STRIP + 4.5);

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
-use super::{Basis, NoCheck, SideCheck};
+use super::{CheckInput, SideCheck, VerifyError};
 use crate::dynamics::demand::oscillator::peak_displacement;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{EventKind, Outcome, State};
@@ -95,7 +95,7 @@ pub struct HistorySide {
 
 named! {
     /// The peak that is compared with the capacity.
-    pub enum Counted {
+    pub enum ComparedPeak {
         /// The mean, of at least [`FOR_THE_MEAN`] records.
         Mean = "mean of the peaks",
         /// The largest peak.
@@ -122,7 +122,7 @@ pub struct MeanSpectrum {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Histories {
     /// The peak that is compared with the capacity.
-    pub demand: Counted,
+    pub demand: ComparedPeak,
     /// True if all sides pass; `None` if that depends on a history without a verdict.
     pub passed: Option<bool>,
     /// True if all sides pass with capacities divided by FC; `None` if that depends on a history without a verdict.
@@ -162,17 +162,17 @@ impl HistorySide {
 
 /// Computes the histories of a limit state; `None` if it has no records.
 pub(super) fn histories(
-    basis: &Basis<'_>,
+    input: &CheckInput<'_>,
     (state, rule, spectrum): (LimitState, &StateRule, &Spectrum),
     mechanisms: &BTreeMap<Sway, Mechanism>,
     sides: &BTreeMap<Sway, SideCheck>,
-) -> Result<Option<Histories>, NoCheck> {
-    let (scenario, gravity_m_s2) = (basis.scenario, basis.gravity_m_s2);
-    let records = basis.settings.records.of(state);
+) -> Result<Option<Histories>, VerifyError> {
+    let (scenario, gravity_m_s2) = (input.scenario, input.gravity_m_s2);
+    let records = input.settings.records.of(state);
     if records.is_empty() {
         return Ok(None);
     }
-    let failed = |why: String| NoCheck::Histories { state, why };
+    let failed = |why: String| VerifyError::Histories { state, why };
     let model = scenario.mechanisms();
     let model = model.map_err(|error| match error {
         // These errors recommend another model of motion.
@@ -191,7 +191,7 @@ pub(super) fn histories(
     let participating_kg = mechanisms.map(|one| one.m_star_kg);
     let found: Result<Vec<RecordPeaks>, SimulationError> = records
         .into_par_iter()
-        .map(|series| record_peaks(basis, &*model, series, participating_kg))
+        .map(|series| record_peaks(input, &*model, series, participating_kg))
         .collect();
     let series = records;
     let records = found.map_err(|error| failed(error.to_string()))?;
@@ -201,7 +201,7 @@ pub(super) fn histories(
         let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
         HistorySide {
             restitution: model.restitution_from(sway, 1),
-            ..history_side(&peaks, [capacity_m, d0_m], basis.settings.confidence_factor)
+            ..history_side(&peaks, [capacity_m, d0_m], input.settings.confidence_factor)
         }
     });
     let reached = sides.values().filter_map(|side| side.displacement);
@@ -216,8 +216,8 @@ pub(super) fn histories(
         |one: &&RecordPeaks| one.peaks.right.incomplete || one.peaks.left.incomplete;
     Ok(Some(Histories {
         demand: match records.len() >= FOR_THE_MEAN {
-            true => Counted::Mean,
-            false => Counted::Largest,
+            true => ComparedPeak::Mean,
+            false => ComparedPeak::Largest,
         },
         passed: both_pass(&results, |side| side.passed),
         passed_over_fc: both_pass(&results, |side| side.passed_over_fc),
@@ -236,12 +236,12 @@ pub(super) fn histories(
 
 /// Computes the larger peaks to the right and to the left of a record that acts in both directions in turn.
 fn record_peaks(
-    basis: &Basis<'_>,
+    input: &CheckInput<'_>,
     model: &dyn MechanismModel,
     series: &Series,
     participating_kg: Sides<f64>,
 ) -> Result<RecordPeaks, SimulationError> {
-    let scenario = basis.scenario;
+    let scenario = input.scenario;
     let both = [1.0, -1.0].into_par_iter().map(|sign| {
         let ground = scenario.shaken_by(series, sign);
         let request = scenario.request_on(&ground, &scenario.structure);
@@ -268,7 +268,7 @@ fn record_peaks(
     Ok(RecordPeaks {
         file: series.file.clone(),
         crc32: format!("{:08x}", series.checksum()),
-        peak_g: series.peak_g(basis.gravity_m_s2),
+        peak_g: series.peak_g(input.gravity_m_s2),
         peaks: Sides::of(larger),
     })
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::{Basis, NoCheck};
+use super::{CheckInput, VerifyError};
 use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::{BodyPoint, Capacity, Control, Displaced};
@@ -116,7 +116,7 @@ pub struct Mechanism {
     pub body_of_block: Vec<Option<usize>>,
     /// Motion of the mechanism up to the unstable equilibrium; `None` without a capacity curve.
     #[serde(skip)]
-    pub way: Option<Way>,
+    pub curves: Option<CapacityCurves>,
     /// The acceleration at which joints with the allowed friction coefficient first slide, in g, by the associated bound; `None` if they do not
     /// slide, or if sliding is not checked.
     #[serde(skip)]
@@ -124,24 +124,24 @@ pub struct Mechanism {
 }
 
 /// A mechanism with virtual displacements of arbitrary scale.
-struct Found {
+struct VirtualMechanism {
     hinges: Vec<(Hinge, Vector2<f64>)>,
     bodies: Vec<MovingBody>,
     ties: Vec<MovingTie>,
     body_of_block: Vec<Option<usize>>,
-    way: Result<Way, String>,
+    curves: Result<CapacityCurves, String>,
 }
 
 /// The motion of a mechanism up to its unstable equilibrium, as capacity curves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Way {
+pub struct CapacityCurves {
     /// Capacity curve with the common centre of the bodies as control point.
     pub centre: Capacity,
     /// Capacity curve with the crown (or the top) as control point; `None` if the crown does not move to that side.
     pub crown: Option<Capacity>,
 }
 
-impl Way {
+impl CapacityCurves {
     /// Computes the curves of bodies. `displaced` returns their positions at a fraction of the motion up to the unstable equilibrium.
     fn new(
         sway: Sway,
@@ -176,8 +176,8 @@ impl Way {
 }
 
 impl Mechanism {
-    fn new(found: Found, basis: &Basis<'_>) -> Self {
-        let weight_kn = |mass_kg: f64| mass_kg * basis.gravity_m_s2 / 1000.0;
+    fn new(found: VirtualMechanism, input: &CheckInput<'_>) -> Self {
+        let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
         let alpha0 = load_multiplier(&found.bodies, &found.ties);
         let participation = Participation::of_bodies(&found.bodies);
         let scale = per_displacement_of_centre(&found.bodies);
@@ -199,12 +199,14 @@ impl Mechanism {
         let ties = found.ties.iter();
         let held_kg = ties.clone();
         let held_kg = held_kg.map(|tie| tie.force_kg * (tie.lengthening * scale));
-        let way = found.way.as_ref().ok();
-        let crown = way.and_then(|way| way.crown.as_ref()).map(Capacity::end);
-        let end = way.map(|way| way.centre.end());
-        let yielding = way.and_then(|way| basis.yielding(way));
-        let curve = way.map(|way| {
-            let points = way.centre.curve.iter();
+        let curves = found.curves.as_ref().ok();
+        let crown = curves
+            .and_then(|curves| curves.crown.as_ref())
+            .map(Capacity::end);
+        let end = curves.map(|curves| curves.centre.end());
+        let yielding = curves.and_then(|curves| input.yielding(curves));
+        let curve = curves.map(|curves| {
+            let points = curves.centre.curve.iter();
             let curve = points.map(|point| {
                 [
                     point.oscillator_displacement_m,
@@ -220,7 +222,7 @@ impl Mechanism {
         });
         Self {
             hinges: hinges.collect(),
-            sum_f_delta_l_kn: held_kg.sum::<f64>() * basis.gravity_m_s2 / 1000.0,
+            sum_f_delta_l_kn: held_kg.sum::<f64>() * input.gravity_m_s2 / 1000.0,
             sum_p_kn: sum(|_| 1.0),
             sum_p_delta_x_kn: sum(|body| body.delta_x),
             sum_p_delta_x2_kn: sum(|body| body.delta_x * body.delta_x),
@@ -236,24 +238,24 @@ impl Mechanism {
             moving_mass_kg: participation.moving_mass_kg,
             e_star: participation.mass_fraction,
             m_star_kg: participation.participating_mass_kg,
-            a0_over_fc_g: alpha0 / (participation.mass_fraction * basis.settings.confidence_factor),
+            a0_over_fc_g: alpha0 / (participation.mass_fraction * input.settings.confidence_factor),
             d_c0_m: end.map(|end| end.displacement_m),
             d0_m: end.map(|end| end.oscillator_displacement_m),
             d_c0_crown_m: crown.map(|end| end.displacement_m),
             d0_crown_m: crown.map(|end| end.oscillator_displacement_m),
             d_y_m: yielding.map(|both| both.0),
             a_y_over_fc_g: yielding.map(|both| both.1),
-            friction: way.map(|way| way.friction_up_to(basis.furthest_part())),
+            friction: curves.map(|curves| curves.friction_up_to(input.furthest_part())),
             curve_m_g: curve,
-            no_curve: found.way.as_ref().err().cloned(),
+            no_curve: found.curves.as_ref().err().cloned(),
             body_of_block: found.body_of_block,
-            way: found.way.ok(),
+            curves: found.curves.ok(),
             slides_at_g: None,
         }
     }
 }
 
-impl Found {
+impl VirtualMechanism {
     /// Finds the mechanism to one side of a model that moves as one mechanism.
     fn of_model(
         structure: &Structure,
@@ -269,10 +271,10 @@ impl Found {
             displaced.expect("a structure has its first mechanism")
         };
         let crown = Bodies::of_model(model, sway).body_point(structure.as_parts().crown());
-        let way = Way::new(sway, displaced, &bodies, crown, gravity_m_s2);
+        let curves = CapacityCurves::new(sway, displaced, &bodies, crown, gravity_m_s2);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
-            way,
+            curves,
             bodies,
             ties: Vec::new(),
             body_of_block: Vec::new(),
@@ -330,7 +332,7 @@ impl Found {
             force_kg: tie.prestress_n / row.gravity_m_s2,
             lengthening: *lengthening,
         });
-        let way = || {
+        let curves = || {
             if !row.ties.is_empty() {
                 return Err("the forces of ties change as the structure moves; this check does not follow them, quasi-static \
                      capacity does"
@@ -339,12 +341,12 @@ impl Found {
             let held = Held::new(row, sway).map_err(|error| error.to_string())?;
             let crown = Bodies::of_row(&held).body_point(row.crown());
             let displaced = |part| held.displaced(part);
-            Way::new(sway, displaced, &bodies, crown, gravity_m_s2)
+            CapacityCurves::new(sway, displaced, &bodies, crown, gravity_m_s2)
         };
         Self {
             hinges: hinges.collect(),
             ties: ties.collect(),
-            way: way(),
+            curves: curves(),
             bodies,
             body_of_block,
         }
@@ -367,32 +369,33 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
 /// When the structure cannot stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario has a friction
 /// coefficient, or if there is no curve along which the required friction is known. A linkage that locks by friction is not an error without a
 /// coefficient; it has [`Mechanism::slides_at_g`].
-pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>, NoCheck> {
-    let (structure, gravity_m_s2) = (&basis.scenario.structure, basis.gravity_m_s2);
-    let coefficient = basis.allowed_friction;
-    let slips = basis.scenario.motion.friction_coefficient().is_some();
+pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechanism>, VerifyError> {
+    let (structure, gravity_m_s2) = (&input.scenario.structure, input.gravity_m_s2);
+    let coefficient = input.allowed_friction;
+    let slips = input.scenario.motion.friction_coefficient().is_some();
     let none =
-        |sway: Sway| NoCheck::NoMechanism(format!("no push moves it to the {}", sway.name()));
+        |sway: Sway| VerifyError::NoMechanism(format!("no push moves it to the {}", sway.name()));
     let model = structure.model(ImpactModel::MaxRestitution);
     let row = structure
         .row()
-        .map_err(|error| NoCheck::NoMechanism(error.to_string()));
+        .map_err(|error| VerifyError::NoMechanism(error.to_string()));
     let of = |sway: Sway| {
         let found = if let Ok(model) = &model {
-            Found::of_model(structure, &**model, sway, gravity_m_s2).ok_or_else(|| none(sway))?
+            VirtualMechanism::of_model(structure, &**model, sway, gravity_m_s2)
+                .ok_or_else(|| none(sway))?
         } else {
-            let row = row.as_ref().map_err(NoCheck::clone)?;
+            let row = row.as_ref().map_err(VerifyError::clone)?;
             let found =
-                onset(row, sway).map_err(|error| NoCheck::NoMechanism(error.to_string()))?;
+                onset(row, sway).map_err(|error| VerifyError::NoMechanism(error.to_string()))?;
             let found = found.ok_or_else(|| none(sway))?;
-            Found::of_onset(row, sway, &found, gravity_m_s2)
+            VirtualMechanism::of_onset(row, sway, &found, gravity_m_s2)
         };
-        let mut mechanism = Mechanism::new(found, basis);
-        let sliding = slips || mechanism.way.is_none();
+        let mut mechanism = Mechanism::new(found, input);
+        let sliding = slips || mechanism.curves.is_none();
         let may_slide = row.as_ref().ok().filter(|_| sliding);
         mechanism.slides_at_g = may_slide.and_then(|row| slides_at_g(row, coefficient, sway));
         match mechanism.slides_at_g {
-            Some(at_g) if slips || model.is_err() => Err(NoCheck::Slides {
+            Some(at_g) if slips || model.is_err() => Err(VerifyError::Slides {
                 sway,
                 coefficient,
                 at_g,
@@ -401,7 +404,7 @@ pub(super) fn mechanisms(basis: &Basis<'_>) -> Result<BTreeMap<Sway, Mechanism>,
             _ => Ok((sway, mechanism)),
         }
     };
-    let checked = match basis.settings.sides {
+    let checked = match input.settings.sides {
         CheckedSides::Both => Sway::ALL,
         CheckedSides::Right => &[Sway::Right],
         CheckedSides::Left => &[Sway::Left],

@@ -27,8 +27,8 @@ use crate::output::template::filters;
 use crate::scenario::{
     CheckedSides, Demand, InputFile, LimitState, Scenario, StateRule, Verify, sha256,
 };
-pub use histories::{Counted, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
-pub use mechanism::{Body, HeldTie, Mechanism, PlacedHinge, Way};
+pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
+pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge};
 pub use report::{FILES, page, report, words};
 pub use spectrum::{FloorMode, Ground, Spectrum};
 
@@ -37,7 +37,7 @@ pub const FRICTION: f64 = 0.577;
 
 /// Errors of scenarios that cannot be checked.
 #[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoCheck {
+pub enum VerifyError {
     /// There is no demand.
     #[error(
         "the scenario has no [demand]: give it a table, such as\n\n[demand]\nsoil = \"B\"\ntopography = \"T1\"\n\n\
@@ -114,7 +114,7 @@ impl Margin {
 
 /// The check of the onset of motion (SLD).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Activation {
+pub struct ActivationCheck {
     /// Spectral acceleration at which motion starts, divided by FC, in g.
     pub capacity_g: f64,
     /// Spectral acceleration demanded, in g.
@@ -126,7 +126,7 @@ pub struct Activation {
 
 /// The simplified check of SLV, by the behaviour factor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Simplified {
+pub struct SimplifiedCheck {
     /// The activation acceleration that is multiplied by q, as `a_g`, in g.
     pub activation_ag_g: f64,
     /// The behaviour factor.
@@ -138,7 +138,7 @@ pub struct Simplified {
 
 /// The check by displacements (SLV, SLC).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ByDisplacement {
+pub struct DisplacementCheck {
     /// The fraction of the ultimate displacement that the limit state allows, in metres.
     pub reached_m: f64,
     /// Displacement of the oscillator that is allowed, in metres: `reached_m`, divided.
@@ -179,11 +179,11 @@ pub struct SideCheck {
     /// The governing result; `None` if the state cannot be checked.
     pub zeta_e: Option<f64>,
     /// The onset of motion, for SLD.
-    pub activation: Option<Activation>,
+    pub activation: Option<ActivationCheck>,
     /// The simplified check, for SLV.
-    pub simplified: Option<Simplified>,
+    pub simplified: Option<SimplifiedCheck>,
     /// The check by displacements, for SLV and SLC.
-    pub displacement: Option<ByDisplacement>,
+    pub displacement: Option<DisplacementCheck>,
 }
 
 named! {
@@ -209,11 +209,11 @@ impl Method {
 }
 
 /// The result of a method, with capacity and demand in a unit.
-type Compared = (Method, Margin, Option<([f64; 2], &'static str)>);
+type MethodResult = (Method, Margin, Option<([f64; 2], &'static str)>);
 
 impl SideCheck {
     /// Returns the results, the governing one first: by displacements if there is a curve, or the activation if it governs.
-    fn results(&self) -> impl Iterator<Item = Compared> {
+    fn results(&self) -> impl Iterator<Item = MethodResult> {
         let displacement = self.displacement.map(|one| {
             let start = one.activation_ag_g.zip(one.margin.ag_g);
             let compared = match start {
@@ -361,7 +361,7 @@ fn alike(a: f64, b: f64) -> bool {
 }
 
 /// The basis of a check: its scenario, options and demand.
-struct Basis<'a> {
+struct CheckInput<'a> {
     scenario: &'a Scenario,
     settings: Verify,
     demand: Demand,
@@ -374,14 +374,14 @@ struct Basis<'a> {
 ///
 /// # Errors
 /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends at too small a period.
-pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
-    let demand = scenario.demand.clone().ok_or(NoCheck::NoDemand)?;
+pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
+    let demand = scenario.demand.clone().ok_or(VerifyError::NoDemand)?;
     let settings = scenario.verify.clone().unwrap_or_default();
     let structure = &scenario.structure;
     let own_friction = scenario.motion.friction_coefficient();
     let (_, density_kg_m3) = structure.depth_and_density();
     let free = settings.free_standing.as_ref();
-    let basis = Basis {
+    let input = CheckInput {
         scenario,
         t0_s: free.map(|free| free.period_s(density_kg_m3)),
         settings,
@@ -389,19 +389,19 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
         gravity_m_s2: scenario.gravity_m_s2(),
         allowed_friction: own_friction.map_or(FRICTION, |own| own.min(FRICTION)),
     };
-    let mechanisms = mechanism::mechanisms(&basis)?;
+    let mechanisms = mechanism::mechanisms(&input)?;
     let mut states = BTreeMap::new();
-    for state in basis.demand.states() {
+    for state in input.demand.states() {
         let sld = states.get(&LimitState::Sld);
-        let one = basis.state(state, &mechanisms, sld)?;
+        let one = input.state(state, &mechanisms, sld)?;
         states.insert(state, one);
     }
     let mut ultimate = states.range(LimitState::Slv..);
     if ultimate.all(|(_, one)| one.verdict == Verdict::NotChecked) {
         let mut whys = mechanisms.values().filter_map(|one| one.no_curve.clone());
-        return Err(NoCheck::NoCurve(whys.next().unwrap_or_default()));
+        return Err(VerifyError::NoCurve(whys.next().unwrap_or_default()));
     }
-    let by_the_code = matches!(basis.demand, Demand::Code(_));
+    let by_the_code = matches!(input.demand, Demand::Code(_));
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
     let results = states.values().filter_map(|one| one.zeta_e);
     let verdicts = states.iter().map(|(state, one)| (*state, one.verdict));
@@ -415,12 +415,12 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
         files: scenario.files().to_vec(),
         zeta_e: results.fold(f64::INFINITY, f64::min),
         verdict: verdicts.collect(),
-        confidence_factor: basis.settings.confidence_factor,
-        behaviour_factor: basis.settings.behaviour_factor,
-        sides: basis.settings.sides,
-        t0_s: basis.t0_s,
-        gravity_m_s2: basis.gravity_m_s2,
-        allowed_friction: basis.allowed_friction,
+        confidence_factor: input.settings.confidence_factor,
+        behaviour_factor: input.settings.behaviour_factor,
+        sides: input.settings.sides,
+        t0_s: input.t0_s,
+        gravity_m_s2: input.gravity_m_s2,
+        allowed_friction: input.allowed_friction,
         is_symmetric: report::are_mirrored(&mechanisms, &states),
         mechanisms,
         states,
@@ -436,7 +436,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, NoCheck> {
     Ok(summary)
 }
 
-impl Basis<'_> {
+impl CheckInput<'_> {
     /// Returns the rule of a limit state; `None` for SLD.
     fn rule(&self, state: LimitState) -> Option<StateRule> {
         match &self.demand {
@@ -457,7 +457,7 @@ impl Basis<'_> {
         state: LimitState,
         mechanisms: &BTreeMap<Sway, Mechanism>,
         sld: Option<&StateCheck>,
-    ) -> Result<StateCheck, NoCheck> {
+    ) -> Result<StateCheck, VerifyError> {
         let rule = self.rule(state);
         let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2);
         let spectrum = spectrum.expect("the demand has this state");
@@ -467,9 +467,9 @@ impl Basis<'_> {
                 LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
                 LimitState::Slv | LimitState::Slc => None,
             };
-            let displacement = match (&mechanism.way, &rule) {
-                (Some(way), Some(rule)) => {
-                    Some(self.by_displacement(way, start_ag_g, &spectrum, rule)?)
+            let displacement = match (&mechanism.curves, &rule) {
+                (Some(curves), Some(rule)) => {
+                    Some(self.by_displacement(curves, start_ag_g, &spectrum, rule)?)
                 }
                 _ => None,
             };
@@ -487,7 +487,7 @@ impl Basis<'_> {
             Ok((*sway, side))
         });
         let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
-        let sides = sides.map_err(|beyond| NoCheck::Beyond { state, beyond })?;
+        let sides = sides.map_err(|beyond| VerifyError::Beyond { state, beyond })?;
         let histories = match &rule {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
             None => None,
@@ -514,13 +514,13 @@ impl Basis<'_> {
         &self,
         mechanism: &Mechanism,
         spectrum: &Spectrum,
-    ) -> Result<Activation, PeriodOutOfRange> {
+    ) -> Result<ActivationCheck, PeriodOutOfRange> {
         let capacity_g = mechanism.a0_over_fc_g;
         let demand_g = match self.t0_s {
             None => spectrum.peak_g()?,
             Some(t0_s) => spectrum.acceleration_g(t0_s, 5.0)?,
         };
-        Ok(Activation {
+        Ok(ActivationCheck {
             capacity_g,
             demand_g,
             margin: Margin::new(capacity_g / demand_g, spectrum.ag_g()),
@@ -528,9 +528,9 @@ impl Basis<'_> {
     }
 
     /// Checks SLV by C8.7.1.2.1.7, from activation and demand as `a_g`, in g.
-    fn simplified(&self, activation_ag_g: f64, ag_g: f64) -> Simplified {
+    fn simplified(&self, activation_ag_g: f64, ag_g: f64) -> SimplifiedCheck {
         let q = self.settings.behaviour_factor;
-        Simplified {
+        SimplifiedCheck {
             activation_ag_g,
             q,
             margin: Margin::new(q * activation_ag_g / ag_g, Some(ag_g)),
@@ -540,13 +540,13 @@ impl Basis<'_> {
     /// Checks a limit state by C8.7.1.2.1.8, with the activation as `a_g`, in g.
     fn by_displacement(
         &self,
-        way: &Way,
+        curves: &CapacityCurves,
         start_ag_g: Option<f64>,
         spectrum: &Spectrum,
         rule: &StateRule,
-    ) -> Result<ByDisplacement, PeriodOutOfRange> {
+    ) -> Result<DisplacementCheck, PeriodOutOfRange> {
         let reached = |curve: &Capacity| self.reached(curve, spectrum, rule);
-        let (capacity_m, acceleration_g, period_s, demand_m) = reached(&way.centre)?;
+        let (capacity_m, acceleration_g, period_s, demand_m) = reached(&curves.centre)?;
         let by_displacement = Margin::new(capacity_m / demand_m, spectrum.ag_g());
         let later = start_ag_g.zip(by_displacement.ag_capacity_g);
         let activation_ag_g = later.filter(|(start, end)| start > end).map(|both| both.0);
@@ -554,10 +554,10 @@ impl Basis<'_> {
             (Some(start_g), Some(ag_g)) => Margin::new(start_g / ag_g, Some(ag_g)),
             _ => by_displacement,
         };
-        let crown = way.crown.as_ref().map(reached).transpose()?;
+        let crown = curves.crown.as_ref().map(reached).transpose()?;
         let (damping_percent, gravity_m_s2) = (rule.damping_percent, self.gravity_m_s2);
-        Ok(ByDisplacement {
-            reached_m: rule.part_of_d0 * way.centre.end().oscillator_displacement_m,
+        Ok(DisplacementCheck {
+            reached_m: rule.part_of_d0 * curves.centre.end().oscillator_displacement_m,
             capacity_m,
             acceleration_g,
             period_s,
@@ -614,10 +614,10 @@ impl Basis<'_> {
     }
 
     /// Finds the point at which the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
-    fn yielding(&self, way: &Way) -> Option<(f64, f64)> {
+    fn yielding(&self, curves: &CapacityCurves) -> Option<(f64, f64)> {
         let divided = self.settings.confidence_factor;
-        let end_m = way.centre.end().oscillator_displacement_m;
-        let rigid_g = |d_m: f64| way.centre.oscillator_acceleration_g(d_m / end_m) / divided;
+        let end_m = curves.centre.end().oscillator_displacement_m;
+        let rigid_g = |d_m: f64| curves.centre.oscillator_acceleration_g(d_m / end_m) / divided;
         self.t0_s?;
         let (_, d_m) = bisect(0.0, end_m, Width::Rounding, |d_m| {
             self.elastic_g(d_m)

@@ -11,9 +11,9 @@ use crate::mechanics::sway::Sway;
 use crate::output::Figure;
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
-use crate::output::elevation::{BODIES, Place, View, draw_dimensions, room_px};
+use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::scene::Scene;
-use crate::output::sheet::{Height, Key, Sheet};
+use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
 use crate::scenario::{DimensionSide, Structure};
 
@@ -41,8 +41,8 @@ pub(super) fn mechanism(
     let mut sheet = Sheet::new(figure, "");
     sheet.gap(26.0);
     let tall_px = scale * size.y;
-    sheet.part(Height::Structure(tall_px, tall_px), |drawing, part| {
-        let place = Place::over([low, high], left + 0.5 * width_px, part);
+    sheet.part(PartHeight::Structure(tall_px, tall_px), |drawing, part| {
+        let place = SheetTransform::over([low, high], left + 0.5 * width_px, part);
         draw_mechanism(drawing, place, &scene, (sway, mechanism));
     });
     sheet.gap(room_px(&scene, DimensionSide::Below).max(26.0));
@@ -51,7 +51,7 @@ pub(super) fn mechanism(
 
 fn draw_mechanism(
     drawing: &mut Drawing,
-    place: Place,
+    place: SheetTransform,
     scene: &Scene,
     (sway, mechanism): (Sway, &Mechanism),
 ) {

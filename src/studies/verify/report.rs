@@ -54,19 +54,19 @@ pub fn words(check: &Summary) -> String {
 /// Makes the page of a check. `date` is the date of the check.
 #[must_use]
 pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
-    let is_one = check.shown() == 1;
+    let is_one = check.printed_sides() == 1;
     let figure = if is_one { "78mm" } else { "90mm" };
     let figure: Figure = figure.parse().expect("a width of a figure");
     let drawn = |(sway, mechanism): (&Sway, _)| {
         let structure = &scenario.structure;
-        Drawn {
+        SidePictures {
             sway: *sway,
             mechanism,
             picture: picture::mechanism(figure, structure, *sway, mechanism),
             curve: picture::capacity(figure, check, *sway, mechanism),
         }
     };
-    let shown = check.mechanisms.iter().take(check.shown());
+    let shown = check.mechanisms.iter().take(check.printed_sides());
     render(&Page {
         drawn: shown.map(drawn).collect(),
         described: scenario.structure.described(),
@@ -84,7 +84,7 @@ struct Page<'a> {
     check: &'a Summary,
     date: &'a str,
     /// The printed sides: one if the left side is the mirror image of the right one.
-    drawn: Vec<Drawn<'a>>,
+    drawn: Vec<SidePictures<'a>>,
     is_one: bool,
     described: String,
     resolved: String,
@@ -92,7 +92,10 @@ struct Page<'a> {
 
 impl Page<'_> {
     /// Returns the hinges with their letters on the picture.
-    fn lettered<'a>(&self, one: &'a Mechanism) -> impl Iterator<Item = (char, &'a PlacedHinge)> {
+    fn hinge_letters<'a>(
+        &self,
+        one: &'a Mechanism,
+    ) -> impl Iterator<Item = (char, &'a PlacedHinge)> {
         ('A'..='Z').zip(&one.hinges)
     }
 
@@ -113,7 +116,7 @@ impl Page<'_> {
 }
 
 /// The pictures of a side.
-struct Drawn<'a> {
+struct SidePictures<'a> {
     sway: Sway,
     mechanism: &'a Mechanism,
     picture: String,
@@ -122,7 +125,7 @@ struct Drawn<'a> {
 
 impl StateCheck {
     /// Returns true if the result of this method to this side governs: the page prints it in bold.
-    fn counts(&self, sway: &Sway, method: &Method) -> bool {
+    fn governs(&self, sway: &Sway, method: &Method) -> bool {
         let side = self.side.map_or("", super::GoverningSide::name);
         self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
     }
@@ -150,7 +153,7 @@ impl StateCheck {
 
 impl Summary {
     /// Returns the number of printed sides.
-    fn shown(&self) -> usize {
+    fn printed_sides(&self) -> usize {
         if self.is_symmetric {
             1
         } else {
@@ -215,7 +218,7 @@ impl Notes<'_> {
 
     fn has_curve(&self) -> bool {
         let mut mechanisms = self.check.mechanisms.values();
-        mechanisms.any(|one| one.way.is_some())
+        mechanisms.any(|one| one.curves.is_some())
     }
 
     fn has_histories(&self) -> bool {

@@ -119,7 +119,7 @@ mod tests {
         // The last line is shorter.
         assert_reads("1 -2 3 4\n5 6\n", table());
         assert_reads("acceleration in g\n1,-2,3,4,5\n6\n", table());
-        // The number of samples is given before them.
+        // The header gives the number of samples.
         let skipping = |skip_rows| Layout {
             skip_rows,
             ..table()
@@ -139,10 +139,10 @@ mod tests {
             "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
         for text in [
             "1 -2 3\n4 5 6\n",
-            // Two rows of three are announced, or a number that fits nothing.
+            // The header announces two of three rows, or a number that fits no row count.
             "# 2 rows of 3, 6 in all\n1 -2 3\n4 5 6\n",
             "# 7 samples\n1 -2 3\n4 5 6\n",
-            // The last line is longer, or a line before it is shorter.
+            // The last line is too long, or an earlier line is too short.
             "1 -2 3\n4 5 6 7\n",
             "1 -2 3\n4 5\n6\n",
         ] {
@@ -155,9 +155,9 @@ mod tests {
         };
         let say = "there are 3 columns: give `acceleration_column`, the one to read; or, if a row holds 3 samples";
         fault("0 -2 3\n4 5 6\n", times.clone(), 1, say);
-        // An empty column does not count.
+        // An empty column is ignored.
         assert_eq!(parse("0,1,\n1,2,\n", &times).unwrap().len(), 2);
-        // A chosen column is read, whatever the length of the last line.
+        // With a chosen column the last line may have any length.
         let second = Layout {
             acceleration_column: Some(TableColumn::Number(2)),
             ..table()

@@ -1,4 +1,4 @@
-// Draws curves with uPlot, and moves the picture of stage.js.
+// Draws curves with uPlot, and animates the picture of stage.js.
 // ---- the plots ----
 const plots = [];
 let following = false;
@@ -12,7 +12,7 @@ function follow(source) {
 }
 
 function addPlot(label, tall, xs, curves, legend) {
-  // Curves that are zero throughout are left out.
+  // Omits curves that are zero throughout.
   if (curves.every(({ values }) => farthest(values) === 0)) return;
   const holder = document.createElement("div");
   holder.className = "plot";
@@ -38,7 +38,7 @@ function addPlot(label, tall, xs, curves, legend) {
           dash,
           width: thick ?? 1.6,
           points: { show: false },
-          // Curves that overturn leave the plot instead of making all others small.
+          // Curves of an overturned structure do not set the scale of the plot.
           auto: !beyond,
           value: (_, v) => (v == null ? "" : Number(v.toPrecision(5)).toString()),
         })),
@@ -64,7 +64,7 @@ function addPlot(label, tall, xs, curves, legend) {
   plots.push(plot);
 }
 
-/** The legend of a plot: each curve with its value at the instant, or of many only some names. Returns a function that shows the values. */
+/** Adds the legend of a plot: each curve with its current value, or only the `names` of some curves. Returns a function that updates the values. */
 function explain(holder, xs, curves, names) {
   const list = document.createElement("p");
   list.className = "legend";
@@ -84,7 +84,7 @@ function explain(holder, xs, curves, names) {
   return () => values.forEach((show) => show());
 }
 
-/** A curve at a time, straight between its points. */
+/** Returns the value of a curve at time t, by linear interpolation. */
 function valueAt(xs, ys, t) {
   let [low, high] = [0, xs.length - 1];
   while (high - low > 1) {
@@ -133,14 +133,14 @@ const look = (body) =>
     : body === most
       ? { name: `block ${data.bodies[body]}, which turns most`, color: "--curve-1", width: 2.5 }
       : { name: `block ${data.bodies[body]}`, color: "--soft", width: 0.6 };
-// The one that turns most is drawn above the others.
+// The block with the largest rotation is drawn above the others.
 const order = data.bodies.map((_, body) => body);
 if (!few) order.push(...order.splice(most, 1));
 const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
 const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
 addPlot("Rotation (rad, anticlockwise)", 230, Array.from(times.subarray(0, historyCount)), turning, named);
 for (const { curves } of data.points ?? []) {
-  // Each is thinned by itself, so that their times differ.
+  // Each curve is thinned separately, so their times differ.
   const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
   const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
   addPlot("Displacement (mm)", 150, ts, curves.map(look));
@@ -173,7 +173,7 @@ let last = null;
 
 function tick(now) {
   if (!playing) return;
-  // With reduced motion: four still pictures a second.
+  // With reduced motion the page shows four pictures per second.
   const elapsed = last === null ? 0 : (now - last) / 1000;
   if (last === null || !still.matches || elapsed >= 0.25) {
     last = now;
@@ -193,7 +193,7 @@ function play(on) {
   if (starts) requestAnimationFrame(tick);
 }
 
-/** Moves by a number of frames. */
+/** Moves the time by a number of frames. */
 function stepBy(steps) {
   play(false);
   const { frame } = moment(time + 1e-9);
@@ -213,8 +213,7 @@ slider.addEventListener("input", () => {
 });
 find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
 for (const id of ["thrust", "ride", "sizes"]) find(id).addEventListener("change", draw);
-// A structure that had rotated far enough as it overturned has no fall.
-find("fall").hidden = !data.fall_end || (end === historyEnd && data.fall_end.includes("45"));
+find("fall").hidden = !data.fall_end;
 find("fall-from").textContent = Number(historyEnd.toFixed(3));
 find("fall-end").textContent = data.fall_end ?? "";
 find("sizes-choice").hidden = data.dimensions.length === 0;
@@ -251,10 +250,10 @@ window.addEventListener("resize", () => {
   for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
   seek(time);
 });
-// On paper all is on one sheet: the structure and the plots share the room that the words leave.
+// In print the page is one sheet: structure and plots share the space beside the words.
 const SHEET_PX = { width: 715, height: 1030 };
 const LEAST_PX = { stage: 200, plot: 70 };
-// Title and legend of a plot.
+// Height of the title and the legend of a plot.
 const BESIDE_PLOT_PX = 36;
 window.addEventListener("beforeprint", () => {
   document.documentElement.classList.add("print");
@@ -285,7 +284,7 @@ window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () 
   draw();
 });
 
-/** An exaggeration with which the displacements at an instant can be seen: a fifteenth of the size of the structure. */
+/** Returns the exaggeration at which the largest displacement is a fifteenth of the size of the structure. */
 function visible(at) {
   let farthestM = 0;
   const poses = posesAt(at);
@@ -300,11 +299,11 @@ function visible(at) {
   return farthestM > 0 ? Math.round(Math.min(Math.max(seen / farthestM, 1), 50)) : 1;
 }
 
-// It opens at the strongest instant.
+// The page opens at the time of overturning or of the largest rotation.
 exaggerate(visible(moment(data.opens_s)));
 seek(data.opens_s);
 
-// For scripts: the state of the page, and functions that change it.
+// Interface for scripts: state of the page, and functions that change it.
 window.archrock = {
   data,
   seek,

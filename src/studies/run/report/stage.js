@@ -1,11 +1,11 @@
-// Draws the motion on a canvas. Everything is in #data, in metres, seconds and radians.
+// Draws the motion on a canvas. All data are in #data, in metres, seconds and radians.
 const find = (id) => document.getElementById(id);
 const data = JSON.parse(find("data").textContent);
 const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 const { frames, sections, unit_m: unitM } = data;
 const bodies = data.bodies.length;
 
-// The poses of the bodies, and the layout of each frame.
+// Poses of the bodies, and the layout of each frame.
 const { layouts } = data;
 const times = new Float64Array(buffer(frames.times_s));
 const rotations = new Int16Array(buffer(frames.rotations));
@@ -13,7 +13,7 @@ const shifts = new Int16Array(buffer(frames.shifts));
 const layoutOf = new Uint16Array(buffer(frames.layouts));
 const groundM = new Float32Array(buffer(frames.ground_m));
 const groundG = new Float32Array(buffer(frames.ground_g));
-// If the feet move differently: the displacement of the right one relative to the left one.
+// Displacement of the right foot relative to the left one; null if both feet move together.
 const rightFootM = frames.right_foot_m && new Float32Array(buffer(frames.right_foot_m));
 const thrust = new Int16Array(buffer(frames.thrust));
 const joints = new Uint8Array(buffer(frames.joints));
@@ -22,7 +22,7 @@ const states = new Uint8Array(buffer(frames.states));
 const count = times.length;
 const start = times[0];
 const end = times[count - 1];
-// The history ends before the fall, which the page shows too.
+// End of the history. The fall after it is shown as well.
 const historyEnd = data.end_s;
 const historyCount = times.filter((t) => t <= historyEnd).length;
 const STATES = ["at rest", "sways right", "sways left", "overturned"];
@@ -33,7 +33,7 @@ let time = start;
 let playing = false;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-/** The frame before a time, and how far the time is on the way to the next: frames of other hinges do not blend. */
+/** Returns the frame before time t, the next frame, and the fraction of the interval between both; 0 if their hinges differ. */
 function moment(t) {
   let low = 0;
   let high = count - 1;
@@ -51,7 +51,7 @@ function moment(t) {
 const blend = (values, width, index, { frame, next, part }) =>
   values[frame * width + index] * (1 - part) + values[next * width + index] * part;
 
-/** Rotation and displacement of the origin of a body. */
+/** Returns the rotation of a body and the displacement of its origin. */
 function pose(body, at) {
   return {
     rotation: blend(rotations, bodies, body, at) * frames.rotation_unit_rad,
@@ -60,7 +60,7 @@ function pose(body, at) {
   };
 }
 
-/** Where a point of a body is, its displacement times the exaggeration. */
+/** Returns the position of a point of a body, with its displacement times the exaggeration. */
 function moved(body, x, y, poses, exaggeration) {
   if (body < 0) return [x, y];
   const { rotation, x: shiftX, y: shiftY } = poses[body];
@@ -71,7 +71,7 @@ function moved(body, x, y, poses, exaggeration) {
   return [x + (nowX - x) * exaggeration, y + (nowY - y) * exaggeration];
 }
 
-/** A number with this many decimals, zero without a sign. */
+/** Formats a number with this many decimals; zero has no sign. */
 function fixed(value, decimals) {
   const text = value.toFixed(decimals);
   return Number(text) === 0 ? text.replace("-", "") : text;
@@ -86,7 +86,7 @@ const width = high[0] - low[0];
 const height = high[1] - low[1];
 const loaded = layouts.some(({ loads }) => loads.length > 0);
 
-/** A round number of metres between the marks of the rule. */
+/** Returns a round interval between the marks of the scale, in metres. */
 function roundStep(rough) {
   const power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
@@ -94,7 +94,7 @@ function roundStep(rough) {
 
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
-// A pulse may leave the ground with a velocity: if it moves far, the view follows.
+// After a pulse the ground may keep a velocity. The view follows ground that moves far.
 find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);
 
 function draw() {
@@ -108,7 +108,7 @@ function draw() {
   pen.fillRect(0, 0, wide, tall);
   const sizes = find("sizes").checked && data.dimensions.length > 0;
   const below = sizes ? 92 : 64;
-  // Room beside the structure for its sway, and for its dimensions.
+  // Space beside the structure for its sway and its dimensions.
   const beside = Math.max(sizes ? 54 : 10, 0.1 * wide);
   const above = loaded ? 44 : 16;
   const scale = Math.min((wide - 2 * beside) / width, (tall - below - above) / (1.05 * height));
@@ -126,7 +126,7 @@ function draw() {
   const trace = tracer(pen);
   const lineOf = (look, ...lines) => trace(look, ...lines.map((line) => line.map(onScreen)));
 
-  // The rule, fixed in space.
+  // The scale, fixed in space.
   const step = roundStep(60 / scale);
   const left = camera[0] + (0 - origin[0]) / scale;
   const right = camera[0] + (wide - origin[0]) / scale;
@@ -138,7 +138,7 @@ function draw() {
     pen.fillText(`${Number((mark * step).toPrecision(6))} m`, x, tall - 8);
   }
 
-  // The ground, which moves, hatched.
+  // The moving ground, hatched.
   const floor = onScreen([0, low[1]])[1];
   pen.fillStyle = css("--earth");
   pen.fillRect(0, floor, wide, 14);
@@ -157,7 +157,7 @@ function draw() {
     lineOf({ stroke: "--ink", width: 4 }, [end(-0.3), end(1.3)]);
   });
 
-  // The blocks: where they were, and where they are.
+  // The blocks: undeformed (dashed) and displaced.
   const layout = layouts[layoutOf[at.frame]];
   const poses = posesAt(at);
   const point = ([body, x, y]) => moved(body, x, y, poses, exaggeration);
@@ -173,7 +173,7 @@ function draw() {
     lineOf({ fill, stroke: "--ink", width: 1.3 }, outline(piece).map(point));
   }
 
-  // Loads stand on their blocks.
+  // The loads on their blocks.
   pen.textAlign = "center";
   for (const [body, x, y, over, text] of layout.loads) {
     const [px, py] = onScreen(point([body, x, y]));
@@ -193,7 +193,7 @@ function draw() {
     else lineOf({ stroke: "--tie", width: 3 }, [from, to]);
   });
 
-  // Where elastic joints press, and the stress there as a wedge.
+  // Compressed parts of elastic joints, with the stress as a wedge.
   for (let joint = 0; frames.largest_stress_pa && joint < data.joints.length; joint += 1) {
     const [body, ix, iy, ex, ey] = data.joints[joint];
     const { stresses, ends } = pressure(at.frame, joint);
@@ -210,7 +210,7 @@ function draw() {
     lineOf({ stroke: "--press", width: 3 }, [corner(0, 0), corner(1, 0)]);
   }
 
-  // The line of thrust, where sections are pressed.
+  // The thrust line through compressed sections.
   if (find("thrust").checked && frames.thrust_unit) {
     const stretches = [[]];
     sections.forEach(([middleX, middleY, acrossX, acrossY], i) => {
@@ -222,7 +222,7 @@ function draw() {
     lineOf({ stroke: "--thrust", width: 2.5 }, ...stretches);
   }
 
-  // The hinges, and the points that are watched.
+  // The hinges and the observed points.
   const mark = { stroke: "--mark", width: 2 };
   for (const [body, x, y, edge] of hingesAt(at.frame)) {
     const [px, py] = onScreen(point([body, x, y]));
@@ -239,7 +239,7 @@ function draw() {
     trace({ ...mark, fill: "--paper" }, [[px - 4, py - 4], [px + 4, py - 4], [px + 4, py + 4], [px - 4, py + 4]]);
   });
 
-  // How the ground accelerates.
+  // The acceleration of the ground.
   const g = blend(groundG, 1, 0, at);
   const most = farthest(groundG);
   if (most > 0) {
@@ -255,7 +255,7 @@ function draw() {
   find("now").textContent = inWords(at, poses);
 }
 
-/** Fills and strokes the path of a pen; areas first. */
+/** Fills the path of a pen, then strokes it. */
 function paint(pen, { fill, stroke, width = 1, dash = [] }) {
   if (fill) {
     pen.fillStyle = css(fill);
@@ -268,7 +268,7 @@ function paint(pen, { fill, stroke, width = 1, dash = [] }) {
   pen.stroke();
 }
 
-/** A function that draws lines through points on the screen as one path; areas are closed. */
+/** Returns a function that draws lines through points on the screen as one path; filled lines are closed. */
 const tracer = (pen) => (look, ...lines) => {
   pen.beginPath();
   for (const line of lines) {
@@ -278,10 +278,10 @@ const tracer = (pen) => (look, ...lines) => {
   paint(pen, look);
 };
 
-/** The dimensions of the structure at rest, outside it: heights left and right, widths below the ground. */
+/** Draws the dimensions of the undeformed structure around it: heights left and right, widths below the ground. */
 function drawSizes(pen, onScreen, floor) {
   const [left, right] = [onScreen(low)[0], onScreen(high)[0]];
-  // Those that would be on another go one line farther.
+  // A dimension that would overlap another one moves one line outwards.
   const taken = { below: [], left: [], right: [] };
   for (const { ends_m: [ax, ay, bx, by], side, text } of data.dimensions) {
     const axis = side === "below" ? 0 : 1;
@@ -300,7 +300,7 @@ function drawSizes(pen, onScreen, floor) {
     pen.translate((ends[0][0] + ends[1][0]) / 2, (ends[0][1] + ends[1][1]) / 2);
     if (axis === 1) pen.rotate(-Math.PI / 2);
     else {
-      // On paper of its own, where the line would strike it through.
+      // A background keeps the line from crossing the text.
       const wide = pen.measureText(text).width + 6;
       pen.fillStyle = css("--paper");
       pen.fillRect(-wide / 2, -6, wide, 12);
@@ -315,7 +315,7 @@ const INTRADOS = 1;
 const EXTRADOS = 2;
 const PARTED = 3;
 
-/** The hinges that are open in a frame: body, place, and edge. */
+/** Returns the open hinges of a frame: body, position, and edge. */
 function hingesAt(frame) {
   const open = [];
   data.joints.forEach(([body, ix, iy, ex, ey], joint) => {
@@ -326,7 +326,7 @@ function hingesAt(frame) {
   return open.concat(layouts[layoutOf[frame]].hinges);
 }
 
-/** Stresses in Pa at the ends of the closed part of a joint, and the places of these ends, from 0 at the intrados to 1 at the extrados. */
+/** Returns the stresses in Pa at the ends of the closed part of a joint, and the positions of these ends, from 0 at the intrados to 1 at the extrados. */
 function pressure(frame, joint) {
   const first = 3 * (frame * data.joints.length + joint);
   const [inner, outer, contact] = Array.from(pressed.subarray(first, first + 3), (part) => part / 255);
@@ -336,7 +336,7 @@ function pressure(frame, joint) {
 }
 
 function inWords(at, poses) {
-  // Of several that turn as far, the one that the words name.
+  // If several bodies have the largest rotation, the printed words name this one.
   let most = data.largest_body;
   poses.forEach(({ rotation }, body) => {
     if (Math.abs(rotation) > Math.abs(poses[most].rotation)) most = body;

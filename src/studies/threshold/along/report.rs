@@ -8,7 +8,7 @@ use crate::output::OutputError;
 use crate::output::table::{column, csv, fields};
 use crate::studies::ending::NoAnswer;
 use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, no_verdict};
-use crate::studies::results::{Reported, Results, Style};
+use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::threshold::{Factors, rounded};
 
 /// The part of the summary that is specific to thresholds along a key.
@@ -22,7 +22,7 @@ struct Details<'a> {
     values: &'a [Point],
 }
 
-impl Reported for Along<'_> {
+impl ReportedStudy for Along<'_> {
     const FILES: &'static [&'static str] = &[
         "threshold_along.svg",
         "threshold_along.json",

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use archrock::studies::catalogue::{Options, StudyKind, VERIFY};
-use archrock::studies::kept::{Origin, Writer};
+use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 
 use super::figure::FigureOption;
 use super::scenario_file::ScenarioFile;
-use super::study::{Session, Work};
+use super::study::{Session, WorkOptions};
 use super::{Failure, Format, warn};
 
 /// Options of commands without long histories.
@@ -25,7 +25,7 @@ pub struct CommonArguments {
 }
 
 /// Computes a study, writes its results and prints their summary.
-pub fn at_once(
+pub fn run_short_study(
     kind: StudyKind,
     arguments: &CommonArguments,
     figure: FigureOption,
@@ -39,8 +39,8 @@ pub fn at_once(
     };
     warn(&scenario.unlikely());
     let style = Style::of(figure.get()?);
-    let session = Session::new(Some(&input), Work::default(), style, options);
-    let place = figure.printed(input.results(arguments.out.as_deref())?);
-    place.lock(Writer::of(kind), &Origin::of(&scenario), false)?;
+    let session = Session::new(Some(&input), WorkOptions::default(), style, options);
+    let place = figure.with_picture_format(input.results(arguments.out.as_deref())?);
+    place.lock(ResultsCommand::of(kind), &Origin::of(&scenario), false)?;
     session.finish(kind, &scenario, &place, arguments.format)
 }

@@ -16,61 +16,62 @@ pub const ORIGIN: &str = ".scenario";
 
 /// A command that writes a folder of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Writer {
+pub struct ResultsCommand {
     /// The name of the command.
     pub name: &'static str,
     /// All files that the command may write in one folder, the seal last. The first JSON file contains the scenario.
     pub files: &'static [&'static str],
     /// The study of the samples of `[uncertain]`. Its results are in a subfolder; `None` if the command has no such study.
-    samples: Option<StudyKind>,
+    samples_study: Option<StudyKind>,
     /// The file whose presence shows that the results of several models of motion are in subfolders; `None` if the command has no such
     /// subfolders.
-    of_models: Option<&'static str>,
+    models_marker: Option<&'static str>,
     /// True if the results of each record of the suite may be in a subfolder.
-    of_records: bool,
+    has_record_folders: bool,
 }
 
 /// `archrock run`.
-const RUN: Writer = Writer {
-    samples: Some(catalogue::UNCERTAIN),
-    of_models: Some(run::OVERLAY),
-    of_records: true,
-    ..Writer::of_study(catalogue::RUN)
+const RUN: ResultsCommand = ResultsCommand {
+    samples_study: Some(catalogue::UNCERTAIN),
+    models_marker: Some(run::OVERLAY),
+    has_record_folders: true,
+    ..ResultsCommand::of_study(catalogue::RUN)
 };
 /// `archrock threshold`.
-const THRESHOLD: Writer = Writer {
-    samples: Some(catalogue::UNCERTAIN_THRESHOLD),
-    of_models: Some("threshold.json"),
-    of_records: true,
-    ..Writer::of_study(catalogue::THRESHOLD)
+const THRESHOLD: ResultsCommand = ResultsCommand {
+    samples_study: Some(catalogue::UNCERTAIN_THRESHOLD),
+    models_marker: Some("threshold.json"),
+    has_record_folders: true,
+    ..ResultsCommand::of_study(catalogue::THRESHOLD)
 };
 /// `archrock threshold --along`.
-const ALONG: Writer = Writer::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
-const MAP: Writer = Writer {
-    samples: Some(catalogue::UNCERTAIN_MAP),
-    ..Writer::of_study(catalogue::MAP)
+const ALONG: ResultsCommand =
+    ResultsCommand::new("threshold --along", catalogue::THRESHOLD_ALONG.files);
+const MAP: ResultsCommand = ResultsCommand {
+    samples_study: Some(catalogue::UNCERTAIN_MAP),
+    ..ResultsCommand::of_study(catalogue::MAP)
 };
-const SUITE: Writer = Writer {
-    samples: Some(catalogue::UNCERTAIN_SUITE),
-    of_models: Some("models/peaks.json"),
-    ..Writer::of_study(catalogue::SUITE)
+const SUITE: ResultsCommand = ResultsCommand {
+    samples_study: Some(catalogue::UNCERTAIN_SUITE),
+    models_marker: Some("models/peaks.json"),
+    ..ResultsCommand::of_study(catalogue::SUITE)
 };
 
 /// The commands with results in subfolders, or with a name that is not the name of a study.
-const SPECIAL: [Writer; 5] = [RUN, THRESHOLD, ALONG, MAP, SUITE];
+const SPECIAL: [ResultsCommand; 5] = [RUN, THRESHOLD, ALONG, MAP, SUITE];
 const MERGE: &str = "merge";
 
 /// Subfolder for the comparison of several models of motion.
 const MODELS: &str = "models";
 
-impl Writer {
+impl ResultsCommand {
     const fn new(name: &'static str, files: &'static [&'static str]) -> Self {
         Self {
             name,
             files,
-            samples: None,
-            of_models: None,
-            of_records: false,
+            samples_study: None,
+            models_marker: None,
+            has_record_folders: false,
         }
     }
 
@@ -88,11 +89,11 @@ impl Writer {
     /// commands write samples into a subfolder.
     #[must_use]
     pub fn of(kind: StudyKind) -> Self {
-        let has_samples = |writer: &Self| writer.samples == Some(kind);
+        let has_samples = |command: &Self| command.samples_study == Some(kind);
         let mut special = SPECIAL.into_iter();
-        match special.find(|writer| writer.files == kind.files || has_samples(writer)) {
-            Some(writer) if has_samples(&writer) => Self::merge(kind),
-            writer => writer.unwrap_or(Self::of_study(kind)),
+        match special.find(|command| command.files == kind.files || has_samples(command)) {
+            Some(command) if has_samples(&command) => Self::merge(kind),
+            command => command.unwrap_or(Self::of_study(kind)),
         }
     }
 
@@ -104,7 +105,7 @@ impl Writer {
     /// Returns the command whose results end with this seal; `None` if no command writes it.
     #[must_use]
     pub fn of_seal(seal: &str) -> Option<Self> {
-        Self::all().find(|writer| writer.files.last() == Some(&seal))
+        Self::all().find(|command| command.files.last() == Some(&seal))
     }
 
     /// Returns the name of the file that contains the scenario.
@@ -124,19 +125,19 @@ impl Writer {
     /// Returns all paths that the last run of this command may have written in a folder, in the order of removal: the seal first. Rows of an
     /// interrupted study are not included.
     #[must_use]
-    pub fn last_run(&self, folder: &Path) -> Vec<PathBuf> {
-        let mut seal_first = self.beside_one_another(folder, self.files).into_iter();
+    pub fn last_results(&self, folder: &Path) -> Vec<PathBuf> {
+        let mut seal_first = self.paths_in_folder(folder, self.files).into_iter();
         let mut all: Vec<PathBuf> = seal_first.by_ref().take(1).collect();
-        all.extend(self.below(folder));
-        if self.of_records {
+        all.extend(self.paths_in_subfolders(folder));
+        if self.has_record_folders {
             for record in self.record_folders(folder) {
-                all.extend(self.beside_one_another(&record, self.files));
-                all.extend(self.below(&record));
+                all.extend(self.paths_in_folder(&record, self.files));
+                all.extend(self.paths_in_subfolders(&record));
                 all.push(record.join(ORIGIN));
             }
         }
         all.extend(seal_first);
-        all.extend(self.beside_one_another(&folder.join(self.models(folder)), &peaks::FILES));
+        all.extend(self.paths_in_folder(&folder.join(self.models(folder)), &peaks::FILES));
         all
     }
 
@@ -144,17 +145,17 @@ impl Writer {
     /// command.
     #[must_use]
     pub fn models(&self, folder: &Path) -> String {
-        let has_models = |writer: &Self| {
+        let has_models = |command: &Self| {
             Hinges::ALL.iter().any(|hinges| {
                 let below = folder.join(hinges.name());
                 let samples = |kind: StudyKind| below.join(kind.name).is_dir();
-                match writer.name {
-                    "run" => writer.samples.is_some_and(samples),
-                    _ => writer.is_sealed(&below),
+                match command.name {
+                    "run" => command.samples_study.is_some_and(samples),
+                    _ => command.is_sealed(&below),
                 }
             })
         };
-        let others = [RUN, SUITE].into_iter().filter(|writer| writer != self);
+        let others = [RUN, SUITE].into_iter().filter(|command| command != self);
         if others.into_iter().any(|other| has_models(&other)) {
             format!("{MODELS}_{}", self.name)
         } else {
@@ -167,7 +168,7 @@ impl Writer {
     pub fn warnings(&self, folder: &Path, own: &Origin) -> Vec<String> {
         let others = Self::all().filter(|other| other.files != self.files && other.name != MERGE);
         let warning = |other: Self| {
-            let mut places = other.places(folder).into_iter();
+            let mut places = other.result_folders(folder).into_iter();
             let difference = places.find_map(|place| own.difference(&other.origin(&place)?))?;
             Some(format!(
                 "{} holds results of `archrock {}` from another scenario: {difference}. They stay; choose another folder to keep results apart",
@@ -184,7 +185,7 @@ impl Writer {
 
     /// Returns a warning about rows of an interrupted study of samples. This run has no samples and does not remove the rows.
     fn interrupted(&self, folder: &Path) -> Option<String> {
-        let kind = self.samples?;
+        let kind = self.samples_study?;
         let part = Self::part(folder, kind);
         let rows = rows_in(&part).filter(|rows| *rows > 0)?;
         Some(format!(
@@ -207,9 +208,9 @@ impl Writer {
     }
 
     /// Returns a folder of results and its subfolders of several models.
-    fn places(&self, folder: &Path) -> Vec<PathBuf> {
+    fn result_folders(&self, folder: &Path) -> Vec<PathBuf> {
         let mut places = vec![folder.to_owned()];
-        if self.of_models.is_some() {
+        if self.models_marker.is_some() {
             places.extend(Hinges::ALL.iter().map(|model| folder.join(model.name())));
         }
         places
@@ -227,7 +228,7 @@ impl Writer {
     }
 
     /// Returns the paths of files of one folder, the seal first, and of their pictures in other formats.
-    fn beside_one_another(&self, folder: &Path, files: &[&str]) -> Vec<PathBuf> {
+    fn paths_in_folder(&self, folder: &Path, files: &[&str]) -> Vec<PathBuf> {
         if !folder.is_dir() {
             return Vec::new();
         }
@@ -241,11 +242,11 @@ impl Writer {
     }
 
     /// Returns the paths of results in the subfolders of a results folder: samples, films and models.
-    fn below(&self, folder: &Path) -> Vec<PathBuf> {
+    fn paths_in_subfolders(&self, folder: &Path) -> Vec<PathBuf> {
         let mut all = Vec::new();
-        if let Some(kind) = self.samples {
+        if let Some(kind) = self.samples_study {
             let samples = folder.join(kind.name);
-            all.extend(self.beside_one_another(&samples, kind.files));
+            all.extend(self.paths_in_folder(&samples, kind.files));
             // A part file without rows may be removed.
             let part = Self::part(folder, kind);
             if rows_in(&part) == Some(0) {
@@ -255,20 +256,20 @@ impl Writer {
         if self.name == RUN.name {
             let film = folder.join(run::FILM);
             // One path is enough: hidden files of a killed run are removed with the results beside them.
-            all.extend(self.beside_one_another(&film, &["frame-0001.svg"]));
-            all.extend(run::frames(&film));
+            all.extend(self.paths_in_folder(&film, &["frame-0001.svg"]));
+            all.extend(run::pictures_in(&film));
         }
-        if let Some(mark) = self.of_models {
+        if let Some(mark) = self.models_marker {
             for below in Hinges::ALL.iter().map(|hinges| folder.join(hinges.name())) {
                 // A sealed subfolder without the mark is the result of another run, which used it with --out.
                 let alone = self.is_sealed(&below) && !folder.join(mark).is_file();
                 if below.is_dir() && !alone {
-                    all.extend(self.beside_one_another(&below, self.files));
+                    all.extend(self.paths_in_folder(&below, self.files));
                     let one = Self {
-                        of_models: None,
+                        models_marker: None,
                         ..*self
                     };
-                    all.extend(one.below(&below));
+                    all.extend(one.paths_in_subfolders(&below));
                 }
             }
         }
@@ -288,7 +289,7 @@ impl Writer {
                 Some(Path::new(file).file_name()? == name)
             };
             // Names of records have an extension.
-            let mut places = self.places(path).into_iter();
+            let mut places = self.result_folders(path).into_iter();
             name.contains('.') && places.any(|place| shaken_by(place) == Some(true))
         };
         let paths = entries.map(|entry| entry.path());
