@@ -77,7 +77,7 @@ pub fn golden(name: &str, text: &str) {
 }
 
 #[test]
-fn numbers_leave_the_shape_of_a_sentence() {
+fn skeletons_of_sentences_have_no_numbers() {
     let (shape, numbers) = skeleton("tie_1 pulls 12.50 kN at -0.3 g, (-2 to 3 s), SLV 0.5.");
     assert_eq!(shape, "tie_1 pulls # kN at # g, (# to # s), SLV #.");
     assert_eq!(numbers, ["12.50", "-0.3", "-2", "3", "0.5"]);

@@ -185,7 +185,7 @@ fn refined_extremes_are_not_below_fine_samples() {
 }
 
 #[test]
-fn voussoirs_are_asked_at_their_joints_only() {
+fn impulses_of_voussoirs_are_computed_at_joints_only() {
     let sites = HingeSites::Voussoirs(7);
     let arch = arch(0.15, 157.5, sites, ImpactModel::MaxRestitution);
     let chain = arch.chain();

@@ -420,7 +420,7 @@ impl Blocks {
 /// The least energy of all blocks, followed in steps of the support from the undeformed arch, is lost in the same step in which the path of hinges
 /// ends; and half way there the crown is as low. Thin and thick semicircles, and one that is flatter.
 #[test]
-fn an_arch_falls_where_its_least_energy_is_lost() {
+fn an_arch_falls_when_its_energy_minimum_vanishes() {
     for (embrace_deg, thickness, voussoirs, way, steps) in [
         (180.0, 0.12, 12, OUT, 20),
         (180.0, 0.15, 20, OUT, 40),
@@ -456,7 +456,7 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
 /// The push that makes hinges give way where the right foot has moved is that of the linear programme of forces at the corners that touch; and
 /// the push at which the arch falls is that of the programme in the last place where it rests under a growing push.
 #[test]
-fn both_pushes_are_those_of_programmes_in_moved_places() {
+fn both_pushes_are_those_of_limit_analysis_at_moved_positions() {
     for (embrace_deg, thickness, voussoirs, way, at) in [
         (180.0, 0.15, 16, OUT, 0.04),
         (180.0, 0.15, 16, DOWN, 0.1),
@@ -546,7 +546,7 @@ fn tied(
 /// ground, four that a stiff one holds, one that yields. Where it falls that energy has no minimum within the same step. The pushes are
 /// those of the programme with the force of the bar; on four hinges the first is none.
 #[test]
-fn a_tied_arch_follows_as_its_least_energy_does() {
+fn a_tied_arch_follows_its_energy_minimum() {
     let unbounded = f64::INFINITY;
     let (mut most, mut yielded) = (3, 0.0_f64);
     for (stiffness, prestress, yields_at, ground, way, stride, steps, falls) in [
@@ -652,7 +652,7 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
 /// Two stiff bars at different heights hold an arch on five hinges. Each pulls as its twin does where the energy of blocks and bars is
 /// least; where an arch has both, what one pulls with depends on the other.
 #[test]
-fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
+fn an_arch_with_two_ties_follows_its_energy_minimum() {
     let (mut most, mut pulling) = (3, 0);
     for (stiffnesses, way, stride, steps) in [
         ([150.0, 100.0], OUT, 0.005, 12),
@@ -696,7 +696,7 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
 /// What is told of an arch that its tie holds on four hinges, and on three once it yields, is what the library has: the force of the tie, the
 /// pushes, every hinge in the table and in the picture, and where the tie is.
 #[test]
-fn commands_tell_of_an_arch_that_its_tie_holds() {
+fn commands_report_an_arch_held_by_its_tie() {
     let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 16\n[free_hinges]\n\
                 [[tie]]\nheight_m = 3.3\nstiffness_n_m = 7e6\nyield_force_n = 2.5e4\n\
                 [supports]\nright = { settlement_m = 0.3 }\n";
@@ -794,7 +794,7 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
 
 /// A growing push is borne until the arch with its bar falls, by either computation within the same step.
 #[test]
-fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
+fn a_tied_arch_falls_at_the_push_that_removes_its_energy_minimum() {
     for (stiffness, prestress, way, at) in [(1.0, 0.05, OUT, 0.06), (20.0, 0.0, DOWN, 0.06)] {
         let (row, mut blocks) = tied(16, stiffness, prestress, f64::INFINITY, false);
         let mut follower = Follower::new(&row).unwrap();
@@ -877,7 +877,7 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
 /// Moved along as a whole, an arch is the same arch: with rigid and with elastic joints, tied to its blocks and to the ground, near and far,
 /// and where the two movements differ by rounding.
 #[test]
-fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
+fn translation_does_not_change_an_arch() {
     for (ground, far, off) in [(false, 0.3, 0.0), (true, 40.0, 0.0), (true, 0.3, 5e-17)] {
         let (row, _) = tied(16, 5.0, 0.03, f64::INFINITY, ground);
         let movement = |spread_m| Movement {
@@ -941,7 +941,7 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
 /// Turned as a whole, an arch bears what the undeformed one does under gravity that is turned back: the linear programme of forces of the
 /// built arch, whose push has a component along its height. Turned too far, it falls.
 #[test]
-fn an_arch_that_turns_as_a_whole_leans() {
+fn rotation_of_a_whole_arch_acts_as_inclined_gravity() {
     let row = arch(157.5, 0.15, 12);
     let joints = &row.joints;
     let turned = |angle: f64| {
@@ -995,7 +995,7 @@ fn an_arch_that_turns_as_a_whole_leans() {
 /// Numbers of another program: Newton's method on the stationary energy of hinges, with their changes bisected, and descents in block
 /// coordinates between.
 #[test]
-fn paths_are_those_of_another_program() {
+fn paths_agree_with_an_independent_program() {
     let e = Edge::Extrados;
     let i = Edge::Intrados;
     for (embrace_deg, thickness, voussoirs, way, expected) in [
@@ -1087,7 +1087,7 @@ fn paths_are_those_of_another_program() {
 /// An arch that spreads and comes back falls inwards where it does without the way out. With a settlement beside it, joints shut on
 /// the way back within the step in which another one has to open, and its hinges were once lost there.
 #[test]
-fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
+fn a_return_path_does_not_change_the_collapse() {
     let row = arch(180.0, 0.15, 20);
     let inwards_from = |out: [f64; 2]| {
         let mut follower = Follower::new(&row).unwrap();
@@ -1107,7 +1107,7 @@ fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
 
 /// What moves outwards to the right does so to the left; and half to each side is the same.
 #[test]
-fn either_springing_moves_an_arch_alike() {
+fn moving_either_springing_is_equivalent() {
     let row = arch(157.5, 0.15, 15);
     let both = |s: f64, [left, right]: [f64; 2]| Movements {
         left: Movement {
@@ -1155,7 +1155,7 @@ fn either_springing_moves_an_arch_alike() {
 
 /// A springing that turns about the middle of its joint: the arch of three pins that this makes keeps its hinges' lengths, and shuts at both ends.
 #[test]
-fn a_springing_that_turns_leaves_an_arch_that_fits() {
+fn a_rotated_springing_leaves_a_compatible_three_pin_arch() {
     let row = arch(157.5, 0.15, 20);
     let mut follower = Follower::new(&row).unwrap();
     let turned = |s: f64| Movements {
@@ -1176,7 +1176,7 @@ const SEMICIRCLE: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";
 
 #[test]
-fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
+fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
     let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
@@ -1241,7 +1241,7 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
 /// Shallow arches whose crown loses its thrust as a springing moves inwards: there the capacity is the push of the first motion. It is the same
 /// whatever the radius, and was once lost to rounding.
 #[test]
-fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
+fn an_arch_without_thrust_has_the_capacity_of_its_first_motion() {
     for (embrace_deg, thickness, voussoirs, due_g) in [
         (140.0, 0.18, 36, 0.004_489),
         (140.0, 0.18, 20, 0.004_492),
@@ -1302,7 +1302,7 @@ fn pins_may_change_sides() {
 /// A flat arch on springings that part snaps through where its three hinges lie on one line. There its forces grow beyond all bounds: thrust and
 /// pushes are left out with the reason, and the stage before has a large thrust.
 #[test]
-fn a_thrust_beyond_all_bounds_is_left_out() {
+fn an_unbounded_thrust_is_omitted() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.1\nembrace_deg = 40\nvoussoirs = 12\n[free_hinges]\n";
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
@@ -1334,7 +1334,7 @@ fn a_thrust_beyond_all_bounds_is_left_out() {
 /// Under a push of several g this flat arch leaves one springing and leans on the other, which is not followed: that capacity is left out with its
 /// reason, and everything else remains.
 #[test]
-fn a_push_that_is_not_found_is_left_out_with_its_reason() {
+fn a_push_that_is_not_found_is_omitted_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.15\nembrace_deg = 74.3\nvoussoirs = 7\n[free_hinges]\n";
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
@@ -1378,7 +1378,7 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
 }
 
 #[test]
-fn what_has_no_two_springings_has_no_spread() {
+fn spread_refuses_structures_without_two_springings() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(
         folder.path().join("ring.toml"),
@@ -1456,7 +1456,7 @@ fn semicircle_of_5_m() -> Row {
 /// Springings that spread over 300 s, half to each side, in explicit steps of another program with mass damping, let elastic joints fall at these
 /// movements over the radius; the delay of that and the damping are worth 0.002. They tend to those of rigid joints.
 #[test]
-fn elastic_joints_fall_earlier_and_tend_to_rigid_ones() {
+fn arches_of_elastic_joints_fall_earlier_and_tend_to_rigid_ones() {
     let row = semicircle_of_5_m();
     let mut last = 0.0;
     for (normal_gpa_m, expected) in [(1.0, 0.0657), (10.0, 0.0956), (100.0, 0.1064)] {
@@ -1549,7 +1549,7 @@ fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
 const ELASTIC: &str = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.half_sine]\namplitude_g = 0.03\nduration_s = 0.2\n";
 
 #[test]
-fn a_scenario_says_where_its_springings_have_gone() {
+fn a_scenario_can_give_the_movement_of_its_springings() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, supports: &str| {
         let text = format!("{SEMICIRCLE}{ELASTIC}[supports]\n{supports}\n");

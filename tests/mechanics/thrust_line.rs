@@ -420,7 +420,7 @@ fn the_record_of_a_history_is_that_of_its_samples() {
 }
 
 #[test]
-fn where_nothing_moves_there_are_no_shares() {
+fn at_rest_there_are_no_shares() {
     let arch = semicircle();
     let history = pulse_history(&arch, 0.1, (0.0, 0.5), 1.0);
     let record = history.summary.thrust.unwrap();

@@ -164,7 +164,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
 
 /// Random arches with a tie or two: with the forces at rest, and with any up to those at which they yield.
 #[test]
-fn pushes_with_ties_are_those_of_the_static_programme() {
+fn pushes_with_ties_agree_with_the_static_theorem() {
     let mut random = Random(23);
     let (mut compared, mut limits, mut fall) = (0, 0, 0);
     while compared < 50 {
@@ -249,7 +249,7 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
 
 /// Worked numbers, computed with another program: a force that stays, in weights, and one that yields.
 #[test]
-fn worked_arches_have_their_pushes() {
+fn pushes_of_tied_arches_agree_with_worked_numbers() {
     let cases = [
         (
             (0.15, 180.0, 36, 5.0, 9),
@@ -373,7 +373,7 @@ fn on_piers() -> String {
 
 /// A pointed arch on piers, tied at its springings or higher: onset, the limit with a tie that yields, and what stands no longer.
 #[test]
-fn a_tied_arch_on_piers_has_its_pushes() {
+fn pushes_of_a_tied_arch_on_piers_agree_with_worked_numbers() {
     let text = on_piers();
     let answer = |tie: &str| {
         limit(&parsed(&format!(
@@ -482,7 +482,7 @@ fn a_tied_column_turns_about_its_toe() {
 
 /// What is no tie is refused with what to change.
 #[test]
-fn what_is_no_tie_is_refused() {
+fn invalid_ties_are_refused() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 20\n";
     let section = "stiffness_n_m = 1e7\n";
     for (tie, words) in [
@@ -564,7 +564,7 @@ fn what_is_no_tie_is_refused() {
 
 /// A scenario with ties is written as it is read, by section or by stiffness; keys of a tie are set by its number.
 #[test]
-fn scenarios_with_ties_are_written_as_they_are_read() {
+fn scenarios_with_ties_read_back() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 20\n";
     let ties = "[[tie]]\nheight_m = 2.0\narea_mm2 = 491.0\nmodulus_gpa = 210.0\nprestress_n = 1e4\nyield_stress_mpa = 235.0\n\
                 breaks_at_strain = 0.05\n[[tie]]\nfrom_m = [-5.0, 0.5]\nto_m = [5.0, 0.5]\nstiffness_n_m = 1e7\n";
@@ -600,7 +600,7 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
 /// 200 ties over the height of an arch hold it up to a push that depends on how they are spread only by the square of their distance: 50 at
 /// the same heights, each four times as stiff, bear nearly as much.
 #[test]
-fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
+fn many_ties_have_the_capacity_of_fewer_stiffer_ones() {
     let capacity_g = |count: u32| {
         let tie = |index: u32| {
             let height_m = 0.5 + 3.5 * (f64::from(index) + 0.5) / f64::from(count);
@@ -621,7 +621,7 @@ fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
 }
 
 #[test]
-fn ties_have_limits_and_many_of_them_bear_what_one_bears() {
+fn the_number_of_ties_is_limited_and_many_equal_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";

@@ -176,7 +176,7 @@ fn slender_columns_decay_as_housner_says() {
 }
 
 #[test]
-fn uplift_is_at_the_slenderness() {
+fn uplift_starts_at_the_slenderness() {
     for alpha in [0.01, 0.2, 0.9] {
         let column = column(alpha);
         assert!((column.incipient_g() - alpha.tan()).abs() < 1e-15);

@@ -109,7 +109,7 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
 
 /// An independent program, with tangents by finite differences, gives these values to all digits shown.
 #[test]
-fn arches_rest_where_an_independent_program_has_them() {
+fn equilibria_of_arches_agree_with_an_independent_program() {
     for (row, gravity, stiffness, thrust, drop_mm) in [
         (lemos(), 10.0, 1e10, 0.19624, 2.021),
         (lemos(), 10.0, 1e11, 0.19614, 0.1935),
@@ -189,7 +189,7 @@ fn a_block_that_is_pushed_resists_by_its_closed_form() {
 }
 
 #[test]
-fn what_does_not_rest_says_why() {
+fn a_structure_without_equilibrium_gives_the_reason() {
     let why =
         |row: Row, properties: ElasticProperties| ElasticJoints::new(row, properties).unwrap_err();
     let arch = |contact| joints(1e10, contact);
@@ -238,7 +238,7 @@ fn what_does_not_rest_says_why() {
 /// From a published deck of a discrete-element program: 17 voussoirs, joints of 10 GPa/m with three points, half sine of 0.15 g. The
 /// independent program gives 16.42 mm at 0.540 s; the crown's displacement is read from samples a millisecond apart.
 #[test]
-fn the_crown_of_a_published_arch_moves_as_it_should() {
+fn the_crown_of_a_published_arch_has_the_published_motion() {
     let properties = ElasticProperties {
         damping_time_s: 0.05 / (PI * 10.9),
         ..joints(1e10, Contact::Points(3))
@@ -274,7 +274,7 @@ fn the_crown_of_a_published_arch_moves_as_it_should() {
 
 /// The tables of an independent program are reproduced to half a per cent.
 #[test]
-fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
+fn overturning_of_blocks_and_arches_agrees_with_an_independent_program() {
     let continuous = Contact::Continuous;
     for (stiffness, contact, due_g) in [
         (1e8, continuous, 0.3677),
@@ -506,7 +506,7 @@ fn mirror_images_and_scaled_arches_move_alike() {
 
 /// Thresholds tend to that of the rigid block (Housner's first half cycle, 0.50173 g), as a power of stiffness between 1/3 and 1/2.
 #[test]
-fn stiff_joints_go_to_the_rigid_block() {
+fn stiff_joints_tend_to_the_rigid_block() {
     let least_g = |stiffness: f64| {
         let model =
             ElasticJoints::new(stack(1, 5.0), joints(stiffness, Contact::Continuous)).unwrap();
@@ -545,7 +545,7 @@ fn stiff_joints_go_to_the_rigid_block() {
 }
 
 #[test]
-fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
+fn an_unshaken_arch_stays_and_a_shaken_one_comes_to_rest() {
     let properties = ElasticProperties {
         damping_time_s: 1e-3,
         ..joints(1e9, Contact::Continuous)
@@ -571,7 +571,7 @@ fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
 /// `x_c = sqrt(2 W/(kn w kappa))` of its base in contact. This closed form is for small rotations; for those of this block it is 2 % off.
 /// With contact points, stiff joints need the energy of rigid ones; arches approach it from below.
 #[test]
-fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
+fn overturning_energy_agrees_with_the_closed_form() {
     let row = stack(1, 5.0);
     let weight_n = row.mass_kg() * 9.81;
     let barrier_j = |row: Row, stiffness: f64, contact| {
@@ -616,7 +616,7 @@ fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
 /// If the path over is lost, that of softer joints gives a lower bound of the barrier: not much less than that of soft joints, and less than
 /// that of rigid ones.
 #[test]
-fn softer_joints_tell_of_less_energy_than_a_structure_needs() {
+fn softer_joints_give_a_lower_bound_of_the_barrier() {
     let barrier_j = |stiffness: f64, contact| {
         let model = ElasticJoints::new(semicircle(13), joints(stiffness, contact)).unwrap();
         let rigid_j = model.barrier_j(9.81).unwrap();
@@ -640,7 +640,7 @@ fn softer_joints_tell_of_less_energy_than_a_structure_needs() {
 
 /// After a pulse, any structure that overturns had more energy than the easiest way over needs; one that never had half of it stands.
 #[test]
-fn what_overturns_had_more_energy_than_its_barrier() {
+fn overturned_structures_had_more_energy_than_the_barrier() {
     // Of stiff joints and of points a part of the barrier is found, from softer joints.
     for (row, stiffness, contact, found) in [
         (semicircle(9), 3e9, Contact::Continuous, 1.0),
@@ -852,7 +852,7 @@ fn restitution_follows_from_contact_and_damping() {
 /// The greatest push under which arches rest, compared with an independent program; that program uses slow ramps, which overshoot by some
 /// tenths of a per cent.
 #[test]
-fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
+fn resistance_of_arches_agrees_with_an_independent_program() {
     for (row, gravity, stiffness, due_g) in [
         (lemos(), 10.0, 1e10, 0.0303),
         (lemos(), 10.0, 1e11, 0.0520),
@@ -872,7 +872,7 @@ fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
 /// The same on three points, where equilibria end at kinks that Newton's method does not pass: a push that rises over 3 s and stays for
 /// 3 s. What still swings then takes some tenths of a per cent of what the arch bears, there as here.
 #[test]
-fn an_arch_on_points_resists_a_slow_push_as_an_independent_program_has_it() {
+fn slow_push_resistance_on_points_agrees_with_an_independent_program() {
     let model = ElasticJoints::new(lemos(), joints(1e10, Contact::Points(3))).unwrap();
     let falls_under = |push_g: f64| {
         let part = |index: i32| 0.5 - 0.5 * (PI * (f64::from(index) / 60.0).min(1.0)).cos();
@@ -888,7 +888,7 @@ fn an_arch_on_points_resists_a_slow_push_as_an_independent_program_has_it() {
 
 /// The column of drums of the failure domain, with two points: within 1 % of an independent program.
 #[test]
-fn drums_overturn_where_an_independent_program_has_them() {
+fn overturning_of_drums_agrees_with_an_independent_program() {
     let text = std::fs::read_to_string(scenarios().join("drums-step-pair.toml")).unwrap();
     let properties = ElasticProperties {
         damping_time_s: 1e-4,
@@ -935,7 +935,7 @@ fn damped(stiffness_pa_m: f64) -> ElasticProperties {
 }
 
 #[test]
-fn the_page_has_the_pushes_that_blocks_and_arches_bear() {
+fn the_page_has_the_largest_pushes_of_blocks_and_arches() {
     let mut wrong = Vec::new();
     for (label, row, gravity) in [
         ("push that tips a block", stack(1, 5.0), 9.81),

@@ -593,7 +593,7 @@ fn energy_does_not_grow() {
 }
 
 #[test]
-fn what_does_not_move_says_so() {
+fn pulses_below_the_onset_move_nothing() {
     let row = arch(180.0, 0.15, 36, 5.0);
     let settings = Settings::to_landings(&row, GRAVITY, 10.0);
     assert_eq!(

@@ -186,7 +186,7 @@ impl Recorder for Told {
 fn assert_owned<T: Debug + Clone + Send + Sync + 'static>(_: &T) {}
 
 #[test]
-fn a_history_keeps_what_a_recorder_is_told() {
+fn a_recorder_receives_the_data_of_the_history() {
     let check = |model: &dyn Model| {
         for ground in grounds() {
             let request = sampled(10.0, 0.01);
@@ -356,7 +356,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(160))]
 
     #[test]
-    fn arches_of_any_numbers_are_arches_or_errors(
+    fn arches_from_random_numbers_are_valid_or_errors(
         sizes in (number(0.1..50.0), number(0.05..0.5), number(60.0..180.0)),
         others in (number(0.1..10.0), number(500.0..3000.0)),
         again in (number(0.1..50.0), number(0.05..0.5), number(60.0..180.0)),
@@ -402,7 +402,7 @@ proptest! {
     }
 
     #[test]
-    fn rings_of_any_numbers_are_rings_or_errors(t in number(0.0..2.0), embrace_rad in number(0.0..3.2)) {
+    fn rings_from_random_numbers_are_valid_or_errors(t in number(0.0..2.0), embrace_rad in number(0.0..3.2)) {
         match Ring::new(t, embrace_rad) {
             Ok(ring) => {
                 let mass = ring.moments_to(ring.embrace_rad).mass;
@@ -413,7 +413,7 @@ proptest! {
     }
 
     #[test]
-    fn columns_of_any_numbers_are_columns_or_errors(
+    fn columns_from_random_numbers_are_valid_or_errors(
         (height_m, width_m) in (number(1e-9..1e12), number(1e-9..1e12)),
         (depth_m, density_kg_m3) in (number(1e-9..1e12), number(1e-9..1e12)),
         model in any_model(),
@@ -437,7 +437,7 @@ proptest! {
     }
 
     #[test]
-    fn requests_of_any_numbers_are_met_or_errors(
+    fn requests_with_random_numbers_succeed_or_are_errors(
         (gravity_m_s2, end_s) in (number(1.0..30.0), number(0.1..20.0)),
         output_step_s in number(0.001..1.0),
         rotation_rad in proptest::option::of(number(0.0..0.3)),

@@ -80,12 +80,12 @@ fn a_run_that_ends_before_the_ground_has_no_verdict() {
         assert!(!said.contains("does not overturn"), "{said}");
         assert_eq!(cut["lowest_factor"], Value::Null);
         assert_eq!(cut["incomplete"].as_array().unwrap().len(), 1);
-        assert!(warns_of_no_verdict(&at.join("t/threshold.json")));
+        assert!(assert_warns_of_no_verdict(&at.join("t/threshold.json")));
     }
 }
 
 /// Whether the warnings of a study count histories without a verdict.
-fn warns_of_no_verdict(file: &Path) -> bool {
+fn assert_warns_of_no_verdict(file: &Path) -> bool {
     let file = json(file);
     let mut warnings = file["warnings"].as_array().unwrap().iter();
     warnings.any(|warning| warning.as_str().unwrap().starts_with("no verdict from "))
@@ -111,7 +111,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
             .collect()
     };
     assert_eq!(outcomes("m", "map.csv"), ["never_moved", "overturned"]);
-    assert!(!warns_of_no_verdict(&at.join("m/map.json")));
+    assert!(!assert_warns_of_no_verdict(&at.join("m/map.json")));
     let record = "[ground.record]\nfile = \"late.csv\"\nunit = \"g\"\n";
     let text = fs::read_to_string(at.join("s.toml")).unwrap();
     let (structure, _) = text.split_once(record).unwrap();
@@ -138,7 +138,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
     let said = stderr(&archrock(at, &["map", "k.toml", "--out", "k"]));
     shows(&said, &[1.0, 2.0]);
     assert_eq!(outcomes("k", "map.csv"), ["never_moved", "incomplete"]);
-    assert!(warns_of_no_verdict(&at.join("k/map.json")));
+    assert!(assert_warns_of_no_verdict(&at.join("k/map.json")));
     // Bisection passes levels without a verdict, so the first intensity that overturns is an upper bound.
     let pulse = "t,a\n0,1\n0.2,1\n0.201,0\n0.3,0\n";
     fs::write(at.join("pulse.csv"), pulse).unwrap();
@@ -161,7 +161,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
 
 /// A structure that still has more than a quarter of the energy barrier has no verdict either; with less it survives.
 #[test]
-fn energy_that_is_left_decides() {
+fn the_remaining_energy_decides_the_verdict() {
     let block = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
     for (model, ends) in [("", [1e-3, 16.0]), ("[free_hinges]\n", [1e-3, 16.0])] {
         let outcomes = ends.map(|end_s| {
@@ -187,7 +187,7 @@ fn simulated(text: &str) -> Summary {
 
 /// On ground that is too weak rigid joints never move, and elastic ones vibrate. A joint that opens rocks, however little.
 #[test]
-fn what_does_not_open_does_not_rock() {
+fn a_structure_without_open_joints_does_not_rock() {
     let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 15\n[free_hinges]\n\
                 [ground.one_sine]\namplitude_g = 0.1\nduration_s = 3\n";
     assert_eq!(simulated(arch).outcome, Outcome::NeverMoved);
@@ -270,7 +270,7 @@ fn results_end_where_it_overturns() {
 
 /// A scenario is written without a `duration_s` that was not given; `check` prints the time.
 #[test]
-fn a_default_is_not_frozen() {
+fn a_default_duration_is_not_written_to_toml() {
     let folder = tempfile::tempdir().unwrap();
     late(folder.path(), 2.0, "");
     let scenario = Scenario::read(&folder.path().join("s.toml")).unwrap();
@@ -309,7 +309,7 @@ fn a_threshold_along_a_range_needs_verdicts() {
     let summary = at.join("o/threshold_along.json");
     assert_eq!(json(&summary).get("failures"), None);
     assert!(
-        warns_of_no_verdict(&summary) && !said.contains("failed"),
+        assert_warns_of_no_verdict(&summary) && !said.contains("failed"),
         "{said}"
     );
 }
@@ -332,7 +332,7 @@ fn samples_without_a_verdict_are_counted_apart() {
     let incomplete = count(&told, "incomplete");
     assert!((1..8).contains(&incomplete) && count(&told, "failed") == 0);
     assert_eq!(count(&told, "answered") + incomplete, 8);
-    assert!(warns_of_no_verdict(&file));
+    assert!(assert_warns_of_no_verdict(&file));
     shows(&said, &[incomplete as f64, 8.0]);
     assert!(!said.contains("could not be computed"), "{said}");
     let threshold = ["threshold", "s.toml", "--out", "t", "--to", "3", "--quiet"];
@@ -355,7 +355,7 @@ fn samples_without_a_verdict_are_counted_apart() {
         [count(&left_out, "incomplete"), count(&left_out, "failed")],
         [8, 0]
     );
-    assert!(warns_of_no_verdict(&file), "{said}");
+    assert!(assert_warns_of_no_verdict(&file), "{said}");
     let row = &Table::read(at.join("m/uncertain_map/map.csv")).rows[1];
     assert_eq!(
         ["samples", "incomplete", "failed"].map(|name| row[name].as_str()),

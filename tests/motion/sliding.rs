@@ -61,7 +61,7 @@ fn the_associated_bound_is_the_published_one() {
 
 /// With much friction, the limit analysis without sliding, which is another programme, gives the same result.
 #[test]
-fn much_friction_is_no_sliding() {
+fn high_friction_prevents_sliding() {
     for (embrace_deg, thickness_ratio, voussoirs) in
         [(157.5, 0.15, 7), (180.0, 0.15, 36), (120.0, 0.1, 20)]
     {
@@ -132,7 +132,7 @@ fn slid(run: &Summary) -> &Sliding {
 /// friction dissipates `mu m g` times that. Positions are those of a leapfrog whose kicks are exact; the pulse and the stop end inside
 /// steps, which leaves an error of the order of the square of the step.
 #[test]
-fn a_flat_block_is_that_of_newmark() {
+fn a_flat_block_slides_as_newmarks_block() {
     let row = Row::tapered_stack(&[0.8], 4.0, 4.0, 1.0, 2000.0).unwrap();
     for coefficient in [0.2, 0.4] {
         for (amplitude_g, duration_s) in [(0.5, 0.3), (-0.7, 0.11)] {
@@ -261,7 +261,7 @@ fn column(height_m: f64, width_m: f64, pedestal: bool) -> Row {
 
 /// On ground that continues, a flat block slips almost three times its width; on a pedestal it falls off. Half sines to both sides.
 #[test]
-fn nothing_slips_off_ground_that_goes_on() {
+fn nothing_slips_off_unlimited_ground() {
     for amplitude_g in [0.9, -0.9] {
         let (ground, acceleration) = half_sine(amplitude_g, 0.5);
         let path = newmark(0.0, 0.2, acceleration, 3.0);
@@ -445,7 +445,7 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
 
 /// The motion is the same to either side, to rounding, until impacts amplify the difference.
 #[test]
-fn a_block_on_the_ground_moves_to_either_side_alike() {
+fn a_block_on_the_ground_moves_symmetrically() {
     let row = column(2.0, 1.0, false);
     let settings = equal(1e-4, 0.55, 0.52);
     let [right, left] =
@@ -525,7 +525,7 @@ fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
 
 /// The lowest level faces stand on ground that continues; so do columns and piers, unless they stand on a pedestal.
 #[test]
-fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
+fn the_lowest_level_faces_stand_on_unlimited_ground() {
     let joint = |[xi, yi, xe, ye]: [f64; 4]| Joint {
         intrados_m: Vector2::new(xi, yi),
         extrados_m: Vector2::new(xe, ye),
@@ -624,7 +624,7 @@ fn the_least_pulse_that_overturns_is_the_published_one() {
 
 /// Step pairs that a tapered column of drums does not survive: sliding mostly raises them.
 #[test]
-fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
+fn the_least_step_pair_that_overturns_drums_is_the_published_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
     let row = Row::tapered_stack(&drums, 1.11, 0.90, 1.0, 2620.0).unwrap();
     for (duration_s, coefficient, threshold_g) in [
@@ -652,7 +652,7 @@ fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
 
 /// With much friction the first half cycle is that with joints that do not slip.
 #[test]
-fn the_motion_with_much_friction_is_that_without_sliding() {
+fn high_friction_gives_the_motion_without_sliding() {
     let row = arch(157.5, 0.15, 7, 10.0);
     for amplitude_g in [0.45, 0.5336, 0.8] {
         let ground = push(amplitude_g, 0.2);
@@ -800,7 +800,7 @@ fn a_block_that_slides_and_rocks_follows_its_equations() {
 
 /// The motion to the left is the mirror image; rounding differs, and impacts amplify it.
 #[test]
-fn mirror_images_move_alike() {
+fn mirror_images_have_mirrored_motions() {
     let row = arch(157.5, 0.15, 7, 10.0);
     let settings = equal(2e-4, 0.5, 0.4);
     let [right, left] =

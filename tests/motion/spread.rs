@@ -155,7 +155,7 @@ fn a_settled_arch_stays_where_it_is() {
 
 /// It moves at the push of the linear programme of forces in the moved place, to a millionth, and not before.
 #[test]
-fn a_settled_arch_starts_at_the_push_of_its_programme() {
+fn a_settled_arch_starts_at_the_push_of_limit_analysis() {
     for (embrace_deg, thickness, voussoirs, spread, settlement) in [
         (180.0, 0.15, 16, 0.04, 0.0),
         (180.0, 0.15, 16, 0.0, 0.1),
@@ -185,7 +185,7 @@ fn a_settled_arch_starts_at_the_push_of_its_programme() {
 /// With a tie the same, to the push of the programme with the force of the tie there: of forces at the corners of all joints, by an
 /// interior-point method.
 #[test]
-fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
+fn a_settled_tied_arch_starts_at_the_push_of_limit_analysis() {
     let row = tied(0.2, 0.05);
     let movements = right(0.06, 0.0);
     let mut follower = Follower::new(&row).unwrap();
@@ -232,7 +232,7 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
 /// A tie that is stretched by a part more than it bears has broken where the arch is to stand, which is an error: its motion would begin
 /// without a tie that it has.
 #[test]
-fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
+fn an_arch_whose_tie_breaks_during_settlement_has_no_motion() {
     let movements = right(0.06, 0.0);
     let row = tied(0.2, 0.05);
     let mut follower = Follower::new(&row).unwrap();
@@ -275,7 +275,7 @@ fn apart(one: &[Vec<f64>], other: &[Vec<f64>], until: usize) -> f64 {
 
 /// Only how the springings stand to each other counts; and the mirror image moves to the other side.
 #[test]
-fn only_the_movement_of_one_springing_against_the_other_counts() {
+fn only_the_relative_movement_of_the_springings_counts() {
     let row = arch(157.5, 0.15, 12);
     let movement = |spread: f64, settlement: f64, rotation_rad: f64| Movement {
         spread_m: RADIUS_M * spread,
@@ -333,7 +333,7 @@ fn only_the_movement_of_one_springing_against_the_other_counts() {
 /// Steps that end at landings of joints that do not slip, and equal steps with Coulomb's law on all blocks with friction that is as good as
 /// glue, share no mechanics but the row: they move alike until the first impact, come to the same end, and balance their energy.
 #[test]
-fn both_ways_to_move_rigid_blocks_agree() {
+fn both_methods_for_moved_rigid_blocks_agree() {
     let row = arch(157.5, 0.15, 12);
     let free = settled(&row, &right(0.08, 0.0));
     let ground = push(0.3, Sway::Right, 0.2);
@@ -376,7 +376,7 @@ fn both_ways_to_move_rigid_blocks_agree() {
 /// The block between hinges that neighbouring joints pass on to each other turns as far with elastic joints, the more so the stiffer they are. They
 /// start a little earlier, as they hand hinges on little by little, so they come near slowly.
 #[test]
-fn stiff_joints_move_a_settled_arch_as_rigid_ones_do() {
+fn a_settled_arch_on_stiff_joints_moves_as_on_rigid_ones() {
     let row = arch(157.5, 0.15, 12);
     let movements = right(0.08, 0.0);
     let ground = push(0.3, Sway::Right, 0.2);
@@ -404,7 +404,7 @@ const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace
                     [ground.rectangular]\namplitude_g = -0.05\nduration_s = 0.2\n[simulation]\nduration_s = 0.3\n";
 
 #[test]
-fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
+fn a_run_on_moved_springings_reports_both_pushes() {
     let folder = tempfile::tempdir().unwrap();
     let write = |more: &str| {
         std::fs::write(folder.path().join("arch.toml"), format!("{ARCH}{more}")).unwrap()

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 use std::os::unix::fs::symlink;
 
-use crate::common::program::{done, printed, refused, says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, done, printed, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
@@ -113,7 +113,7 @@ fn strongest_hz(step_s: f64, signal: &[f64], [mut low, mut high]: [f64; 2]) -> f
 /// On an elastic base that stays closed: what the tie is left with after the base gives way, and the frequencies of slip and tilt, by two
 /// linear equations.
 #[test]
-fn a_tied_block_rests_and_vibrates_by_two_linear_equations() {
+fn a_tied_block_obeys_two_linear_equations() {
     let (width, height, mass) = (0.8, 4.0, 6400.0);
     let (normal, stiffness, force_n, at) = (1e10, 1e7, 1e3, 3.5);
     let weight_n = mass * GRAVITY_M_S2;
@@ -497,7 +497,7 @@ fn a_tie_that_is_stretched_takes_the_area_under_its_law() {
 
 /// A tie that breaks gives up what was in it, and holds no more: the block overturns as one that had none, and not with one that holds.
 #[test]
-fn a_tie_that_breaks_holds_no_more() {
+fn a_broken_tie_has_no_force() {
     let whole = to_the_left(0.8, 3.5, 3.0, 1e7, 5e3);
     let broken = Tie {
         breaks_at_strain: 5e-4,
@@ -554,7 +554,7 @@ fn a_tie_that_breaks_holds_no_more() {
 
 /// Histories side by side have the bits of histories alone.
 #[test]
-fn ties_side_by_side_are_as_ties_alone() {
+fn ties_computed_side_by_side_equal_single_histories() {
     let tie = Tie {
         yield_force_n: 1.2e4,
         breaks_at_strain: 5e-3,
@@ -619,7 +619,7 @@ fn tied_arches_have_mirror_images() {
 
 /// Tables, summary, words, pictures and page of a run tell of ties; models that take none refuse them with the reason.
 #[test]
-fn a_run_tells_of_its_ties() {
+fn a_run_reports_its_ties() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n\
                 [[tie]]\nfrom_m = [-0.4, 3.5]\nto_m = [-3.4, 3.5]\nto_block = 0\nstiffness_n_m = 1e7\nprestress_n = 5000.0\n\
@@ -741,8 +741,11 @@ fn a_run_tells_of_its_ties() {
 
 /// The example of the section that an arch needs: its commands print the numbers shown.
 #[test]
-fn commands_say_what_the_page_of_ties_shows() {
+fn commands_print_the_output_shown_in_docs_ties() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/ties.md", folder.path()), 6);
+    assert_eq!(
+        assert_shown_output_is_printed("docs/ties.md", folder.path()),
+        6
+    );
 }

@@ -6,7 +6,9 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use crate::common::program::{done, files, printed, refused, says_what_it_shows, scenarios};
+use crate::common::program::{
+    assert_shown_output_is_printed, done, files, printed, refused, scenarios,
+};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
@@ -40,7 +42,7 @@ fn shaking(strong: [f64; 2], hz: [f64; 2]) -> GroundMotion {
 }
 
 #[test]
-fn feet_go_apart_as_their_motions_do() {
+fn feet_separate_by_the_difference_of_their_motions() {
     // A rectangular pulse leaves the ground with a velocity: late by a delay, the foot stays behind by that times the delay.
     let ground = pulse(Pulse::Rectangular, 0.3, 0.4);
     let late = ground.late_by(0.25).unwrap();
@@ -94,7 +96,7 @@ fn feet_go_apart_as_their_motions_do() {
 /// A negative delay starts the right foot earlier. The left foot keeps its times; if the right foot accelerates before time zero, the motion
 /// starts there.
 #[test]
-fn a_negative_delay_leaves_the_left_foot_as_it_is() {
+fn a_negative_delay_does_not_change_the_left_foot() {
     let at = |ground: &GroundMotion, time_s: f64| {
         let piece = ground.pieces.iter().rfind(|piece| piece.start_s <= time_s);
         piece.unwrap().acceleration_m_s2(time_s)
@@ -139,7 +141,7 @@ fn a_negative_delay_leaves_the_left_foot_as_it_is() {
 
 /// A history with a negative start is the history on a ground that is later by that time, with all its times.
 #[test]
-fn a_history_begins_with_the_right_foot() {
+fn a_history_starts_when_the_right_foot_starts() {
     let row = Row::arch(&crate::common::ring(0.15, 157.5), 12, 5.0, 1.0, 2000.0).unwrap();
     let slipping = RowOptions {
         friction_coefficient: Some(0.8),
@@ -212,7 +214,7 @@ fn steps_are_halved_for_a_small_wave() {
 /// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
 /// pieces.
 #[test]
-fn feet_that_move_alike_are_the_ground() {
+fn feet_with_equal_motions_equal_one_ground() {
     let model = arch();
     let ground = shaking([6.0, 2.0], [1.5, 4.0]);
     let (whole, alone) = run_sampled(&model, &ground, &sampled(1.5, 0.01));
@@ -321,7 +323,7 @@ fn the_work_of_both_feet_balances_the_energy() {
 
 /// A foot that moves for 10 s ends where springings that have moved so far let the arch rest.
 #[test]
-fn a_slow_foot_ends_where_the_supports_settle() {
+fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let (spread_m, settlement_m) = (0.08, 0.03);
     // An acceleration of a sine over 10 s moves by its amplitude times 10^2/2 pi.
     let samples = |way_m: f64| -> Vec<(f64, f64)> {
@@ -380,7 +382,7 @@ fn a_slow_foot_ends_where_the_supports_settle() {
 
 /// Histories side by side have the bits of histories alone, whether the feet of the others move alike or not.
 #[test]
-fn feet_side_by_side_are_as_feet_alone() {
+fn feet_computed_side_by_side_equal_single_histories() {
     let model = arch();
     let cases: Vec<_> = (0..7)
         .map(|case| {
@@ -542,7 +544,7 @@ fn scenarios_have_a_right_foot_in_three_ways() {
 }
 
 #[test]
-fn a_run_tells_of_its_feet() {
+fn a_run_reports_its_feet() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "left.csv", &record(0.8, 0.3));
     write(folder.path(), "right.csv", &record(0.5, 0.2));
@@ -554,7 +556,7 @@ fn a_run_tells_of_its_feet() {
             table("right.csv")
         );
         write(folder.path(), "s.toml", &text);
-        let said = tells_of_its_feet(folder.path());
+        let said = assert_reports_feet(folder.path());
         if stem == "free" {
             golden("run-two-feet", &said);
         }
@@ -562,7 +564,7 @@ fn a_run_tells_of_its_feet() {
 }
 
 /// Asserts what a run prints and writes about the feet; returns its words.
-fn tells_of_its_feet(folder: &Path) -> String {
+fn assert_reports_feet(folder: &Path) -> String {
     let said = printed(
         folder,
         &[
@@ -602,7 +604,7 @@ fn tells_of_its_feet(folder: &Path) -> String {
 
 /// A run whose right foot begins before time zero begins there in every file.
 #[test]
-fn a_run_begins_with_the_right_foot() {
+fn files_of_a_run_start_when_the_right_foot_starts() {
     let folder = tempfile::tempdir().unwrap();
     for (arch, stem) in arches().iter().zip(["elastic", "free", "friction"]) {
         let text = format!("{arch}{PULSE}[ground.right]\ndelay_s = -0.052\n");
@@ -648,10 +650,13 @@ fn a_run_begins_with_the_right_foot() {
 
 /// The commands of the page of feet print the numbers shown.
 #[test]
-fn commands_say_what_the_page_of_feet_shows() {
+fn commands_print_the_output_shown_in_docs_two_feet() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/two-feet.md", folder.path()), 4);
+    assert_eq!(
+        assert_shown_output_is_printed("docs/two-feet.md", folder.path()),
+        4
+    );
 }
 
 #[test]
@@ -726,7 +731,7 @@ fn study_both_feet(arch: &str, folder: &Path) {
 }
 
 #[test]
-fn feet_that_cannot_be_are_refused() {
+fn invalid_feet_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "a.csv", &record(0.4, 0.4));
     let refuses = |text: &str, more: &[&str], words: &str| {

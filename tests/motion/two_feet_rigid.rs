@@ -211,7 +211,7 @@ fn three_hinges_follow_the_foot() {
 
 /// A tie from the ground at the right foot to the left block pulls as it is stretched, and the foot works against it.
 #[test]
-fn a_tie_on_the_ground_goes_with_the_foot() {
+fn a_ground_tie_follows_the_foot() {
     let row = row(157.5, 0.15, 2);
     let three = ThreeHinges::new(&row);
     let held_m = [three.pins[2] + Vector2::new(0.3, 0.5), three.pins[1]];
@@ -264,7 +264,7 @@ fn a_tie_on_the_ground_goes_with_the_foot() {
 /// Three blocks on four hinges between feet of which each has its own acceleration: beside an integration of the one angle that is left,
 /// by Lagrange's equation with differences of the positions, that shares nothing with the program.
 #[test]
-fn four_hinges_between_two_feet_move_as_lagrange_says() {
+fn four_hinges_between_two_feet_obey_lagranges_equation() {
     const H: f64 = 1e-4;
     let row = row(157.5, 0.2, 3);
     let [left_m_s2, right_m_s2] = [Vector2::new(6.0, 0.0), Vector2::new(7.0, -1.0)];
@@ -404,7 +404,7 @@ fn impacts_between_two_feet_take_energy() {
 /// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
 /// pieces.
 #[test]
-fn feet_that_move_alike_are_the_ground() {
+fn feet_with_equal_motions_equal_one_ground() {
     let row = row(157.5, 0.15, 12);
     let ground = pulse(Pulse::OneSine, 0.7, 0.4);
     let request = sampled(3.0, 0.01);
@@ -477,7 +477,7 @@ fn mirrored_feet_move_a_mirrored_arch() {
 
 /// A foot that moves for 10 s ends where springings that have moved so far let the arch rest: three hinges leave no other place.
 #[test]
-fn a_slow_foot_ends_where_the_supports_settle() {
+fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let row = row(157.5, 0.15, 12);
     let way = Way {
         way_m: [0.25, -0.1],
@@ -508,7 +508,7 @@ fn a_slow_foot_ends_where_the_supports_settle() {
 
 /// An arch falls between feet that slowly go farther apart than springings may, and not before.
 #[test]
-fn a_slow_foot_goes_as_far_as_the_supports_may() {
+fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
     let row = row(157.5, 0.15, 20);
     let model = FreeHinges::new(row.clone()).unwrap();
     for (way_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {

@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 
 use crate::common::parsed;
-use crate::common::program::{printed, says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, printed, scenarios};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -142,17 +142,17 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
 }
 
 #[test]
-fn commands_say_what_the_page_shows() {
+fn commands_print_the_output_shown_in_docs_validation() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    let commands = says_what_it_shows("docs/validation.md", folder.path());
+    let commands = assert_shown_output_is_printed("docs/validation.md", folder.path());
     assert!(commands >= 15, "{commands}");
 }
 
 /// Each row of the page's table of drums: the column of its scenario stands just below the number and falls just above. The
 /// command that finds the numbers is tested for one row.
 #[test]
-fn the_failure_domain_of_the_page_is_that_of_the_command() {
+fn threshold_reproduces_the_failure_domain_of_the_page() {
     let path = scenarios().join("drums-step-pair.toml");
     let scenario = fs::read_to_string(&path).unwrap();
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");

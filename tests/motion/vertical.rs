@@ -72,7 +72,7 @@ fn a_steady_vertical_acceleration_is_gravity() {
 /// Both components grow linearly: the tilt of gravity passes A_L when
 /// `h t = A_L (g + v t)`.
 #[test]
-fn uplift_is_at_the_tilt_of_gravity() {
+fn uplift_starts_at_the_tilt_of_gravity() {
     let arch = semicircle();
     let incipient = arch.incipient_g();
     for (h, v) in [

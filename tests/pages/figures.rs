@@ -435,7 +435,7 @@ fn a_structure_is_drawn_with_its_dimensions() {
 
 /// A curve ends where the structure overturns, and narrow bands are seen and listed.
 #[test]
-fn curves_of_thresholds_end_there() {
+fn curves_end_at_the_threshold() {
     let folder = tempfile::tempdir().unwrap();
     let own = scenarios().join("column-pulse.toml");
     let arguments = [
@@ -467,7 +467,7 @@ fn curves_of_thresholds_end_there() {
 }
 
 #[test]
-fn faults_are_found() {
+fn the_search_for_drawing_faults_finds_them() {
     let sheet = |inside: &str| {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"84mm\" height=\"42mm\" viewBox=\"0 0 387 193.5\" \
@@ -516,7 +516,7 @@ fn faults_are_found() {
 }
 
 #[test]
-fn height_text_panels_and_title_are_as_asked() {
+fn height_text_panels_and_title_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let own = scenarios().join("semicircle-pulse.toml");
     let own = own.to_str().unwrap();

@@ -487,7 +487,7 @@ fn curve_of(document: &Document<'_>, name: &str) -> Vec<Vector2<f64>> {
 }
 
 #[test]
-fn a_run_in_which_nothing_moves_has_its_picture_too() {
+fn a_run_without_motion_has_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let weak = "[ground.rectangular]\namplitude_g = 0.01\nduration_s = 0.1\n";
     scenario(

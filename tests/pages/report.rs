@@ -110,7 +110,7 @@ fn free_hinges_in_a_dark_browser() {
 
 /// What overturns falls on the page until a block has turned by 45 degrees, whatever moves it; no table has the fall.
 #[test]
-fn a_fall_is_on_the_page_and_in_no_table() {
+fn a_fall_is_drawn_but_not_tabulated() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 17\n\
                 [ground.rectangular]\namplitude_g = -0.9\nduration_s = 0.45\n";
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 0.9\nduration_s = 0.6\n";
@@ -259,7 +259,7 @@ fn ten_seconds_of_thirty_six_blocks_are_small() {
 }
 
 #[test]
-fn what_the_scenario_says_cannot_break_the_page() {
+fn text_of_the_scenario_cannot_break_the_page() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = "title = \"</title></script><script>alert(1)</script> %DATA% & more\"\n\
                     [column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.5\nduration_s = 0.1\n";
@@ -273,7 +273,7 @@ fn what_the_scenario_says_cannot_break_the_page() {
 }
 
 #[test]
-fn a_report_is_left_out_and_an_old_one_goes() {
+fn without_a_report_the_old_one_is_removed() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), "never-moved.toml");
     let path = program::scenarios().join("never-moved.toml");

@@ -114,7 +114,7 @@ fn the_summary_lists_the_warnings() {
 
 /// On springings that have moved far a small fraction of its own strength starts an arch, which says nothing about the unit of a pulse.
 #[test]
-fn moved_springings_raise_no_doubt_about_units() {
+fn moved_springings_cause_no_warning_about_units() {
     let arch = format!(
         "{ARCH}voussoirs = 16\n[free_hinges]\n[supports]\nright = {{ spread_m = 0.5 }}\n\
          [ground.rectangular]\namplitude_g = 0.7\nduration_s = 0.2\n"

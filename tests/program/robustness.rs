@@ -141,7 +141,7 @@ fn run_into(stdout: Stdio, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_full_disk_is_said_once() {
+fn a_full_disk_is_reported_once() {
     for (arguments, what) in [
         (
             &["run", "--rotations", "-"][..],
@@ -280,7 +280,7 @@ fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
 }
 
 #[test]
-fn of_two_that_write_to_one_folder_the_second_says_so() {
+fn a_second_program_writing_to_one_folder_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let short = root.path().join("short.toml");
     fs::write(&short, endless(0.1, 1.0, 1e-2)).unwrap();
@@ -321,7 +321,7 @@ fn within_a_minute(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn nobody_waits_for_a_pipe_in_the_results() {
+fn a_pipe_among_the_results_does_not_block() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path();
     let folder = path.join("results/s");
@@ -423,7 +423,7 @@ fn on_a_terminal(folder: &Path, command: &str) -> Option<String> {
 }
 
 #[test]
-fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
+fn a_long_run_shows_its_progress_on_a_terminal() {
     let root = tempfile::tempdir().unwrap();
     // A second is some 200 kB of rotations, more than a pipe holds.
     let scenario = |duration_s: f64| {

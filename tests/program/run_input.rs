@@ -26,7 +26,7 @@ fn piped(folder: &Path, arguments: &[&str], text: &str) -> Output {
 }
 
 #[test]
-fn the_summary_is_on_standard_output_unless_data_are() {
+fn the_summary_goes_to_standard_output_unless_data_do() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), TEXT).unwrap();
     let run = archrock(folder.path(), &["run", "s.toml"]);
@@ -42,7 +42,7 @@ fn the_summary_is_on_standard_output_unless_data_are() {
 }
 
 #[test]
-fn the_summary_as_json_is_that_of_the_file() {
+fn the_printed_json_summary_equals_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!("{TEXT}[free_hinges]\n").replace("[ground", "voussoirs = 9\n[ground");
     fs::write(folder.path().join("s.toml"), text).unwrap();
@@ -72,7 +72,7 @@ fn the_summary_as_json_is_that_of_the_file() {
 }
 
 #[test]
-fn a_scenario_may_come_by_standard_input() {
+fn a_scenario_can_be_read_from_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), TEXT).unwrap();
     let of_file = archrock(folder.path(), &["check", "s.toml"]);

@@ -98,7 +98,7 @@ fn set(keys: &str) -> Vec<String> {
 /// end and ever after. The integral of the squares is A^2 / 2; a part p of it is reached where t - sin(4 pi t) / (4 pi) = p:
 /// 5 % at 0.12945 s, and 95 % equally long before the end.
 #[test]
-fn a_record_is_told_alike_in_all_formats() {
+fn check_describes_a_record_the_same_in_all_formats() {
     let folder = tempfile::tempdir().unwrap();
     for (file, keys) in files(folder.path()) {
         let set = set(keys);
@@ -142,7 +142,7 @@ fn a_record_is_told_alike_in_all_formats() {
 }
 
 #[test]
-fn a_record_shakes_alike_in_all_formats() {
+fn a_record_gives_the_same_history_in_all_formats() {
     let folder = tempfile::tempdir().unwrap();
     let mut outcomes = Vec::new();
     for (file, keys) in files(folder.path()) {
@@ -487,7 +487,7 @@ fn the_name_of_a_column_gives_the_unit_of_times() {
 }
 
 #[test]
-fn a_weak_record_is_asked_for_its_unit() {
+fn an_unlikely_peak_raises_a_warning_about_the_unit() {
     let folder = tempfile::tempdir().unwrap();
     for (peak, asks) in [(0.09, true), (0.1, false), (29.0, false), (30.0, true)] {
         fs::write(

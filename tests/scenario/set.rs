@@ -191,7 +191,7 @@ fn entries_of_lists_are_counted_from_one() {
 }
 
 #[test]
-fn what_is_no_assignment_is_said() {
+fn an_invalid_assignment_is_reported() {
     for wrong in ["", "x", "x=", "=1", "a b=1", "a..b=1", "[arch]=1"] {
         let error = wrong.parse::<Assignment>().unwrap_err();
         assert!(error.contains("arch.thickness_ratio=0.12"), "{error}");

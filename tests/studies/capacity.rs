@@ -305,7 +305,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
 /// starts from what the programme of limit analysis has, and what it bears on the way is the slope of the energy of weight and bar, which
 /// knows of no forces.
 #[test]
-fn a_tied_arch_bears_the_slope_of_its_energy() {
+fn the_capacity_of_a_tied_arch_is_the_slope_of_its_energy() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 24\n[free_hinges]\n";
     let tie = |stiffness: f64, prestress: f64| {
         parsed(&format!(
@@ -389,7 +389,7 @@ fn drums_have_the_capacity_of_a_block() {
 /// Statics need no motion: the records of the ground may be missing, and drums and moved springings need no model of motion. Whatever moves the
 /// structure still does.
 #[test]
-fn statics_need_no_motion() {
+fn statics_need_no_ground_motion_and_no_model_of_motion() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let record = "[ground.record]\nfile = \"nowhere.at2\"\n";

@@ -529,7 +529,7 @@ fn a_step_too_far_is_halved() {
 }
 
 #[test]
-fn cases_that_make_no_curve_say_why() {
+fn cases_without_a_curve_give_the_reason() {
     let refusal = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err();
     assert_eq!(refusal(&[]), NoFit::NoObservations);
     assert_eq!(
@@ -558,7 +558,7 @@ fn cases_that_make_no_curve_say_why() {
 }
 
 #[test]
-fn separated_cases_are_told_exactly() {
+fn separated_cases_are_recognised_exactly() {
     let refusal = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err();
     let separated = NoFit::Separated;
     assert_eq!(
@@ -584,7 +584,7 @@ fn separated_cases_are_told_exactly() {
 }
 
 #[test]
-fn a_fraction_that_does_not_grow_is_no_fragility() {
+fn a_fraction_that_does_not_grow_gives_no_curve() {
     for levels in [
         // Falling; falling and separated; level; level in the mean of logarithms.
         [(0.2, 4, 3), (0.4, 4, 2), (0.8, 4, 1)],
@@ -609,13 +609,13 @@ fn a_fraction_that_does_not_grow_is_no_fragility() {
 
 /// Out of 100 000 cases one more overturns at a 10 % higher intensity: at that rate, half would at e^1800.
 #[test]
-fn a_median_beyond_all_numbers_is_none() {
+fn a_median_beyond_floating_point_is_undetermined() {
     let levels = [(1.0, 100_000, 30_000), (1.1, 100_000, 30_001)];
     assert_eq!(fit(&counts(&levels)), Err(NoFit::Undetermined));
 }
 
 #[test]
-fn messages_say_what_was_seen() {
+fn messages_report_the_observed_cases() {
     let message = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err().to_string();
     assert_eq!(
         message(&[(0.2, 3, 0), (0.4, 5, 0)]),

@@ -82,7 +82,7 @@ fn a_cell_is_the_history_of_its_row_under_its_pulse() {
 }
 
 #[test]
-fn sizes_and_shapes_make_other_rows() {
+fn axes_of_size_and_shape_change_the_row() {
     let scenario = parsed(&map_text().replace(
         AXES,
         "[map]\nmean_radius_m = [5.0, 10.0]\namplitude_g = [0.6]",
@@ -422,7 +422,7 @@ fn the_model_of_motion_can_be_chosen_on_the_command_line() {
 }
 
 #[test]
-fn what_is_of_four_links_is_refused() {
+fn keys_of_four_links_are_refused_for_free_hinges() {
     let work = folder(&map_text());
     let path = work.path();
     let out = ["map", "s.toml", "--shard", "1/1", "--out", "part"];
@@ -466,7 +466,7 @@ fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
 }
 
 #[test]
-fn a_scenario_with_another_model_is_written_as_it_was_read() {
+fn a_scenario_with_another_model_reads_back() {
     let work = folder(&map_text());
     let file = work.path().join("s.toml");
     let chosen = Scenario::read(&file).unwrap();
@@ -488,7 +488,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
 }
 
 #[test]
-fn a_suite_shakes_the_row_of_its_scenario() {
+fn rows_of_a_suite_of_drums_equal_single_histories() {
     let work = folder(&format!(
         "{DRUMS}[suite]\nrecords = [\"wave-1.at2\", \"wave-2.at2\"]\npeaks_g = [0.15, 0.6, 3.0]\n\
          both_signs = false\n"

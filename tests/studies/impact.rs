@@ -63,7 +63,7 @@ fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
 /// Voussoirs of equal angles that are given one by one are a row of blocks for the program; given as a number they are cut from
 /// a ring.
 #[test]
-fn equal_voussoirs_given_one_by_one_are_told_as_those_of_the_ring() {
+fn equal_voussoirs_given_one_by_one_have_the_impact_of_the_ring() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (embrace_deg, voussoirs) in [(157.5, 7_u32), (180.0, 18)] {
@@ -173,7 +173,7 @@ fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
 }
 
 #[test]
-fn a_mirror_image_is_told_as_seen_in_a_mirror() {
+fn a_mirror_image_has_the_mirrored_impact() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     uneven(folder);
@@ -353,7 +353,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
 }
 
 #[test]
-fn a_row_is_told_in_words() {
+fn impact_prints_a_row_in_words() {
     let folder = tempfile::tempdir().unwrap();
     uneven(folder.path());
     let options = ["--models", "--certificate", "--first", "left"];
@@ -371,7 +371,7 @@ fn a_row_is_told_in_words() {
 }
 
 #[test]
-fn what_does_not_go_with_a_structure_is_refused() {
+fn requests_that_do_not_suit_the_structure_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     uneven(folder);

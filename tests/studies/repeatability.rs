@@ -117,7 +117,7 @@ fn campaign(cases: usize) -> Counts {
 /// Ten rows of up to 12 blocks. Out of a hundred of up to 30 (`ARCHROCK_CASES=100`, which prints the counts), 95 outcomes and 88
 /// first peaks are called certain, and all of these hold.
 #[test]
-fn what_is_called_certain_holds_with_other_steps() {
+fn certain_outcomes_do_not_change_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
     let counts = campaign(cases);
     assert!(counts.failed_cases <= cases / 100, "{counts:?}");
@@ -183,7 +183,7 @@ fn near_an_edge(random: &mut Random, most: usize) -> (FreeHinges, GroundMotion, 
 /// Near an edge, rows whose joints slip are uncertain where a half cycle before the largest rotation depends on the step. Of 200 cases
 /// (`ARCHROCK_CASES=200`, rows of up to 8 blocks) other steps contradict fewer of those called certain than without that rule.
 #[test]
-fn outcomes_called_certain_near_an_edge_hold_with_other_steps() {
+fn certain_outcomes_near_an_edge_do_not_change_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(3, |cases| cases.parse().unwrap());
     let mut random = Random(35);
     // Certain by the outcomes alone, and by the half cycles as well; and how many of these other steps contradict.
@@ -330,7 +330,7 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
 /// largest rotation are those of the whole history to the last bit. With longer steps, an answer called certain differs in at most
 /// one of a hundred cases, as with other steps of a run. Six rows are tested, each under three strengths of a pulse or a record.
 #[test]
-fn maps_answer_as_runs_do() {
+fn maps_have_the_outcomes_of_runs() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(6, |cases| cases.parse().unwrap());
     let mut random = Random(11);
     let (mut early, mut overturned, mut uncertain, mut least) = (0, 0, 0, f64::INFINITY);
@@ -447,7 +447,7 @@ fn elastic_case(
 /// largest rotation is that of the whole history to the last bit, and no repetition that was spared or cut short would have
 /// disagreed; with those of a run an answer that is called certain differs in at most one of a hundred cases.
 #[test]
-fn maps_of_elastic_joints_answer_as_runs_do() {
+fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(4, |cases| cases.parse().unwrap());
     // A few that take little time, or many.
     let (most, end_s) = if cases > 4 {
@@ -527,7 +527,7 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
 /// overturn. That it has little energy says that it is safe only on its way back: histories that are ended early overturn where
 /// whole ones do, although some had less than half of the barrier long before.
 #[test]
-fn what_falls_slowly_is_not_safe() {
+fn a_slow_fall_is_not_reported_as_safe() {
     let row = archrock::Column::new(5.0, 1.0).unwrap().row();
     let properties = ElasticProperties {
         damping_time_s: 1.0,

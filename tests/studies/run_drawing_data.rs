@@ -183,7 +183,7 @@ fn exaggerated_snapshots_move_so_many_times_as_far() {
 }
 
 #[test]
-fn snapshots_after_the_end_and_without_a_folder_are_told() {
+fn snapshots_that_cannot_be_written_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let said = run(
         folder.path(),
@@ -224,7 +224,7 @@ fn snapshots_after_the_end_and_without_a_folder_are_told() {
 
 /// The JSON has every number of the text.
 #[test]
-fn limit_says_the_same_as_json() {
+fn limit_prints_the_same_as_json() {
     for scenario in [
         "semicircle-pulse.toml",
         "column-pulse.toml",

@@ -19,7 +19,7 @@ fn block(keys: &str) -> String {
 }
 
 #[test]
-fn scenarios_are_written_as_they_are_read() {
+fn scenarios_with_elastic_joints_read_back() {
     for keys in [
         "normal_stiffness_gpa_m = 10.0",
         "normal_stiffness_gpa_m = 10.0\nshear_stiffness_gpa_m = 3.0\ncontact_points = 3\ncompressive_strength_mpa = 5.0",
@@ -42,7 +42,7 @@ fn scenarios_are_written_as_they_are_read() {
 }
 
 #[test]
-fn what_is_no_joint_is_refused_with_its_place() {
+fn invalid_joint_properties_are_refused_with_their_place() {
     let stiff = "normal_stiffness_gpa_m = 10.0\n";
     for (keys, place, words) in [
         ("", "5:1", ["lacks a stiffness", "docs/elastic-joints.md"]),
@@ -112,7 +112,7 @@ fn what_is_no_joint_is_refused_with_its_place() {
 
 /// What a structure does not rest on, and steps that are not stable or too many, are placed at the key that makes them so.
 #[test]
-fn joints_that_do_not_carry_are_refused_with_their_place() {
+fn unsuitable_joints_and_steps_are_refused_with_their_place() {
     let arch = |keys: &str| {
         format!(
             "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.125\nembrace_deg = 180.0\nvoussoirs = 17\n[elastic_joints]\n{keys}\n"
@@ -173,7 +173,7 @@ fn joints_that_do_not_carry_are_refused_with_their_place() {
 
 /// At rest a column stands on its weight: `N = m g`, evenly over the base.
 #[test]
-fn a_run_tells_what_joints_bear() {
+fn a_run_reports_joint_forces_and_stresses() {
     let folder = tempfile::tempdir().unwrap();
     let text = block(
         "normal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\ncompressive_strength_mpa = 20.0",
@@ -208,7 +208,7 @@ fn a_run_tells_what_joints_bear() {
 
 /// The friction that is needed is that of joints that bear more than a hundredth of the weight: as an arch rocks, others hardly press.
 #[test]
-fn friction_is_needed_where_a_joint_presses() {
+fn needed_friction_counts_loaded_joints() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\
                 [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n\
@@ -327,7 +327,7 @@ fn three_models_in_one_run() {
 /// The properties on which the motion of the arch of Lemos depends: with three points it stands at 0.15 g, with continuous contact it
 /// falls. The other runs equal those of scenarios that have these properties.
 #[test]
-fn a_run_says_what_it_hangs_on() {
+fn a_run_reports_its_dependence_on_stiffness() {
     let folder = tempfile::tempdir().unwrap();
     let arch = |joints: &str| {
         format!(
@@ -395,7 +395,7 @@ fn a_run_says_what_it_hangs_on() {
 
 /// The page draws the stresses of `joints.csv`, to 1/256 of the largest.
 #[test]
-fn the_page_draws_what_joints_bear() {
+fn the_page_draws_joint_forces() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("s.toml"),
@@ -443,7 +443,7 @@ fn the_page_draws_what_joints_bear() {
 
 /// A threshold with other properties equals that of a scenario that has them.
 #[test]
-fn a_threshold_says_what_it_hangs_on() {
+fn a_threshold_reports_its_dependence_on_stiffness() {
     let folder = tempfile::tempdir().unwrap();
     let text = |stiffness: &str| {
         let keys = format!("normal_stiffness_gpa_m = {stiffness}\nfriction_coefficient = 0.7");

@@ -69,7 +69,7 @@ fn refusal(scenario: &str, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn tables_of_a_row_fit_together() {
+fn tables_of_a_row_are_consistent() {
     let results = Results::of(&free(SEVEN), &["--no-repeat"]);
     let names = [
         "events.csv",
@@ -245,7 +245,7 @@ fn hinges(table: &Table, row: usize, what: &str) -> Vec<(usize, String)> {
 /// The ground reaches the incipient acceleration of limit analysis at a known instant of its sine, and the hinges of that
 /// mechanism open then; a column starts about a toe.
 #[test]
-fn it_starts_when_and_where_limit_analysis_says() {
+fn motion_starts_at_the_push_and_hinges_of_limit_analysis() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n";
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
     let shaken = |structure: &str, amplitude_g: f64| {
@@ -456,7 +456,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
 }
 
 #[test]
-fn what_repetitions_change_is_said_and_written() {
+fn differences_of_repetitions_are_printed_and_written() {
     let results = Results::of(&free(SEVEN), &[]);
     let summary = results.summary();
     let spread = &summary["repeatability"];
@@ -601,7 +601,7 @@ fn half_cycles_are_compared_at_the_same_time() {
 
 /// A leaning block starts more easily to one side. Ground that pushes to the other side only is compared with what starts it there.
 #[test]
-fn a_push_is_compared_with_the_one_that_starts_it_to_that_side() {
+fn a_push_is_compared_with_the_onset_on_its_side() {
     let root = tempfile::tempdir().unwrap();
     // The centre is at 0.7 m of a base of 1 m, and 1 m high: 0.3 g to the right, 0.7 g to the left.
     fs::write(root.path().join("j.csv"), "0,0,1,0\n0.4,2,1.4,2\n").unwrap();
@@ -628,7 +628,7 @@ fn a_push_is_compared_with_the_one_that_starts_it_to_that_side() {
 /// A cap that bears half a hundredth of the weight on a face of 30 degrees needs a friction of 0.58 there, and does not count; one with two
 /// hundredths does. Under a push too weak to move it the rest needs the ratio of that push to gravity.
 #[test]
-fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
+fn needed_friction_counts_joints_bearing_a_hundredth_of_the_weight() {
     for (share, needed) in [(0.005, 0.1_f64), (0.02, 0.5773)] {
         let root = tempfile::tempdir().unwrap();
         // Faces from 30 degrees below to level: the cap is a wedge whose lower face is inclined.
@@ -670,7 +670,7 @@ fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
 /// With steps far too long the ends of the arch may part in the computation, or its energy balance may be wrong. Rounding decides
 /// which steps do that; among a few, one makes a repetition fail but not the history itself.
 #[test]
-fn a_failed_repetition_leaves_the_history_and_says_why() {
+fn a_failed_repetition_keeps_the_history_and_its_reason() {
     let scenario = |step_s: f64| {
         free(SEVEN).replace("amplitude_g = -0.5336", "amplitude_g = 0.6")
             + &format!("longest_step_s = {step_s}\n[simulation]\nduration_s = 4.0\n")
@@ -713,7 +713,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
 }
 
 #[test]
-fn a_spread_knows_other_outcomes() {
+fn repeatability_includes_other_outcomes() {
     let column = Column::new(4.0, 0.8).unwrap();
     let model = FreeHinges::of_column(&column).unwrap();
     let pulse = |amplitude_m_s2| {
@@ -863,7 +863,7 @@ fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
 }
 
 #[test]
-fn what_a_model_cannot_do_is_refused() {
+fn requests_beyond_a_model_are_refused() {
     let whole = SEVEN.replace("voussoirs = 7\n", "");
     let said = refusal(&whole, &["--hinges", "free"]);
     assert!(said.contains("voussoirs"), "{said}");
@@ -941,7 +941,7 @@ fn a_column_of_one_block_moves_as_housner_s() {
 
 /// The friction is far less than this pulse requires: voussoirs slip and stay displaced.
 #[test]
-fn joints_that_slip_are_told_of() {
+fn slipping_joints_are_reported() {
     let slipping = format!(
         "{SEVEN}[free_hinges]\nfriction_coefficient = 0.4\n[simulation]\nduration_s = 12\n"
     );
@@ -1030,7 +1030,7 @@ fn joints_that_slip_are_told_of() {
 /// The horizontal peak of a pulse is reported with the push that starts the structure. With friction, that push is the result of
 /// limit analysis: for a low block Coulomb's coefficient, for a slender one width over height.
 #[test]
-fn with_friction_the_push_that_starts_it_is_that_with_friction() {
+fn with_friction_the_onset_includes_friction() {
     for (height_m, width_m, friction, push_g) in [
         (0.3, 2.0, 0.2, 0.2),
         (2.0, 0.3, 0.2, 0.15),
@@ -1051,7 +1051,7 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
 }
 
 #[test]
-fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
+fn sliding_without_rotation_reports_no_half_cycles() {
     let scenario = "[column]\nheight_m = 0.3\nwidth_m = 2\n[free_hinges]\nfriction_coefficient = 0.2\n\
                     [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.3\n[simulation]\nduration_s = 2\n";
     let results = Results::of(scenario, &[]);
@@ -1066,7 +1066,7 @@ fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
 
 /// Another mechanism, which takes less energy than the first, may overturn it.
 #[test]
-fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
+fn an_overturned_run_reports_no_fraction_of_the_barrier() {
     let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
                     [free_hinges]\n[ground.one_sine]\namplitude_g = 2.309\nduration_s = 0.482\n\
                     [simulation]\nduration_s = 3\n";
@@ -1084,7 +1084,7 @@ fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
 }
 
 #[test]
-fn limit_analysis_of_drums_tells_the_push_that_starts_them() {
+fn limit_analysis_of_drums_reports_the_onset() {
     let root = tempfile::tempdir().unwrap();
     let limit = |more: &str| -> Value {
         let text = format!("[column]\nheight_m = 6\nwidth_m = 1\n{more}");

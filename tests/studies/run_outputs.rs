@@ -33,7 +33,7 @@ fn scenario(random: &mut Random, model: &str) -> String {
 }
 
 #[test]
-fn words_page_picture_and_tables_agree() {
+fn words_page_picture_and_tables_of_a_run_agree() {
     let mut random = Random(26);
     let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n";
     let (mut overturned, mut stood) = (0, 0);

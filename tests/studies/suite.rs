@@ -83,7 +83,7 @@ fn mixed(levels: &str) -> String {
 }
 
 #[test]
-fn rows_are_what_runs_of_the_same_scenario_give() {
+fn rows_of_a_suite_equal_single_runs() {
     let folder = folder();
     let folder = folder.path();
     for levels in ["scales = [0.5, 1.5, 4.0]", "peaks_g = [0.15, 0.45, 1.2]"] {
@@ -146,7 +146,7 @@ fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn a_mirrored_record_does_the_same_to_the_other_side() {
+fn a_mirrored_record_moves_the_structure_to_the_other_side() {
     let folder = folder();
     let folder = folder.path();
     for structure in [COLUMN, ARCH] {
@@ -189,7 +189,7 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
 }
 
 #[test]
-fn the_curve_is_that_of_the_rows() {
+fn the_curve_is_the_fit_of_the_rows() {
     let folder = tempfile::tempdir().unwrap();
     let file = scenarios().join("column-suite.toml");
     let said = done(folder.path(), &["suite", file.to_str().unwrap()]);
@@ -301,7 +301,7 @@ fn the_curve_is_that_of_the_rows() {
 }
 
 #[test]
-fn the_records_of_the_repository_are_what_they_are_said_to_be() {
+fn the_records_of_the_repository_match_their_description() {
     for k in 1..=8_u32 {
         let frequency_hz = 0.6 + 0.1 * f64::from(k);
         let wave = |t: f64| {
@@ -395,7 +395,7 @@ fn resolved_scenarios_read_back_the_same() {
 }
 
 #[test]
-fn parts_make_the_same_files_where_the_records_are_not() {
+fn parts_merge_to_the_same_files_without_the_records() {
     let folder = folder();
     let folder = folder.path();
     write(
@@ -457,7 +457,7 @@ fn parts_make_the_same_files_where_the_records_are_not() {
 }
 
 #[test]
-fn other_records_are_not_resumed_with() {
+fn a_part_with_other_records_is_not_resumed() {
     let folder = folder();
     let folder = folder.path();
     let text = format!("{COLUMN}[suite]\nrecords = 'records/*.at2'\nscales = [1.0, 3.0]\n");
@@ -495,7 +495,7 @@ fn other_records_are_not_resumed_with() {
 }
 
 #[test]
-fn without_a_curve_the_reason_is_said() {
+fn without_a_fragility_curve_the_reason_is_reported() {
     let folder = folder();
     let folder = folder.path();
     for (scales, never, always) in [
@@ -616,7 +616,7 @@ fn free_heading() -> Heading {
 
 /// With uncertain cases counted as survived or as overturned, the results are those of suites in which they did so.
 #[test]
-fn uncertain_cases_are_taken_both_ways() {
+fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let with = |letter: &str| {
         let records = [
             ("a", "..~xx"),
@@ -771,7 +771,7 @@ const FAILED: Option<Outcome> = None;
 const OVERTURNED: Option<Outcome> = Some(Outcome::Overturned(Sway::Left));
 
 #[test]
-fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
+fn failed_cases_are_excluded_and_rocking_ones_survive() {
     let results = results(&[
         ("a, b.at2", 1.0, FAILED),
         ("a, b.at2", 2.0, OVERTURNED),
@@ -825,7 +825,7 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
 }
 
 #[test]
-fn a_level_of_which_all_failed_has_no_fraction() {
+fn a_level_with_only_failed_cases_has_no_fraction() {
     let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
     let told = told(&heading(), &results);
     let levels = &told["fragility.csv"];
@@ -842,7 +842,7 @@ fn a_level_of_which_all_failed_has_no_fraction() {
 }
 
 #[test]
-fn those_still_rocking_are_said() {
+fn cases_still_rocking_are_reported() {
     let folder = folder();
     let folder = folder.path();
     let text = format!(
@@ -1116,7 +1116,7 @@ fn suites_need_a_table_and_start_from_rest() {
 /// Sines of one period, sampled closely: their measures of intensity have closed forms, and the spectral acceleration follows from the
 /// equation of an oscillator by the method of Runge and Kutta. Capacities are where runs begin to overturn.
 #[test]
-fn capacities_are_told_in_several_measures() {
+fn capacities_are_reported_in_several_measures() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let gravity = 9.81;

@@ -63,7 +63,7 @@ fn of_column(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
 /// Slender: `cosh(p t) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. Finite slenderness changes that by
 /// a small multiple of its square.
 #[test]
-fn rectangular_pulses_and_slender_columns_are_housners() {
+fn rectangular_pulses_on_slender_columns_agree_with_housner() {
     let p_t = [0.05, 0.3, 1.0, 2.5, 6.0];
     let miss = |alpha: f64| -> Vec<f64> {
         let simulated = of_column("rectangular", alpha, &p_t);
@@ -100,7 +100,7 @@ fn short_pulses_overturn_by_their_impulse() {
 /// Half sine of the frequency `w = b p`, as derived in `tests/motion/column.rs`:
 /// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) = b`.
 #[test]
-fn half_sines_and_slender_columns_are_the_linear_solution() {
+fn half_sines_on_slender_columns_agree_with_the_linear_solution() {
     let b = [0.8, 1.5, 3.0, 6.0];
     let simulated = of_column("half_sine", 0.01, &b.map(|b| PI / b));
     for (simulated, b) in simulated.iter().zip(b) {
@@ -197,7 +197,7 @@ fn similar_structures_have_similar_thresholds() {
 
 /// Just above the edge the first fall overturns, just below it does not, in single histories.
 #[test]
-fn the_edge_without_impact_is_an_edge() {
+fn histories_change_at_the_edge_without_impact() {
     let text = format!("{ARCH}{}", pulse("one_sine"));
     let model = parsed(&text).mechanisms().unwrap();
     for duration_s in [0.4, 0.9] {

@@ -314,7 +314,7 @@ fn a_sample_is_the_scenario_with_its_values() {
 }
 
 #[test]
-fn the_program_tells_what_follows() {
+fn a_run_with_uncertain_input_prints_and_writes_its_results() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
@@ -418,7 +418,7 @@ fn the_page_of_a_run_begins_with_the_probability() {
 /// A map of a block whose width is uncertain: the share of each cell is that of the widths that overturn, by quadrature, to a sample or
 /// two of 64, since samples of one number are spread evenly; and the line of 50 % is where the block of the median width begins to overturn.
 #[test]
-fn maps_tell_the_probability_of_each_cell() {
+fn maps_report_the_probability_of_each_cell() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let text = format!(
@@ -569,7 +569,7 @@ fn maps_tell_the_probability_of_each_cell() {
 
 /// Where the lowest cell of a map, or the smallest factor of a threshold, already overturns, it is no edge but a bound.
 #[test]
-fn the_least_strength_that_was_tried_is_no_edge() {
+fn the_smallest_tested_strength_is_no_edge() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let text = format!(
@@ -680,7 +680,7 @@ fn thresholds_have_a_distribution() {
 
 /// Samples whose structure does not stand are counted and reported.
 #[test]
-fn samples_that_do_not_stand_are_told() {
+fn samples_that_do_not_stand_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     // A semicircle needs t/R of at least 0.1075; a thinner one is not an error of the range.
@@ -703,7 +703,7 @@ fn samples_that_do_not_stand_are_told() {
 
 /// The page and its scenario agree.
 #[test]
-fn the_worked_case_is_there() {
+fn the_page_shows_the_deviations_of_the_worked_case() {
     let scenario = Scenario::read(&scenarios().join("uncertain/arch.toml")).unwrap();
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/uncertain.md");
     let page = fs::read_to_string(page).unwrap();
@@ -719,7 +719,7 @@ fn the_worked_case_is_there() {
 
 /// The thickness of a circular arch varies at its mean radius, whatever that is, and the drums of a column in proportion.
 #[test]
-fn numbers_that_go_with_others_take_these_along() {
+fn related_dimensions_vary_together() {
     let scenario = parsed(&format!(
         "{ARCH}{PULSE}[uncertain]\n'arch.mean_radius_m' = {{ from = 4.0, to = 6.0 }}\n'arch.thickness_m' = {{ deviation = 0.02 }}\n"
     ));
@@ -767,7 +767,7 @@ fn numbers_that_go_with_others_take_these_along() {
 /// The span of an arch that is measured by it may vary while its rise and its thickness stay, as they were measured; and the joints of an
 /// arch go with its angle. The expected ring is that of the circle through the springings and the crown.
 #[test]
-fn measured_arches_vary_as_they_are_measured() {
+fn measured_arches_vary_in_their_measured_dimensions() {
     let text = "[arch]\nspan_m = 6\nrise_m = 2\nthickness_m = 0.7\nmeasured_at = 'intrados'\n";
     let uncertain = "[uncertain]\n'arch.span_m' = { deviation = 0.05 }\n'arch.rise_m' = { from = 1.9, to = 2.1 }\n\
                      'arch.thickness_m' = { from = 0.6, to = 0.8 }\n";
@@ -813,7 +813,7 @@ fn measured_arches_vary_as_they_are_measured() {
 /// With eight samples in place of 200, the first of these, the commands of the page run; what they say of the scenario itself is what
 /// the page shows, and their intervals hold the shares that it shows.
 #[test]
-fn the_worked_case_says_what_it_shows() {
+fn commands_print_the_output_shown_in_the_worked_case() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::copy(
@@ -861,7 +861,7 @@ fn the_worked_case_says_what_it_shows() {
 }
 
 #[test]
-fn what_cannot_be_uncertain_is_refused() {
+fn keys_that_cannot_be_uncertain_are_refused() {
     let refusal = |keys: &str| {
         let text = format!("{ARCH}voussoirs = 7\n{PULSE}[uncertain]\n{keys}\n");
         let errors = Scenario::parse(&text, "s.toml").unwrap_err();
@@ -1164,7 +1164,7 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
 /// Records that overturn a column of uncertain width, and the intensity from which they do. The intensities of the scenario itself lie
 /// between the levels at which its suite changes, and the width decides.
 #[test]
-fn suites_tell_the_parts_of_fragility() {
+fn suites_split_fragility_into_records_and_uncertain_input() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {

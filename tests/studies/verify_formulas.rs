@@ -165,7 +165,7 @@ fn par_3_2_3_2_3_spectral_displacements() {
 }
 
 #[test]
-fn par_3_2_1_and_3_2_3_2_refuse_what_is_out_of_their_range() {
+fn par_3_2_1_and_3_2_3_2_refuse_input_out_of_range() {
     for (wrong, soil, factor, argument, words) in [
         (
             hazard(0.2, 2.1, 0.3),
