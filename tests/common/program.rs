@@ -132,7 +132,7 @@ pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     commands
 }
 
-/// The cells of the row of a table of docs/validation.md whose label begins so, with the numbers in each.
+/// The cells of the row of docs/validation.md whose label begins with `label`, as the numbers in each cell.
 #[track_caller]
 pub fn validated(label: &str) -> Vec<Vec<f64>> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");

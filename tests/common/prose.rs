@@ -1,6 +1,6 @@
 //! Printed sentences: their numbers are compared with results, and the words of one text of each study with `tests/golden`.
 //!
-//! A better sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test` writes them anew.
+//! A changed sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test` writes the texts anew.
 
 use std::fs;
 use std::path::Path;

@@ -216,7 +216,7 @@ fn no_four_link_mechanism_keeps_more() {
         for case in [Some(first), second].iter().flatten() {
             let gap = case.project(180).restitution - case.next.restitution;
             count += 1;
-            // The cone contains the mechanism; any remaining gap is the tolerance of the solver.
+            // The cone contains the mechanism; the difference is the tolerance of the solver.
             assert!(gap > -1e-9, "{thickness_ratio} {embrace_deg}: {gap}");
             let extremes = case
                 .next

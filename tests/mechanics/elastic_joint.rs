@@ -110,7 +110,7 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
             let [x, y] = action.force_n.map(|part| part.0[0]);
             let [first, second] = action.moments_n_m.map(|part| part.0[0]);
             let size = x.hypot(y);
-            assert!(size > 1e3, "the joint presses");
+            assert!(size > 1e3, "the joint is in compression");
             let on = [-x, -y, first, x, y, second];
             for (axis, force) in on.into_iter().enumerate() {
                 let at = |step: f64| {

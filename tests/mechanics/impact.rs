@@ -44,7 +44,7 @@ fn published_chain_of_the_semicircle() {
         // r is flat at its maximum: an error of 1e-16 in r allows 1e-8 rad, far below the digits.
         assert_hinges(seen, hinges, 0.5e-5);
     }
-    // The paper's own figure.
+    // The value printed in the paper.
     assert!((chain.link(1).unwrap().link.restitution - 0.6812).abs() <= 0.5e-4);
 }
 
@@ -256,7 +256,7 @@ proptest! {
         assert_keeps_most_energy(&closing, &ring, seed, 6)?;
     }
 
-    /// The same for mechanisms to which no chain leads.
+    /// No mechanism keeps more energy after a random closing mechanism, also one that no chain reaches.
     #[test]
     fn no_mechanism_keeps_more_energy_after_a_random_mechanism(
         t in 0.05_f64..0.4, embrace in 90.0_f64..180.0, seed in 0_u64..1 << 60,

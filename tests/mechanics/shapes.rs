@@ -228,7 +228,7 @@ fn an_arch_on_buttresses_given_as_blocks() {
             };
             assert_eq!(joints, expected);
         }
-        // Mirror images of each other.
+        // The two sides are mirror images of each other.
         let mirrored = row.mirrored().unwrap();
         let there = acceleration_g(&mirrored, Sway::Left);
         assert!((there / acceleration_g(&row, Sway::Right) - 1.0).abs() < 1e-12);

@@ -308,7 +308,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
     }
     assert!(link.mechanism.coefficients(link.critical_rad).s_y.abs() < 1e-14);
     assert!(link.limit_rad > link.critical_rad);
-    // The energy decides: a blow that gives just less or just more than the barrier.
+    // The energy decides: pulses that give just less or just more than the barrier.
     let c = link.mechanism.coefficients(0.0);
     let barrier = GRAVITY / arch.length_m() * top;
     let duration_s = 1e-7;

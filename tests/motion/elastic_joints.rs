@@ -40,7 +40,7 @@ fn stack(drums: usize, height_m: f64) -> Row {
     Row::stack(&vec![drum; drums], 1.0, 2700.0).unwrap()
 }
 
-/// As stiff against slip as against penetration, without damping.
+/// Joints with equal stiffness against slip and penetration, without damping.
 fn joints(stiffness_pa_m: f64, contact: Contact) -> ElasticProperties {
     ElasticProperties {
         stiffness: Stiffness::Uniform(JointStiffness {
@@ -107,7 +107,7 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     action.force_n[0].0[0] / weight_n
 }
 
-/// An independent program, with tangents by finite differences, gives these values to all digits shown.
+/// Reference values to all digits shown are from an independent program, with tangents by finite differences.
 #[test]
 fn equilibria_of_arches_agree_with_an_independent_program() {
     for (row, gravity, stiffness, thrust, drop_mm) in [
@@ -347,7 +347,7 @@ fn histories_side_by_side_have_the_bits_of_each_alone() {
     }
 }
 
-/// Asks for every case by the model and by its repetitions, followed to each end.
+/// Requests every case by the model and by its repetitions, followed to each end.
 struct Everything {
     waiting: Vec<Job>,
     answers: Vec<(Job, Summary)>,
@@ -383,7 +383,7 @@ impl Jobs for Everything {
     }
 }
 
-/// Every job is that of the model or the repetition that it names, followed as far as it says.
+/// Every job gives the history of the model or the repetition that it names, followed to the requested end.
 #[test]
 fn jobs_side_by_side_have_the_bits_of_each_alone() {
     let properties = ElasticProperties {
@@ -404,7 +404,7 @@ fn jobs_side_by_side_have_the_bits_of_each_alone() {
         let alone = model.simulate_until(job.until, &cases[job.case]).unwrap();
         assert_eq!(alone, *together, "{job:?}");
     }
-    // No two of a case are the same: all have other steps, or end elsewhere.
+    // All jobs of a case differ in their steps or in their end.
     for case in 0..cases.len() {
         let of_case = jobs.answers.iter().filter(|(job, _)| job.case == case);
         let ends: HashSet<_> = of_case
@@ -567,8 +567,8 @@ fn an_unshaken_arch_stays_and_a_shaken_one_comes_to_rest() {
     assert!((due - model.incipient_acceleration_g(Sway::Left).unwrap()).abs() < 1e-9);
 }
 
-/// Pushed over slowly, a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with
-/// `x_c = sqrt(2 W/(kn w kappa))` of its base in contact. This closed form is for small rotations; for those of this block it is 2 % off.
+/// Pushed over slowly, a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with a length of base in
+/// contact of `x_c = sqrt(2 W/(kn w kappa))`. This closed form holds for small rotations; for those of this block it is 2 % off.
 /// With contact points, stiff joints need the energy of rigid ones; arches approach it from below.
 #[test]
 fn overturning_energy_agrees_with_the_closed_form() {
@@ -613,8 +613,8 @@ fn overturning_energy_agrees_with_the_closed_form() {
     assert!((0.999..1.0).contains(&(elastic_j / rigid_j)));
 }
 
-/// If the path over is lost, that of softer joints gives a lower bound of the barrier: not much less than that of soft joints, and less than
-/// that of rigid ones.
+/// If the overturning path is lost, the path of softer joints gives a lower bound of the barrier: not much less than for soft
+/// joints, and less than for rigid ones.
 #[test]
 fn softer_joints_give_a_lower_bound_of_the_barrier() {
     let barrier_j = |stiffness: f64, contact| {
@@ -638,10 +638,11 @@ fn softer_joints_give_a_lower_bound_of_the_barrier() {
     }
 }
 
-/// After a pulse, any structure that overturns had more energy than the easiest way over needs; one that never had half of it stands.
+/// After a pulse, every overturning structure had more energy than the easiest way over requires; a structure that stays below
+/// half of that survives.
 #[test]
 fn overturned_structures_had_more_energy_than_the_barrier() {
-    // Of stiff joints and of points a part of the barrier is found, from softer joints.
+    // For stiff joints and contact points, softer joints give a lower bound of the barrier.
     for (row, stiffness, contact, found) in [
         (semicircle(9), 3e9, Contact::Continuous, 1.0),
         (stack(3, 5.0), 2e9, Contact::Continuous, 1.0),
@@ -742,9 +743,9 @@ fn no_history_fails_silently() {
     assert!(2 * moved > none, "{moved} {none}");
 }
 
-/// A block on three points bounces and slips at each landing. Friction takes energy with any step, and what it takes converges: to 1.88 J,
-/// that with steps of 1e-6 s, for slips of 3.36 mm at most. The steps of the program miss both, and say that the slip at the end is
-/// uncertain. The trapezoidal rule gives -1.47 J with them.
+/// A block on three points bounces and slips at each landing. Friction takes energy with any step. The energy converges to 1.88
+/// J, the value with steps of 1e-6 s, for slips of at most 3.36 mm. With the steps of the program both values are off, and the
+/// summary reports the final slip as uncertain. With those steps the trapezoidal rule gives -1.47 J.
 #[test]
 fn friction_at_points_takes_energy_and_slips_are_compared() {
     let run = |step: &str| {
@@ -849,8 +850,8 @@ fn restitution_follows_from_contact_and_damping() {
     }
 }
 
-/// The greatest push under which arches rest, compared with an independent program; that program uses slow ramps, which overshoot by some
-/// tenths of a per cent.
+/// The largest push under which arches rest, compared with an independent program. That program uses slow ramps, which overshoot
+/// by some tenths of a per cent.
 #[test]
 fn resistance_of_arches_agrees_with_an_independent_program() {
     for (row, gravity, stiffness, due_g) in [
@@ -869,8 +870,9 @@ fn resistance_of_arches_agrees_with_an_independent_program() {
     }
 }
 
-/// The same on three points, where equilibria end at kinks that Newton's method does not pass: a push that rises over 3 s and stays for
-/// 3 s. What still swings then takes some tenths of a per cent of what the arch bears, there as here.
+/// The largest push of an arch on three contact points. There equilibria end at kinks that Newton's method does not pass, so a
+/// push rises over 3 s and stays for 3 s. In both programs the remaining vibration takes some tenths of a per cent of the
+/// capacity.
 #[test]
 fn slow_push_resistance_on_points_agrees_with_an_independent_program() {
     let model = ElasticJoints::new(lemos(), joints(1e10, Contact::Points(3))).unwrap();
@@ -905,7 +907,7 @@ fn overturning_of_drums_agrees_with_an_independent_program() {
     );
 }
 
-/// A number in the last cell of a row of docs/validation.md, with the stiffness of its joints in Pa/m, which is in the first one.
+/// Numbers in the last cell of rows of docs/validation.md, each with the stiffness of its joints in Pa/m from the first cell.
 fn shown(label: &str) -> Vec<(f64, f64)> {
     let cells = validated(label);
     let stiffness = cells[0].iter().map(|gpa_m| gpa_m * 1e9);

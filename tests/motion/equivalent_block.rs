@@ -146,7 +146,7 @@ fn scaled_structures_have_similar_motions() {
     assert_same(&of_column(0.1), &of_column(7.0), 1e-9);
 }
 
-/// So does the slenderness of slender columns with equal loss of energy, up to its square.
+/// For slender columns with equal loss of energy, the slenderness cancels as well, up to its square.
 #[test]
 fn slender_columns_have_similar_motions() {
     let of_column = |width_m: f64| {

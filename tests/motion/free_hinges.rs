@@ -405,7 +405,7 @@ fn thresholds_of_single_pulses_are_the_measured_ones() {
     }
 }
 
-/// Step pairs that a tapered column of drums does not survive, as measured.
+/// Measured step pairs that overturn a tapered column of drums.
 #[test]
 fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
@@ -653,7 +653,7 @@ fn random_histories_do_not_fail() {
     );
 }
 
-/// At rest a corner of this row closes by rounding; it depends on other corners, none of which gives way.
+/// At rest a corner of this row closes by rounding; it depends on other corners, which all stay closed.
 #[test]
 fn a_corner_that_closes_by_rounding_does_not_stop_a_history() {
     let run = torture(&mut Random(511 * 7919 + 1), 60, 8.0).unwrap();

@@ -59,7 +59,7 @@ fn the_associated_bound_is_the_published_one() {
     }
 }
 
-/// With much friction, the limit analysis without sliding, which is another programme, gives the same result.
+/// With high friction the result equals that of limit analysis without sliding, which is another programme.
 #[test]
 fn high_friction_prevents_sliding() {
     for (embrace_deg, thickness_ratio, voussoirs) in
@@ -77,7 +77,7 @@ fn high_friction_prevents_sliding() {
     }
 }
 
-/// A block on its base: if friction is less than the slope of its diagonal it slides, otherwise it overturns.
+/// A block on its base slides if friction is less than the slope of its diagonal; otherwise it overturns.
 #[test]
 fn a_block_slides_or_overturns() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
@@ -88,7 +88,7 @@ fn a_block_slides_or_overturns() {
     }
 }
 
-/// At the least coefficient the push that the row can bear vanishes; a column stands with any coefficient.
+/// At the least friction coefficient the capacity of the row vanishes; a column stands with any coefficient.
 #[test]
 fn below_the_least_coefficient_nothing_stands() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -259,7 +259,7 @@ fn column(height_m: f64, width_m: f64, pedestal: bool) -> Row {
     model.row().clone()
 }
 
-/// On ground that continues, a flat block slips almost three times its width; on a pedestal it falls off. Half sines to both sides.
+/// On unlimited ground a flat block slips almost three times its width; on a pedestal it falls off. Half sines act to both sides.
 #[test]
 fn nothing_slips_off_unlimited_ground() {
     for amplitude_g in [0.9, -0.9] {
@@ -380,8 +380,9 @@ impl Recorder for Block {
     }
 }
 
-/// On ground that continues, a block that has slid rocks about its own corner. On a pedestal, the edge would push it over three times
-/// as far on the same ground. Until it comes down it is compared with its equations of motion; ours are of first order at changes of mode.
+/// On unlimited ground, a block that has slid rocks about its own corner. On a pedestal, the edge would push it over three times
+/// as far on the same ground. Until it comes down it is compared with its equations of motion; ours are of first order at changes
+/// of mode.
 #[test]
 fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     let (sizes_m, coefficient, duration_s) = ([1.0, 2.0], 0.52, 0.15);
@@ -523,7 +524,7 @@ fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     assert!(with.end_s > times_s[1] + 0.1);
 }
 
-/// The lowest level faces stand on ground that continues; so do columns and piers, unless they stand on a pedestal.
+/// The lowest level faces stand on unlimited ground; so do columns and piers, unless they stand on a pedestal.
 #[test]
 fn the_lowest_level_faces_stand_on_unlimited_ground() {
     let joint = |[xi, yi, xe, ye]: [f64; 4]| Joint {
@@ -622,7 +623,7 @@ fn the_least_pulse_that_overturns_is_the_published_one() {
     }
 }
 
-/// Step pairs that a tapered column of drums does not survive: sliding mostly raises them.
+/// Step pairs that overturn a tapered column of drums; sliding mostly raises the least amplitude.
 #[test]
 fn the_least_step_pair_that_overturns_drums_is_the_published_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
@@ -650,7 +651,7 @@ fn the_least_step_pair_that_overturns_drums_is_the_published_one() {
     }
 }
 
-/// With much friction the first half cycle is that with joints that do not slip.
+/// With high friction the first half cycle equals that with joints that cannot slip.
 #[test]
 fn high_friction_gives_the_motion_without_sliding() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -844,7 +845,7 @@ fn barrier_j(row: &Row) -> Option<f64> {
 
 /// Relative to weight times size: the barrier of similar rows that start as four links. The others are thicker.
 const USUAL_BARRIER: f64 = 0.03;
-/// Rows that hardly stand fall with energies far larger than their barriers.
+/// Rows near instability fall with energies far larger than their barriers.
 const LEAST_BARRIER: f64 = 1e-3;
 
 /// Any structure on any ground, with any friction: no history fails, and none creates more energy than a millionth of the barrier.
@@ -965,8 +966,8 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
     }
 }
 
-/// Velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices: two unknowns for
-/// the ends of a joint, two for friction to either side, and a speed of slip.
+/// Reference velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices:
+/// two unknowns for the ends of a joint, two for friction to either side, and a slip speed.
 fn judged(
     row: &Row,
     contacts: &[Contact],
@@ -1075,7 +1076,7 @@ fn every_step_solves_the_complementarity_problem() {
             .zip(&stuck)
             .map(|(contact, stuck)| (contact.coordinates_m - Vector3::new(0.0, 0.0, *stuck)) / step)
             .collect();
-        // Pushes to and fro, in which much is lifted and dropped.
+        // Alternating pushes, under which many blocks lift off and land.
         let push = if (count / 120) % 2 == 0 { 0.9 } else { -0.9 };
         let lift = if (count / 70) % 3 == 2 { 1.2 } else { 0.0 };
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);

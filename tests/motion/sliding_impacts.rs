@@ -20,7 +20,7 @@ struct Impacts {
 
 impl Recorder for Impacts {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        // An impact belongs to the phase that it begins, although it is reported a step later.
+        // An impact belongs to the phase that it begins, but is reported a step later.
         assert!(sample.phase >= self.times_s.len());
         ControlFlow::Continue(())
     }

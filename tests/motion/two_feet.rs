@@ -1,4 +1,4 @@
-//! Feet that move differently: the ground under both, motions of arches on them, and what the program tells of it.
+//! Feet that move differently: the ground under both, motions of arches on them, and the output of the program about them.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -43,7 +43,7 @@ fn shaking(strong: [f64; 2], hz: [f64; 2]) -> GroundMotion {
 
 #[test]
 fn feet_separate_by_the_difference_of_their_motions() {
-    // A rectangular pulse leaves the ground with a velocity: late by a delay, the foot stays behind by that times the delay.
+    // A rectangular pulse leaves the ground with a constant velocity, so a delayed foot stays behind by velocity times delay.
     let ground = pulse(Pulse::Rectangular, 0.3, 0.4);
     let late = ground.late_by(0.25).unwrap();
     let apart_m = ground
@@ -66,7 +66,7 @@ fn feet_separate_by_the_difference_of_their_motions() {
             "{apart_m} {due_m}"
         );
     }
-    // The motion late by nothing is the motion.
+    // A delay of zero changes nothing.
     assert_eq!(ground.late_by(0.0).unwrap(), ground);
     let same = ground.clone().with_right_foot(ground.clone());
     assert!(
@@ -74,13 +74,13 @@ fn feet_separate_by_the_difference_of_their_motions() {
             .iter()
             .all(|apart| *apart == Vector2::zeros())
     );
-    // Both feet are scaled, and only there where they move differently.
+    // A scale factor applies to both feet. This matters only for feet that move differently.
     let other = shaking([1.0, 0.4], [2.0, 5.0]);
     let both = ground.clone().with_right_foot(other.clone());
     let [once, twice] =
         [both.clone(), both.scaled(2.0).unwrap()].map(|ground| ground.feet_apart_m(&[0.37])[0]);
     assert!(once.norm() > 0.01 && once.y != 0.0 && (twice - once * 2.0).norm() < 1e-15);
-    // A foot whose motion stops stays where it is: from 0.4 s on the left one moves alone, until both have ended.
+    // A foot stays in place once its motion stops. Here the left foot moves alone from 0.2 s to 0.4 s, when both have ended.
     let stopped = ground
         .clone()
         .with_right_foot(pulse(Pulse::Rectangular, 0.3, 0.2).stopping());
@@ -117,7 +117,7 @@ fn a_negative_delay_does_not_change_the_left_foot() {
             assert_eq!(at(&early, time_s), at(&ground, time_s));
             assert!((at(right, time_s) - at(&ground, time_s + 0.3)).abs() < 1e-13);
         }
-        // The feet are as far apart as those of the same motion with a positive delay, to the other side.
+        // The distance of the feet is that for the same motion with a positive delay, mirrored.
         let late = ground.clone().with_delayed_right_foot(0.3).unwrap();
         for (early, late) in early
             .feet_apart_m(&[0.05, 0.4, 2.0])
@@ -139,7 +139,7 @@ fn a_negative_delay_does_not_change_the_left_foot() {
     assert!(record.with_delayed_right_foot(f64::NAN).is_err());
 }
 
-/// A history with a negative start is the history on a ground that is later by that time, with all its times.
+/// A history with a negative start equals the history on ground delayed by that time, with all times shifted.
 #[test]
 fn a_history_starts_when_the_right_foot_starts() {
     let row = Row::arch(&crate::common::ring(0.15, 157.5), 12, 5.0, 1.0, 2000.0).unwrap();
@@ -170,7 +170,7 @@ fn a_history_starts_when_the_right_foot_starts() {
         assert!(times_s.windows(2).all(|pair| pair[0] < pair[1]));
         let [first, at_zero] = [0, 3].map(|row| early.samples.get(row).unwrap());
         assert!(first.rotations_rad != at_zero.rotations_rad);
-        // Rows are at other instants of the motion: compare peaks and half cycles.
+        // The rows show other instants of the motion, so peaks and half cycles are compared.
         let [one, other] = [&early.summary, &later.summary];
         let [peak, due] = [one, other].map(|summary| summary.largest_rotation_rad());
         assert!(
@@ -182,7 +182,7 @@ fn a_history_starts_when_the_right_foot_starts() {
     }
 }
 
-/// Steps of free hinges are halved where the balance of energy needs it, unless the scenario gives their length.
+/// Free hinges halve their steps if the energy balance requires it, unless the scenario gives the step.
 #[test]
 fn steps_are_halved_for_a_small_wave() {
     let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.156\nembrace_deg = 157.5\nvoussoirs = 6\n\
@@ -211,8 +211,8 @@ fn steps_are_halved_for_a_small_wave() {
     assert!(!refused.contains("masonry"), "{refused}");
 }
 
-/// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
-/// pieces.
+/// Two feet with equal motions are equivalent to one ground: bit-identical if the motions are written alike, and up to rounding
+/// if one is cut into other pieces.
 #[test]
 fn feet_with_equal_motions_equal_one_ground() {
     let model = arch();
@@ -242,8 +242,8 @@ fn feet_with_equal_motions_equal_one_ground() {
     }
 }
 
-/// The mirror image of an arch whose feet are exchanged moves as its mirror image; since positions count from the left foot, the two are
-/// computed on ground that moves differently: the same, but for the square of the step.
+/// The mirror image of an arch with exchanged feet moves as its mirror image. Positions count from the left foot, so the ground
+/// motions of the two computations differ; results agree up to the square of the step.
 #[test]
 fn mirrored_feet_move_a_mirrored_arch() {
     let model = arch();
@@ -275,7 +275,7 @@ fn mirrored_feet_move_a_mirrored_arch() {
     }
 }
 
-/// A structure whose supports are both moved alike rests as it did, elsewhere.
+/// If both supports move equally, the structure moves along with them and its equilibrium does not change.
 #[test]
 fn a_translation_of_both_supports_changes_nothing() {
     let model = arch();
@@ -295,7 +295,7 @@ fn a_translation_of_both_supports_changes_nothing() {
     }
 }
 
-/// The energy of an arch whose feet move differently is balanced, by the square of the step; both feet work.
+/// The energy balance of an arch on feet that move differently closes with the square of the step, and both feet do work.
 #[test]
 fn the_work_of_both_feet_balances_the_energy() {
     let properties = ElasticProperties {
@@ -316,16 +316,16 @@ fn the_work_of_both_feet_balances_the_energy() {
         summary.energy_defect_ratio
     });
     assert!(defects[0] < 1e-5, "{defects:?}");
-    // Of a quarter of the step: 16, where contacts that open between steps would let it.
+    // A quarter of the step should reduce the error by 16; contacts that open within steps disturb this.
     let ratio = defects[0] / defects[2];
     assert!((9.0..36.0).contains(&ratio), "{defects:?}");
 }
 
-/// A foot that moves for 10 s ends where springings that have moved so far let the arch rest.
+/// After a foot has moved slowly for 10 s, the arch is in its equilibrium on springings moved by the same amount.
 #[test]
 fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let (spread_m, settlement_m) = (0.08, 0.03);
-    // An acceleration of a sine over 10 s moves by its amplitude times 10^2/2 pi.
+    // One sine of acceleration over 10 s moves the foot by its amplitude times 10^2/(2 pi).
     let samples = |way_m: f64| -> Vec<(f64, f64)> {
         let strong = way_m * 2.0 * PI / 100.0;
         let at = |step: i32| {
@@ -337,7 +337,7 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let ramp = GroundMotion::record(&samples(spread_m), &samples(-settlement_m), 0.0).unwrap();
     let both = GroundMotion::still().with_right_foot(ramp);
     let end_m = both.feet_apart_m(&[10.0])[0];
-    // Straight lines between samples miss the sine by 3e-6 of it.
+    // Straight lines between samples deviate from the sine by 3e-6 of its amplitude.
     assert!(
         (end_m - Vector2::new(spread_m, -settlement_m)).norm() < 1e-6,
         "{end_m}"
@@ -365,7 +365,7 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
         .map(|pose| turned(pose).abs())
         .fold(0.0, f64::max);
     assert!(largest > 5e-3, "{largest}");
-    // What is left of the vibration, and of friction that both reach on other ways, is a thousandth of the rotation.
+    // The remaining vibration, and friction after different paths, account for a thousandth of the rotation.
     for (end, rest) in end.poses.iter().zip(&rest.poses) {
         assert!(
             (turned(end) - turned(rest)).abs() < 1e-3 * largest,
@@ -380,7 +380,8 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     }
 }
 
-/// Histories side by side have the bits of histories alone, whether the feet of the others move alike or not.
+/// Histories computed side by side are bit-identical to single histories, whether the feet of the other cases move equally or
+/// not.
 #[test]
 fn feet_computed_side_by_side_equal_single_histories() {
     let model = arch();
@@ -402,7 +403,8 @@ fn feet_computed_side_by_side_equal_single_histories() {
     }
 }
 
-/// A stack stands on the left foot, whatever the right one does: nothing of it changes, nor how early it is known to be safe.
+/// A stack stands on the left foot: the motion of the right foot changes no result, nor the time at which the stack is known to
+/// be safe.
 #[test]
 fn a_stack_has_one_foot() {
     let drum = Drum {
@@ -419,7 +421,7 @@ fn a_stack_has_one_foot() {
     let elastic = |drums: usize| {
         ElasticJoints::new(stack(drums), ElasticProperties::of_stiffness(1e9)).unwrap()
     };
-    // Joints that may slip say nothing of safety.
+    // Models with slip are never known to be safe early.
     let models: [(&dyn Model, bool); 4] = [
         (&rigid, true),
         (&rigid.clone().with_options(slipping).unwrap(), false),
@@ -457,13 +459,13 @@ fn four_links_refuse_feet_that_move_differently() {
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 12\n\
                     [elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 1.5\n";
-/// What stands in place of the elastic joints in [`ARCH`]; steps are those of runs in all studies.
+/// Replacements of the elastic joints in [`ARCH`]; the steps are those of runs in all studies.
 const RIGID: [&str; 2] = [
     "[free_hinges]\nlongest_step_s = 3e-4\n",
     "[free_hinges]\nlongest_step_s = 3e-4\nfriction_coefficient = 1.0\n",
 ];
 
-/// [`ARCH`] with elastic joints, and with rigid ones.
+/// [`ARCH`] with elastic joints, and with each of [`RIGID`].
 fn arches() -> [String; 3] {
     let rigid =
         |joints: &str| ARCH.replace("[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n", joints);
@@ -518,11 +520,11 @@ fn scenarios_have_a_right_foot_in_three_ways() {
     {
         assert!((one - other).norm() < 1e-14 && one.norm() > 1e-3);
     }
-    // A wave that goes to the left reaches the right foot first.
+    // A wave travelling to the left reaches the right foot first.
     let back = foot("apparent_velocity_m_s = -200.0");
     let [left_s, right_s] = back.ground_motion().ends_s();
     assert!((left_s - right_s - apart_m / 200.0).abs() < 1e-12);
-    // What varies in a study varies here.
+    // Keys that vary in a study apply to feet as well.
     let varied = late.with_values(&[
         ("ground.right.delay_s", 0.1),
         ("ground.one_sine.amplitude_g", 0.2),
@@ -602,7 +604,7 @@ fn assert_reports_feet(folder: &Path) -> String {
     said
 }
 
-/// A run whose right foot begins before time zero begins there in every file.
+/// If the right foot starts before time zero, every file of the run starts then.
 #[test]
 fn files_of_a_run_start_when_the_right_foot_starts() {
     let folder = tempfile::tempdir().unwrap();
@@ -631,7 +633,7 @@ fn files_of_a_run_start_when_the_right_foot_starts() {
         assert!((-0.052..begins).contains(&events_s[0]), "{events_s:?}");
         let picture = fs::read_to_string(results.join("history.svg")).unwrap();
         let picture = Document::parse(&picture).unwrap();
-        // The curves of all panels begin at the left edge of the frame, and none left of it.
+        // The curves of all panels begin at the left edge of the frame, and none lies left of it.
         let left = |name: &str| -> f64 {
             let path = named(&picture, name)[0].attribute("d").unwrap();
             path[1..].split([' ', 'L']).next().unwrap().parse().unwrap()
@@ -648,7 +650,7 @@ fn files_of_a_run_start_when_the_right_foot_starts() {
     }
 }
 
-/// The commands of the page of feet print the numbers shown.
+/// The commands in docs/two-feet.md print the output shown there.
 #[test]
 fn commands_print_the_output_shown_in_docs_two_feet() {
     let folder = tempfile::tempdir().unwrap();
@@ -672,7 +674,7 @@ fn study_both_feet(arch: &str, folder: &Path) {
     write(folder, "s.toml", &feet);
     let alike = format!("{arch}{PULSE}");
     write(folder, "alike.toml", &alike);
-    // A factor of two on both feet is a pulse of twice the amplitude under both.
+    // A factor of two on both feet equals a pulse of twice the amplitude under both.
     let peak_rad = |file: &str| {
         let arguments = [
             "threshold",
@@ -798,7 +800,7 @@ fn invalid_feet_are_refused() {
         &["verify", "late.toml"],
         &["leave [ground.right] out"],
     );
-    // Limit analysis asks for no ground.
+    // Limit analysis needs no ground motion.
     let alike = printed(folder.path(), &["limit", "late.toml"]);
     write(folder.path(), "late.toml", &format!("{ARCH}{PULSE}"));
     assert_eq!(alike, printed(folder.path(), &["limit", "late.toml"]));

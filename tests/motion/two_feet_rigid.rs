@@ -16,7 +16,7 @@ use nalgebra::{Rotation2, Vector2, Vector3};
 use crate::common::{GRAVITY, pulse, ring, run_sampled, sampled};
 
 const RADIUS_M: f64 = 5.0;
-/// Of joints that slip.
+/// Friction coefficient of the joints that may slip.
 const FRICTION: f64 = 1.5;
 
 fn row(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
@@ -30,7 +30,7 @@ fn row(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     .unwrap()
 }
 
-/// Joints that do not slip, and joints that may.
+/// The row with joints that cannot slip, and with joints that may slip.
 fn models(row: &Row) -> [FreeHinges; 2] {
     let model = FreeHinges::new(row.clone()).unwrap();
     [model.clone(), slipping(model)]
@@ -44,7 +44,7 @@ fn slipping(model: FreeHinges) -> FreeHinges {
     model.with_options(options).unwrap()
 }
 
-/// The same in steps that are at most so long.
+/// The model with steps of at most this length.
 fn in_steps_of(longest_step_s: f64, model: &FreeHinges) -> FreeHinges {
     let options = RowOptions {
         longest_step_s: Some(longest_step_s),
@@ -54,7 +54,7 @@ fn in_steps_of(longest_step_s: f64, model: &FreeHinges) -> FreeHinges {
     model.clone().with_options(options).unwrap()
 }
 
-/// The foot goes so far to the right and up, in so long a time: as a cycloid, by an acceleration of one sine.
+/// Motion of the right foot by one sine of acceleration: its final displacement to the right and upwards, and its duration.
 #[derive(Clone, Copy)]
 struct Way {
     way_m: [f64; 2],
@@ -70,14 +70,15 @@ impl Way {
         GroundMotion::still().with_right_foot(right.unwrap())
     }
 
-    /// Where it is.
+    /// Displacement of the foot at a time.
     fn at_m(&self, time_s: f64) -> Vector2<f64> {
         let part = (time_s / self.lasts_s).min(1.0);
         Vector2::from(self.way_m) * (part - (TAU * part).sin() / TAU)
     }
 }
 
-/// Where the middle one of three pins with bars between them is, above them, when the outer ones are there: where two circles meet.
+/// Position of the middle of three pins joined by bars, for these positions of the outer pins: the upper intersection of two
+/// circles.
 fn middle_m(pins: [Vector2<f64>; 3], left: Vector2<f64>, right: Vector2<f64>) -> Vector2<f64> {
     let [own, other] = [pins[0], pins[2]].map(|pin| (pins[1] - pin).norm());
     let span = (right - left).norm();
@@ -87,20 +88,20 @@ fn middle_m(pins: [Vector2<f64>; 3], left: Vector2<f64>, right: Vector2<f64>) ->
     left + unit * along + Vector2::new(-unit.y, unit.x) * up
 }
 
-/// How a bar has turned.
+/// Rotation of a bar whose ends have moved, anticlockwise.
 fn turned_rad([from, to]: [Vector2<f64>; 2], [moved_from, moved_to]: [Vector2<f64>; 2]) -> f64 {
     let angle = |bar: Vector2<f64>| bar.y.atan2(bar.x);
     angle(moved_to - moved_from) - angle(to - from)
 }
 
-/// A block between pins: where its centre is, and how it has turned, when two of its points have moved.
+/// Centre and rotation of a block after two of its points, the ends of `bar`, have moved.
 fn moved(block: &Block, bar: [Vector2<f64>; 2], bar_moved: [Vector2<f64>; 2]) -> Vector3<f64> {
     let turn = turned_rad(bar, bar_moved);
     let centre = bar_moved[0] + Rotation2::new(turn) * (block.centre_m - bar[0]);
     Vector3::new(centre.x, centre.y, turn)
 }
 
-/// Two blocks on three hinges: nothing but the right foot decides where they are.
+/// Two blocks on three hinges: the position of the right foot determines theirs.
 struct ThreeHinges<'a> {
     row: &'a Row,
     pins: [Vector2<f64>; 3],
@@ -114,7 +115,7 @@ impl<'a> ThreeHinges<'a> {
         Self { row, pins }
     }
 
-    /// Centres and rotations of the blocks when the foot has gone so far.
+    /// Centres and rotations of the blocks for a displacement of the right foot.
     fn blocks(&self, apart_m: Vector2<f64>) -> [Vector3<f64>; 2] {
         let [left, crown, right] = self.pins;
         let crown_moved = middle_m(self.pins, left, right + apart_m);
@@ -125,7 +126,7 @@ impl<'a> ThreeHinges<'a> {
         ]
     }
 
-    /// Energy above that where it was built, on the way of the foot.
+    /// Kinetic and potential energy relative to the undeformed arch at rest.
     fn energy_j(&self, way: &Way, time_s: f64) -> f64 {
         const H: f64 = 1e-4;
         let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(way.at_m(time_s + by)));
@@ -148,7 +149,7 @@ fn open_joints(sample: &Sample) -> Vec<usize> {
     sample.hinges.iter().map(|open| joint(open.hinge)).collect()
 }
 
-/// The right springing has gone so far to the right and up, slowly.
+/// Supports whose right springing has moved slowly to the right and upwards by these distances.
 fn gone([right_m, up_m]: [f64; 2]) -> Movements {
     Movements {
         left: Movement::default(),
@@ -160,7 +161,7 @@ fn gone([right_m, up_m]: [f64; 2]) -> Movements {
     }
 }
 
-/// Two voussoirs have three joints: they turn about all of them as the foot goes, and are where the closed form says.
+/// Two voussoirs hinge at all three joints as the foot moves, and follow the closed form.
 #[test]
 fn three_hinges_follow_the_foot() {
     let row = row(157.5, 0.15, 2);
@@ -172,20 +173,20 @@ fn three_hinges_follow_the_foot() {
             let (history, samples) = run_sampled(&model, &way.ground(), &request);
             for sample in &samples {
                 let apart_m = way.at_m(sample.time_s);
-                // The program sums what the foot goes in every step.
+                // The program sums the displacements of the foot over all steps.
                 assert!((sample.feet_apart_m - apart_m).norm() < 1e-13);
                 let due = three.blocks(apart_m);
                 for (rotation_rad, due) in sample.rotations_rad.iter().zip(due) {
-                    // Joints that may slip make up for what a step misses in the next one.
+                    // With slip, each step corrects the position error of the previous one.
                     assert!((rotation_rad - due.z).abs() < 1e-10, "{rotation_rad} {due}");
                 }
                 let due_j = three.energy_j(&way, sample.time_s);
-                // Differences over 0.1 ms in the closed form, and the square of the step in the program.
+                // The closed form uses differences over 0.1 ms; the program has an error of the square of its step.
                 assert!((sample.energy_j - due_j).abs() < 2e-3, "{due_j}");
             }
             let last = samples.last().unwrap();
             assert_eq!(open_joints(last), [0, 1, 2]);
-            // At its end the foot has done all the work.
+            // At the end, the work of the foot equals the energy.
             let row = history.summary.row().unwrap();
             let due_j = three.energy_j(&way, 1.1 * lasts_s);
             let work_j = row.right_foot_j;
@@ -193,7 +194,7 @@ fn three_hinges_follow_the_foot() {
             assert_eq!((history.summary.impacts, row.ground_j), (0, 0.0));
             assert!(row.energy_taken_j.abs() < 1e-5, "{}", row.energy_taken_j);
         }
-        // The same from springings that have moved: rotations are told from there.
+        // On moved springings the motion is the same; rotations count from the settled position.
         let from_m = [0.1, -0.05];
         let model = FreeHinges::new(row.clone()).unwrap();
         let settled = model.on_supports(&gone(from_m)).unwrap();
@@ -209,7 +210,8 @@ fn three_hinges_follow_the_foot() {
     }
 }
 
-/// A tie from the ground at the right foot to the left block pulls as it is stretched, and the foot works against it.
+/// A tie connects the ground at the right foot to the left block. Its force follows its elongation, and the foot works against
+/// it.
 #[test]
 fn a_ground_tie_follows_the_foot() {
     let row = row(157.5, 0.15, 2);
@@ -249,7 +251,7 @@ fn a_ground_tie_follows_the_foot() {
             let [tie] = sample.ties[..] else {
                 panic!("one tie");
             };
-            // Joints that may slip are where they should be to a tenth of a nanometre here.
+            // With slip, positions are accurate to a tenth of a nanometre here.
             assert!((tie.force_n - due_n).abs() < 1e-4, "{tie:?} {due_n}");
         }
         let [first_n, last_n] = [0.0, 1.05].map(force_n);
@@ -261,8 +263,8 @@ fn a_ground_tie_follows_the_foot() {
     }
 }
 
-/// Three blocks on four hinges between feet of which each has its own acceleration: beside an integration of the one angle that is left,
-/// by Lagrange's equation with differences of the positions, that shares nothing with the program.
+/// Three blocks on four hinges between feet with different accelerations. The reference integrates Lagrange's equation for the
+/// single free angle, with finite differences of the positions, and shares nothing with the program.
 #[test]
 fn four_hinges_between_two_feet_obey_lagranges_equation() {
     const H: f64 = 1e-4;
@@ -275,7 +277,7 @@ fn four_hinges_between_two_feet_obey_lagranges_equation() {
         Edge::Intrados,
     ];
     let pins = [0, 1, 2, 3].map(|joint: usize| row.joints[joint].corner_m(edges[joint]));
-    // Beside the left foot.
+    // Relative to the left foot.
     let blocks = |angle: f64, time_s: f64| {
         let right = pins[3] + (right_m_s2 - left_m_s2) * (0.5 * time_s * time_s);
         let second = pins[0] + Rotation2::new(angle) * (pins[1] - pins[0]);
@@ -329,12 +331,12 @@ fn four_hinges_between_two_feet_obey_lagranges_equation() {
             assert_eq!(open_joints(sample), [0, 1, 2, 3]);
             let due = blocks(state[0], time_s);
             for (rotation_rad, due) in sample.rotations_rad.iter().zip(due) {
-                // Measured 7e-10: the square of the step, and rounding of the differences.
+                // Measured 7e-10: the square of the step, and rounding in the finite differences.
                 assert!((rotation_rad - due.z).abs() < 3e-9, "{rotation_rad} {due}");
             }
         }
         assert!(state[0] > 0.01, "{state:?}");
-        // No impact took energy, so the two works are what it has, but for those in half a step, by which they lag behind.
+        // No impact took energy, so the energy is the sum of both works, except for half a step by which they lag behind.
         let [.., before, last] = &samples[..] else {
             panic!("samples");
         };
@@ -344,7 +346,7 @@ fn four_hinges_between_two_feet_obey_lagranges_equation() {
         let lags_j = 0.5 * step_s * (last.energy_j - before.energy_j) / sampled_s;
         let missing_j = last.energy_j - of_row.ground_j - of_row.right_foot_j;
         assert!(of_row.ground_j > 1e3, "{of_row:?}");
-        // Measured 0.7 %: the power is taken to be what it was on average since the sample before.
+        // Measured 0.7 %: the reference takes the average power since the previous sample.
         assert!(
             (missing_j / lags_j - 1.0).abs() < 0.02,
             "{missing_j} {lags_j}"
@@ -352,7 +354,7 @@ fn four_hinges_between_two_feet_obey_lagranges_equation() {
     }
 }
 
-/// The energy between two feet closes with the square of the step.
+/// The energy balance of an arch on two feet closes with the square of the step.
 #[test]
 fn the_energy_closes_with_the_square_of_the_step() {
     let row = row(157.5, 0.15, 2);
@@ -374,18 +376,19 @@ fn the_energy_closes_with_the_square_of_the_step() {
     }
 }
 
-/// A pulse that reaches the right foot late.
+/// A pulse that reaches the right foot after a delay.
 fn late(amplitude_g: f64, lasts_s: f64, delay_s: f64) -> GroundMotion {
     let ground = pulse(Pulse::OneSine, amplitude_g, lasts_s);
     let late = ground.late_by(delay_s).unwrap();
     ground.with_right_foot(late)
 }
 
-/// With the work of the foot in it, an impact takes half the square of the velocities that it changes, by mass: never less than nothing.
+/// Including the work of the foot, an impact dissipates half of mass times the squared change of velocity, which is never
+/// negative.
 #[test]
 fn impacts_between_two_feet_take_energy() {
     let row = row(157.5, 0.15, 12);
-    // Joints that may slip make up for what a step misses in the next one: measured 1.4e-9.
+    // With slip, each step corrects the position error of the previous one: measured 1.4e-9.
     for (model, tolerance) in models(&row).into_iter().zip([0.0, 1e-8]) {
         let (history, _) = run_sampled(&model, &late(0.7, 0.4, 0.1), &sampled(1.0, 0.01));
         let mut impacts = 0;
@@ -401,8 +404,8 @@ fn impacts_between_two_feet_take_energy() {
     }
 }
 
-/// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
-/// pieces.
+/// Two feet with equal motions are equivalent to one ground: bit-identical if the motions are written alike, and up to rounding
+/// if one is cut into other pieces.
 #[test]
 fn feet_with_equal_motions_equal_one_ground() {
     let row = row(157.5, 0.15, 12);
@@ -438,8 +441,8 @@ fn feet_with_equal_motions_equal_one_ground() {
     }
 }
 
-/// The mirror image of an arch whose feet are exchanged moves as its mirror image; since positions count from the left foot, the two are
-/// computed on ground that moves differently: the same up to the square of the step.
+/// The mirror image of an arch with exchanged feet moves as its mirror image. Positions count from the left foot, so the ground
+/// motions of the two computations differ; results agree up to the square of the step.
 #[test]
 fn mirrored_feet_move_a_mirrored_arch() {
     let row = row(157.5, 0.15, 12);
@@ -470,12 +473,13 @@ fn mirrored_feet_move_a_mirrored_arch() {
                 worst = worst.max((rotation + image).abs());
             }
         }
-        // Measured 7e-9: the square of the step, and the order of what happens within one.
+        // Measured 7e-9: the square of the step, and the order of events within a step.
         assert!(worst < 1e-7, "{worst:e}");
     }
 }
 
-/// A foot that moves for 10 s ends where springings that have moved so far let the arch rest: three hinges leave no other place.
+/// After a foot has moved slowly for 10 s, the arch is in its equilibrium on springings moved by the same amount: three hinges
+/// allow no other position.
 #[test]
 fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let row = row(157.5, 0.15, 12);
@@ -506,7 +510,7 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     }
 }
 
-/// An arch falls between feet that slowly go farther apart than springings may, and not before.
+/// An arch falls once its feet have slowly moved apart by the movement capacity of its springings, and not before.
 #[test]
 fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
     let row = row(157.5, 0.15, 20);
@@ -525,7 +529,7 @@ fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
         let summary = model.simulate(&way.ground(), &request, None).unwrap();
         if part > 1.0 {
             assert!(matches!(summary.outcome, Outcome::Overturned(_)));
-            // The last hundredths of the way take a second or two.
+            // The last hundredths of the movement take a second or two.
             assert!(summary.outcome_time_s > 7.0, "{}", summary.outcome_time_s);
         } else {
             assert_eq!(summary.outcome, Outcome::Rest);
@@ -533,7 +537,7 @@ fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
     }
 }
 
-/// Elastic joints tend to rigid ones under a late right foot: the first peak, stiffness for stiffness.
+/// Under a delayed right foot, the first peak with elastic joints tends to that with rigid joints as the stiffness grows.
 #[test]
 fn stiff_joints_tend_to_rigid_ones() {
     let row = row(157.5, 0.15, 12);

@@ -93,7 +93,8 @@ fn least_thickness_of_a_semicircle_against_friction() {
         (0.325, 0.179, 0.1776),
         (0.31, 0.196, 0.1953),
     ] {
-        // Well below it also stands, with hardly more friction; well above it needs more friction again.
+        // Well below this thickness the arch also stands, with little more friction; well above it, more friction is needed
+        // again.
         let ratio = least(0.1, 0.2, |ratio| {
             stands(&row(ratio), coefficient) == Ok(true)
         });
@@ -104,7 +105,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
             assert!((own - coefficient).abs() < 1e-5, "{coefficient}: {own}");
         }
     }
-    // With more friction than that, the thickness for no sliding is enough; with less than this, no thickness is.
+    // With more friction than this, the thickness for no sliding suffices; with less, no thickness does.
     let without = least(0.05, 0.2, |ratio| falls(&row(ratio)).unwrap().is_none());
     assert!((without - 0.1068).abs() < 5e-5, "{without}");
     let ratios = (0..40).map(|step| 0.11 + 0.01 * f64::from(step));

@@ -22,7 +22,7 @@ fn release(rotation_rad: f64) -> Option<Initial> {
     })
 }
 
-/// On ground with a constant upward acceleration everything is as with more gravity.
+/// A constant upward acceleration of the ground is equivalent to more gravity.
 #[test]
 fn a_steady_vertical_acceleration_is_gravity() {
     let arch = semicircle();
@@ -96,8 +96,8 @@ fn uplift_starts_at_the_tilt_of_gravity() {
         assert_eq!(outcome(1.0 - 1e-9), Outcome::NeverMoved);
         assert_ne!(outcome(1.0 + 1e-3), Outcome::NeverMoved);
     }
-    // The ground takes weight away while its push decreases: the largest tilt is neither at
-    // the largest push nor at the largest fall, and lasts for a moment.
+    // The vertical motion reduces the weight while the push decreases: the largest tilt occurs neither at the largest push nor at
+    // the largest downward acceleration, and lasts for an instant.
     let tilt = |t: f64| (1.2 - 0.3 * t) / (G - 4.0 * t.min(2.0 - t));
     assert!(tilt(1.0) > incipient && tilt(0.7) < incipient && tilt(1.1) < incipient);
     let ground = GroundMotion::record(
@@ -270,7 +270,8 @@ proptest! {
     }
 }
 
-/// No model follows a structure that the ground leaves: `run` refuses such ground, and `threshold` and `map` have no histories on it.
+/// No model follows a structure on ground that falls away: `run` refuses such ground, and `threshold` and `map` have no histories
+/// on it.
 #[test]
 fn ground_that_falls_away_has_no_history_in_any_model() {
     let folder = tempfile::tempdir().unwrap();

@@ -108,7 +108,8 @@ fn free_hinges_in_a_dark_browser() {
     check("free-hinges.toml", &names, 4, &["--force-dark-mode"]);
 }
 
-/// What overturns falls on the page until a block has turned by 45 degrees, whatever moves it; no table has the fall.
+/// An overturning structure falls on the page until a block has rotated by 45 degrees, with every model; no table contains the
+/// fall.
 #[test]
 fn a_fall_is_drawn_but_not_tabulated() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 17\n\
@@ -159,11 +160,11 @@ fn a_fall_is_drawn_but_not_tabulated() {
     }
     assert!(
         fallen >= 3,
-        "those that overturn before they have turned so far: {fallen}"
+        "cases that overturn before a block has rotated so far: {fallen}"
     );
 }
 
-/// An arch with all that it can have beside it under a scaled record, as wide as a phone, and on paper.
+/// An arch on piers with fill and loads under a scaled record, on a page as wide as a phone, and on paper.
 #[test]
 fn an_arch_on_piers_on_a_phone_and_on_paper() {
     let folder = tempfile::tempdir().unwrap();
@@ -192,7 +193,7 @@ fn an_arch_on_piers_on_a_phone_and_on_paper() {
     assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
 }
 
-/// The frames of a film are numbered, evenly spaced in time, and go with the next run.
+/// The frames of a film are numbered and evenly spaced in time, and the next run removes them.
 #[test]
 fn a_film_is_numbered_pictures() {
     let folder = tempfile::tempdir().unwrap();
@@ -232,7 +233,7 @@ fn a_film_is_numbered_pictures() {
         let time = format!(">{:.3} s, ", 0.05 * f64::from(number - 1));
         assert!(frame.contains(&time), "{time}");
     }
-    assert!(frames("5").len() < due / 3, "old ones go");
+    assert!(frames("5").len() < due / 3, "old frames are removed");
     let said = program::refusal(&program::archrock(
         folder.path(),
         &["run", own, "--exaggerate", "3"],
@@ -267,7 +268,7 @@ fn text_of_the_scenario_cannot_break_the_page() {
     let output = program::archrock(folder.path(), &["run", "odd.toml", "--out", "."]);
     assert!(output.status.success(), "{}", program::stderr(&output));
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
-    assert!(!page.contains("<script>alert"), "a title stays text");
+    assert!(!page.contains("<script>alert"), "a title is shown as text");
     assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt; %DATA% &amp; more"));
     assert_eq!(data_of(&page)["bodies"], json!([""]));
 }

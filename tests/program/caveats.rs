@@ -63,7 +63,7 @@ fn four_links_are_a_rough_guide_in_every_study() {
     }
 }
 
-/// A run follows the line of thrust, and its summary has the numbers of the words and the warnings.
+/// A run follows the line of thrust, and its summary has the printed numbers and warnings.
 #[test]
 fn the_summary_lists_the_warnings() {
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +94,7 @@ fn the_summary_lists_the_warnings() {
         assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
         assert!(stderr(&output).contains(&format!("warning: {unlikely}")));
     }
-    // Statics warn of them too.
+    // Static commands give these warnings too.
     for command in ["limit", "capacity"] {
         let said = stderr(&archrock(at, &[command, "s.toml"]));
         assert!(
@@ -112,7 +112,8 @@ fn the_summary_lists_the_warnings() {
     assert!(warnings(&json(&at.join("o/summary.json"))).is_empty());
 }
 
-/// On springings that have moved far a small fraction of its own strength starts an arch, which says nothing about the unit of a pulse.
+/// On springings that have moved far, a small fraction of the strength of the undeformed arch starts motion; this raises no doubt
+/// about the unit of a pulse.
 #[test]
 fn moved_springings_cause_no_warning_about_units() {
     let arch = format!(
@@ -125,7 +126,7 @@ fn moved_springings_cause_no_warning_about_units() {
     let starts = starts.map(|sway| model.incipient_acceleration_g(sway).unwrap());
     assert!(starts[0].min(starts[1]) < 0.7 / 20.0, "{starts:?}");
     assert_eq!(scenario.unlikely(), [""; 0]);
-    // A pulse in another unit is found all the same.
+    // A pulse in a wrong unit still causes the warning.
     let strong = parsed(&arch.replace("= 0.7\nd", "= 30\nd"));
     assert!(strong.unlikely()[0].contains("in units of gravity"));
 }

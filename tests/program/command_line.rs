@@ -108,7 +108,7 @@ fn every_scenario_of_the_repository_runs_and_describes_itself() {
             text.starts_with("# ") && text.contains("\ntitle = "),
             "{path:?}"
         );
-        // What repetitions say is another matter, and takes most of the time.
+        // The results of repetitions are tested elsewhere, and take most of the time.
         let repeated = ["[free_hinges]", "[elastic_joints]"];
         let more = repeated.iter().any(|table| text.contains(table));
         let more = if more { &["--no-repeat"][..] } else { &[] };
@@ -407,7 +407,7 @@ fn rotations_go_to_standard_output_and_nothing_else_is_written() {
     assert_eq!((fields[3], fields[6]), ("left", "0.001"));
 }
 
-/// The repetitions of this run would take minutes, and nobody reads its output.
+/// The repetitions of this run would take minutes, and its output has no reader.
 #[test]
 fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -431,7 +431,7 @@ fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     );
 }
 
-/// If it overturned, the rotation at the end of the run means nothing.
+/// After overturning, the rotation at the end of the run means nothing.
 #[test]
 fn an_overturned_run_prints_no_largest_rotation() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The program under bad circumstances: killed, with nobody reading its output, out of space, and with very much to write.
+//! The program in adverse conditions: killed, without a reader of its output, on a full disk, and with very long output.
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stderr, reason = "tests")]
 
@@ -96,8 +96,8 @@ fn a_killed_run_leaves_complete_results_or_none() {
     assert!(spawn(0).wait().unwrap().success());
     let mut whole = begin.elapsed();
     assert!(check_results(&folder, 40.0));
-    // Delays are spread over the run by the golden ratio, and denser at its end, when the files get their names;
-    // the machine adds randomness, and may be faster or slower by now: a run that ends in time shortens the next.
+    // Delays are spread over the run by the golden ratio, more densely at its end, when the files get their names. The machine
+    // adds randomness and may be faster or slower by now: a run that ends in time shortens the next.
     let (mut killed, mut finished) = (0, 0);
     for turn in 1..=24_u32 {
         let part = (f64::from(turn) * 0.618_033_988_75).fract();
@@ -263,7 +263,7 @@ fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
         .args([&folder, &scenario])
         .spawn()
         .unwrap();
-    // When something is on the disk the tables are open; the folder was locked before they were created.
+    // Once a file exists the tables are open; the folder was locked before they were created.
     let begun = || {
         fs::read_dir(&folder).is_ok_and(|mut files| {
             files

@@ -63,7 +63,7 @@ fn the_printed_json_summary_equals_the_file() {
     assert_eq!(printed["outcome"], "rest");
 
     let both: Value = serde_json::from_str(&stdout(&run(&["--hinges", "both"]))).unwrap();
-    // The time that a step takes differs every time.
+    // The computing time of a step varies.
     let mut printed = printed;
     printed["longest_step_us"] = both["free"]["longest_step_us"].clone();
     assert_eq!(both["free"], printed);

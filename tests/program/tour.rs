@@ -8,7 +8,7 @@ use crate::common::motions::{NGA_WEST2, at2, scaled, synthetic};
 use crate::common::program::{assert_shown_output_is_printed, scenarios};
 use archrock::Scenario;
 
-/// The two records of the tour, made as their titles say: the first as a PEER file of 0.45 g, the second as a table of
+/// The two records of the tour, generated as their titles describe: the first as a PEER file of 0.45 g, the second as a table of
 /// 380 cm/s2 after three lines of text.
 fn records() -> [(&'static str, String); 2] {
     let first = scaled(&synthetic(11, 16.0, 0.01), 0.45);

@@ -1,4 +1,4 @@
-//! Records as people have them: what `check` and `run` report about them, formats, and unlikely input.
+//! Records in common file formats: output of `check` and `run` about them, and unlikely input.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -224,7 +224,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.contains("single.csv:2: there is no column 2"),
         "{said}"
     );
-    // Files that are right are described, and those that are wrong are reported.
+    // Valid files are described, and faulty ones are reported.
     let output = check(&["g.AT2", "none.at2", "s.toml"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("none.at2: cannot be read"));
@@ -391,7 +391,7 @@ fn unlikely_input_is_pointed_out() {
     }
 }
 
-/// If weights differ by more than numbers can resolve, the error says so; otherwise there is no error.
+/// If weights differ by more than floating point can resolve, the error says so; otherwise there is no error.
 #[test]
 fn blocks_too_unlike_in_weight_are_named() {
     let folder = tempfile::tempdir().unwrap();

@@ -29,7 +29,7 @@ fn assert_errors(text: &str, expected: &[(usize, usize, &[&str])]) {
     }
 }
 
-/// As `assert_errors`, for lines that follow a valid `[arch]`, counted from 1.
+/// Asserts the error of lines that follow a valid `[arch]`; its line is counted from 1.
 #[track_caller]
 fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &[&str]) {
     let before = ARCH.lines().count();
@@ -897,7 +897,7 @@ fn messages_show_characters_without_width() {
     }
 }
 
-/// A pedestal is recorded for a column, for both piers or for one; everything else stands on ground that continues.
+/// A pedestal is read for a column, for both piers or for one; everything else stands on unlimited ground.
 #[test]
 fn pedestals() {
     let goes_on = |text: &str| {

@@ -128,7 +128,7 @@ fn dimensions_are_printed_as_given() {
     assert_eq!((arch.mean_radius_m, arch.thickness_ratio), (6.0, 0.15));
 }
 
-/// Every structure says where y = 0 is, and a tie where it lies beside the springings.
+/// `check` states for every structure where y = 0 lies, and for a tie its position relative to the springings.
 #[test]
 fn check_states_the_frame_of_reference() {
     let tie = "[[tie]]\nstiffness_n_m = 1e7\nheight_m = ";

@@ -18,7 +18,7 @@ use crate::common::results::json;
 
 /// A slender block that rocks for two seconds.
 fn block(more: &str) -> String {
-    // With given steps those of a map are those of a run.
+    // With given steps, a map uses the steps of a run.
     format!(
         "[column]\nheight_m = 5.0\nwidth_m = 1.0\n\
          [elastic_joints]\nnormal_stiffness_gpa_m = 0.5\ndamping_time_s = 1e-3\nfriction_coefficient = 0.5\n\

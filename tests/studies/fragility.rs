@@ -258,7 +258,7 @@ fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
     }
     for eta in [-1.5, -0.5, 0.0, 1.0, 2.0] {
         let coverage = repeated.coverage(MEDIAN * (dispersion * eta).exp(), normal(eta));
-        // The larger of two errors is a little too large.
+        // The larger of the two errors is slightly too large.
         assert!((0.925..0.985).contains(&coverage), "{eta} {coverage}");
     }
 }

@@ -192,7 +192,8 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     let hatch = picture.lines().find(|line| line.contains("\"doubtful\""));
     assert_eq!(hatch.unwrap().matches('M').count(), doubtful);
 
-    // Without it less is repeated: cells that overturn at once are not, though steps this long blur their edge too.
+    // Without this option fewer cells are repeated: cells that overturn at once are not, although such long steps blur their edge
+    // too.
     let plain = parsed(&text(""));
     let map = OverturningMap::of(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
@@ -334,11 +335,11 @@ fn results_do_not_depend_on_threads_and_parts() {
     assert_eq!(files(&path.join("merged")), whole);
 }
 
-/// With steps far too long the ends of an arch may part in the computation. The reason for the failure of such a cell passes
+/// With far too long steps the ends of an arch may separate in the computation. The reason for the failure of such a cell passes
 /// from the part file to the merged results.
 #[test]
 fn a_cell_that_fails_keeps_its_reason_to_the_end() {
-    // Rounding decides which steps do that; among a few, there is one with which some cells fail.
+    // Rounding decides which steps cause this; among a few, one makes some cells fail.
     let steps_s = [0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.3, 0.5];
     let found = steps_s.into_iter().find_map(|step_s| {
         let text = format!(

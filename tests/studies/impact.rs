@@ -24,7 +24,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&printed(folder, &arguments)).unwrap()
 }
 
-/// The same output, where the ring has a section in degrees and the row the number of its joint.
+/// Asserts equal outputs of a row and a ring, where the ring has sections in degrees and the row has joint numbers.
 fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     match (row, ring) {
         (Value::Object(row), Value::Object(ring)) => {
@@ -60,8 +60,7 @@ fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     }
 }
 
-/// Voussoirs of equal angles that are given one by one are a row of blocks for the program; given as a number they are cut from
-/// a ring.
+/// Equal voussoirs given one by one form a row of blocks; equal voussoirs given by their number are cut from a ring.
 #[test]
 fn equal_voussoirs_given_one_by_one_have_the_impact_of_the_ring() {
     let folder = tempfile::tempdir().unwrap();

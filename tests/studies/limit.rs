@@ -199,7 +199,7 @@ fn published_accelerations_and_hinges() {
         );
         assert_hinges(found.mechanism.hinges_rad, hinges, 0.5e-5);
     }
-    // The paper's own figure.
+    // The value printed in the paper.
     let semicircle = incipient(&ring(0.15, 180.0), HingeSites::Anywhere).unwrap();
     assert!((semicircle.acceleration_g - 0.1443).abs() <= 0.5e-4);
 
@@ -413,7 +413,7 @@ fn critical_and_limit_rotations() {
     assert!((critical - 0.069_065).abs() <= 0.5e-6, "{critical}");
 }
 
-/// The verdict of a reference that has one; otherwise another case is tried, which may happen only a few times.
+/// The answer of the reference if it has one; otherwise another case is tried, which may happen only a few times.
 fn judged<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
     verdict.ok_or_else(|| TestCaseError::reject("no verdict"))
 }
@@ -462,7 +462,7 @@ proptest! {
                 }
             }
             Err(LimitError::OtherMechanism(acceleration_g)) => {
-                // The test's own programme finds no starting corner in some of these rings.
+                // The programme of the test finds no starting corner in some of these rings.
                 let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
                 // Statics at 180 sections constrains the line less than the whole ring would, by the square of their
                 // distance; the mechanism is the best one even where its hinges merge.
@@ -488,7 +488,7 @@ proptest! {
             (HingeSites::Voussoirs(voussoirs), joints)
         };
         let room = judged(room_for_a_line(&ring, &sections))?;
-        // The limit allows for what the line may leave the ring between sections, and for the error of the solver.
+        // The tolerance covers how far the line may leave the ring between sections, and the error of the solver.
         if room.abs() > 1e-5 {
             prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
         }
@@ -540,7 +540,7 @@ proptest! {
     }
 }
 
-/// `limit` and `verify` say where each tie is, in the words of `check`.
+/// `limit` and `verify` describe the position of each tie as `check` does.
 #[test]
 fn limit_describes_ties_as_check_does() {
     use crate::common::program::printed;

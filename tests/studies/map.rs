@@ -62,8 +62,8 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     }
 }
 
-/// A pulse to the other side gives the mirror image, to the last bit. An arch four times as large under a pulse
-/// twice as long does what the small one does, in twice the time.
+/// A pulse to the other side gives the mirror image, to the last bit. An arch four times as large under a pulse twice as long has
+/// the motion of the small arch in twice the time.
 #[test]
 fn maps_have_the_symmetries_of_the_mechanics() {
     let text = |map: &str| {
@@ -352,7 +352,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     }
 }
 
-/// However much of a part is left, continuing it gives the same results.
+/// Whatever fraction of a part file is left, resuming it gives the same results.
 #[test]
 fn a_torn_part_is_resumed_to_the_same_results() {
     let folder = folder_with_map(7);
@@ -403,7 +403,7 @@ fn interrupted_work_is_kept_and_not_mixed() {
     fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
     let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
     refused(path, &again, &["3 cases", "--resume", "remove it"]);
-    // A part renamed to another part.
+    // A part file under the name of another part.
     let renamed = ["map", "s.toml", "--out", "r", "--shard", "2/2", "--resume"];
     fs::copy(
         path.join("r/map-1-of-2.part"),

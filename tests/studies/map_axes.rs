@@ -65,7 +65,7 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
     outcomes.dedup();
     assert!(outcomes.len() > 1, "{outcomes:?}");
 
-    // Scaled to a peak: the record's own is 0.3 g.
+    // Scaled to a peak: the record itself has 0.3 g.
     let text = text.replace("scale = [0.5, 1.7, 4]", "peak_g = [0.15, 0.51, 1.2]");
     for (by_peak, by_scale) in rows(path, &text, &[]).iter().zip(&cells) {
         assert_eq!(by_peak["outcome"], by_scale["outcome"]);
@@ -124,7 +124,7 @@ fn every_numeric_key_can_be_an_axis() {
     assert_eq!(stdout(&archrock(path, &["check", "t.toml"])), resolved);
 }
 
-/// A map of pulses may stand beside the record of `run`: only `map` refuses it.
+/// A scenario may contain a map of pulses and a record for `run`; only `map` refuses the combination.
 #[test]
 fn a_scenario_may_have_a_map_of_pulses_and_a_record() {
     let folder = tempfile::tempdir().unwrap();

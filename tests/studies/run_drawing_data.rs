@@ -197,7 +197,7 @@ fn snapshots_that_cannot_be_written_are_reported() {
     run(folder.path(), "semicircle-pulse.toml", &[]);
     assert!(
         !folder.path().join("snapshots.svg").exists(),
-        "those of an earlier run go"
+        "snapshots of an earlier run are removed"
     );
     let path = scenarios().join("semicircle-pulse.toml");
     let path = path.to_str().unwrap();

@@ -1,4 +1,4 @@
-//! `[elastic_joints]`: what is read, what is refused, and the output of a run.
+//! `[elastic_joints]`: reading, refusals, and the output of a run.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -110,7 +110,8 @@ fn invalid_joint_properties_are_refused_with_their_place() {
     }
 }
 
-/// What a structure does not rest on, and steps that are not stable or too many, are placed at the key that makes them so.
+/// Joints on which a structure has no equilibrium, and steps that are unstable or too many, are reported at the key that causes
+/// this.
 #[test]
 fn unsuitable_joints_and_steps_are_refused_with_their_place() {
     let arch = |keys: &str| {
@@ -206,7 +207,7 @@ fn a_run_reports_joint_forces_and_stresses() {
     assert!(taken_j > 0.0 && taken_j < 0.5 * number("ground_j"));
 }
 
-/// The friction that is needed is that of joints that bear more than a hundredth of the weight: as an arch rocks, others hardly press.
+/// The needed friction counts joints that bear more than a hundredth of the weight; as an arch rocks, others are almost unloaded.
 #[test]
 fn needed_friction_counts_loaded_joints() {
     let folder = tempfile::tempdir().unwrap();
@@ -231,7 +232,7 @@ fn needed_friction_counts_loaded_joints() {
             if *normal_n > 0.0 {
                 of_all = of_all.max(shear_n.abs() / normal_n);
             }
-            // It overturns: what happens while it falls does not count.
+            // The structure overturns: the fall itself does not count.
             if *normal_n > 0.01 * weight_n && *time_s <= until_s {
                 needed = needed.max(shear_n.abs() / normal_n);
             }
@@ -243,7 +244,7 @@ fn needed_friction_counts_loaded_joints() {
     shows(&said, &[told]);
 }
 
-/// The threshold of a block is that of its table, in every study; the same block with rigid joints stands up to 0.5017 g.
+/// Every study gives the threshold of the block in the table; with rigid joints the same block stands up to 0.5017 g.
 #[test]
 fn studies_take_elastic_joints() {
     let folder = tempfile::tempdir().unwrap();
@@ -373,7 +374,7 @@ fn a_run_reports_its_dependence_on_stiffness() {
     let (said, own) = run("own", &elastic("10", points), &alone);
     assert!(!said.contains("  with "), "{said}");
     assert_eq!(own["variations"], serde_json::Value::Null);
-    // With rigid joints the words suggest elastic ones, unless a run with elastic joints stands beside.
+    // With rigid joints the output suggests elastic ones, unless the run also has a model with elastic joints.
     let (said, _) = run("rigid", &arch("[free_hinges]"), &alone);
     assert!(said.contains("--hinges elastic"), "{said}");
     let models = ["--hinges", "free,elastic", "--no-repeat"];
@@ -487,7 +488,7 @@ fn a_threshold_reports_its_dependence_on_stiffness() {
     golden("threshold-elastic", &said);
 }
 
-/// A repetition may overturn too, but to the other side: the verdict names it, and does not claim that all is the same.
+/// A repetition may also overturn, but to the other side: the verdict names it and does not claim agreement.
 #[test]
 fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `archrock run` with free hinges: its files, its words, overriding the scenario, and what it refuses.
+//! `archrock run` with free hinges: its files, its printed output, overriding the scenario, and refusals.
 
 use crate::common::program;
 use crate::common::prose::{golden, shows, skeleton};
@@ -491,8 +491,8 @@ fn differences_of_repetitions_are_printed_and_written() {
     );
 }
 
-/// Three short pushes that make the arch rattle, before one that makes it rock: the half cycles that are reported and judged are those of
-/// the rocking, not the first ones.
+/// Three short pushes make the arch rattle, then a longer one makes it rock. The reported and judged half cycles are those of the
+/// rocking, not the first ones.
 #[test]
 fn the_largest_half_cycles_are_reported() {
     let root = tempfile::tempdir().unwrap();
@@ -549,7 +549,7 @@ fn the_largest_half_cycles_are_reported() {
         "{said}"
     );
     golden("run-free-hinges", &said);
-    // What differs among the repetitions does so after the rattling.
+    // The repetitions differ after the rattling.
     assert!(
         summary["repeatability"]["parts_at_s"]
             .as_f64()
@@ -564,8 +564,7 @@ fn half_cycles_mut(summary: &mut Summary) -> &mut Vec<HalfCycle> {
     }
 }
 
-/// A repetition whose half cycles before the largest differ in number from those of the motion itself, as rattling does, has the same large
-/// ones.
+/// Rattling may change the number of half cycles before the largest one; such a repetition still has the same large half cycles.
 #[test]
 fn half_cycles_are_compared_at_the_same_time() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -590,7 +589,7 @@ fn half_cycles_are_compared_at_the_same_time() {
     let spread = Repeatability::new(&own, &[("double steps", rattles)]);
     assert_eq!(spread.parts_at_s, None);
     assert!(spread.half_cycles.iter().all(|cycle| cycle.is_certain()));
-    // One that has no such half cycle differs there.
+    // A repetition without such a half cycle differs there.
     let mut shorter = own.clone();
     half_cycles_mut(&mut shorter).truncate(1);
     let spread = Repeatability::new(&own, &[("double steps", shorter)]);
@@ -599,7 +598,7 @@ fn half_cycles_are_compared_at_the_same_time() {
     assert_eq!(spread.parts_at_s, Some(own.half_cycles()[1].start_s));
 }
 
-/// A leaning block starts more easily to one side. Ground that pushes to the other side only is compared with what starts it there.
+/// A leaning block starts more easily to one side. Ground that pushes to one side only is compared with the onset on that side.
 #[test]
 fn a_push_is_compared_with_the_onset_on_its_side() {
     let root = tempfile::tempdir().unwrap();
@@ -667,8 +666,8 @@ fn needed_friction_counts_joints_bearing_a_hundredth_of_the_weight() {
     }
 }
 
-/// With steps far too long the ends of the arch may part in the computation, or its energy balance may be wrong. Rounding decides
-/// which steps do that; among a few, one makes a repetition fail but not the history itself.
+/// With far too long steps the ends of the arch may separate in the computation, or its energy balance may fail. Rounding decides
+/// which steps cause this; among a few, one makes a repetition fail but not the history itself.
 #[test]
 fn a_failed_repetition_keeps_the_history_and_its_reason() {
     let scenario = |step_s: f64| {
@@ -857,7 +856,7 @@ fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
     let fallen = released(0.3);
     assert_eq!(fallen["outcome"], "overturned");
     assert_eq!(fallen["overturning_sway"], "left");
-    // Nothing moved except the released body.
+    // Only the released body moved.
     let peak_rad = fallen["peak_rotation_13_rad"].as_f64().unwrap();
     assert!((peak_rad - 0.3).abs() < 1e-12);
 }
@@ -948,7 +947,7 @@ fn slipping_joints_are_reported() {
     let results = Results::of(&slipping, &["--no-repeat"]);
     let summary = results.summary();
     assert_eq!(summary["friction_coefficient"], 0.4);
-    // It has slipped so far down that its height means nothing for overturning.
+    // The block has slipped so far down that its height no longer indicates overturning.
     assert_eq!(summary["peak_potential_over_barrier"], Value::Null);
     assert_eq!(summary["unconverged_steps"], 0);
     let slips_m: Vec<f64> = serde_json::from_value(summary["slips_m"].clone()).unwrap();
@@ -968,7 +967,7 @@ fn slipping_joints_are_reported() {
         assert!((joints.rows.last().unwrap().number(17 + joint) - slip_m).abs() < 1e-9);
     }
     assert_eq!(joints.header.len(), 17 + 8);
-    // Something lands in every impact; a joint that opens again at once turns about the edge that landed.
+    // In every impact a corner lands; a joint that opens again at once turns about that corner.
     let table = Table::read(results.path("impacts.csv"));
     let list = |row: usize, name: &str| -> Vec<&str> {
         table.rows[row][name].split_whitespace().collect()
@@ -1064,7 +1063,7 @@ fn sliding_without_rotation_reports_no_half_cycles() {
     }
 }
 
-/// Another mechanism, which takes less energy than the first, may overturn it.
+/// A mechanism with a lower barrier than the first may overturn the arch.
 #[test]
 fn an_overturned_run_reports_no_fraction_of_the_barrier() {
     let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
@@ -1074,7 +1073,7 @@ fn an_overturned_run_reports_no_fraction_of_the_barrier() {
     let summary = results.summary();
     assert_eq!(summary["outcome"], "overturned");
     assert!(summary["peak_potential_over_barrier"].as_f64().unwrap() < 1.0);
-    // A part of the barrier would suggest that it has not passed it.
+    // A fraction of the barrier would suggest that the arch has not passed it.
     let percent = 100.0 * summary["peak_potential_over_barrier"].as_f64().unwrap();
     assert!(
         !results.said.contains(&format!("{percent:.1} %")),

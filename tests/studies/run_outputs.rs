@@ -1,4 +1,4 @@
-//! Words, page, picture and tables of a run tell the same story: of random scenarios, with every model.
+//! Printed output, page, picture and tables of a run agree, for random scenarios with every model.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use crate::common::program::printed;
 use crate::common::results::{Row, Table, data_of, summary, texts};
 use serde_json::{Value, json};
 
-/// A random structure on a random pulse, and its number of blocks; none if links or a whole column move.
+/// A random structure on a random pulse, and its number of blocks; `None` if links or a whole column move.
 fn scenario(random: &mut Random, model: &str) -> String {
     let voussoirs = 7 + 2 * random.pick(3);
     let structure = if random.pick(2) == 0 {
@@ -132,7 +132,7 @@ fn words_page_picture_and_tables_of_a_run_agree() {
     check_in_a_browser(&shown);
 }
 
-/// What a page has to show: the row of the table with the largest rotation, how it ended, and what was said.
+/// Facts that a page must show: the row of the table with the largest rotation, the outcome, and the printed summary.
 fn facts(told: &Value, rotations: &Table, verdict: &str, happens: &str) -> Value {
     let names = rotations.header.iter();
     let columns: Vec<&String> = names

@@ -74,7 +74,7 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.rows
 }
 
-/// Two records and a table, either multiplied by factors or scaled to peaks.
+/// Two records and a table, multiplied by factors or scaled to peaks.
 fn mixed(levels: &str) -> String {
     format!(
         "{COLUMN}[suite]\nrecords = ['records/wave-[12].at2', 'north, \"old\".csv']\n\
@@ -240,7 +240,7 @@ fn the_curve_is_the_fit_of_the_rows() {
     }
     shows(&said, &[320.0, 8.0, fragility["median"].as_f64().unwrap()]);
     golden("suite", &said);
-    // The words print the edges of capacity.csv, and say where nothing was searched for.
+    // The printed output has the edges of capacity.csv, and states where no edge was searched for.
     let capacities = Table::read(results.join("capacity.csv")).rows;
     for capacity in &capacities {
         let record = format!("  {}: ", &capacity["record"]);
@@ -614,7 +614,7 @@ fn free_heading() -> Heading {
     Heading::of_resolved(scenario, Vec::new()).unwrap()
 }
 
-/// With uncertain cases counted as survived or as overturned, the results are those of suites in which they did so.
+/// If uncertain cases are counted as survived or as overturned, the results equal those of suites in which they did so.
 #[test]
 fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let with = |letter: &str| {
@@ -1217,7 +1217,7 @@ fn capacities_are_reported_in_several_measures() {
         fragility["intensity_measures"][0]["measure"],
         measures[0]["measure"]
     );
-    // Fractiles of three peaks are the least, the middle one and the largest; what overturned is beyond.
+    // The fractiles of three peaks are the smallest, the middle and the largest; overturned cases lie beyond all.
     let ida = Table::read(folder.join("o/ida.csv")).rows;
     for level in &ida {
         let peak_g = level.number("peak_g");
@@ -1271,13 +1271,13 @@ fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
     omega * omega * peak
 }
 
-/// The probability with which a peak is at most this, of those in ascending order or not; what overturned is infinite.
+/// The share of peaks up to a value, for peaks in any order; overturned cases count as infinite.
 fn share(peaks: &[f64], up_to: f64) -> f64 {
     peaks.iter().filter(|peak| **peak <= up_to).count() as f64 / peaks.len() as f64
 }
 
-/// A block rocks alike as Housner's and as a row of one block, so that the distributions of its peaks are as good as one; those of a block
-/// whose Housner restitution is halved are not. The tables of the models give the same peaks, and the distance is that of their
+/// A block rocks equally as Housner's block and as a row of one block, so the distributions of peaks do not differ. Those of a
+/// block with half of Housner's restitution do. The tables of the models give the same peaks, and the distance is that of their
 /// shares.
 #[test]
 fn distributions_of_models_are_compared() {
@@ -1302,7 +1302,7 @@ fn distributions_of_models_are_compared() {
         let rows = table.rows.iter().filter(|row| row["model"] == *model);
         rows.map(|row| row.number("peak_rotation_rad")).collect()
     };
-    // Of Housner's block the critical rotation is the slenderness.
+    // The critical rotation of Housner's block is the slenderness.
     let slenderness_rad = (0.8_f64 / 4.0).atan();
     let mut all = Vec::new();
     for (name, words, column, unit_rad) in [
@@ -1336,13 +1336,13 @@ fn distributions_of_models_are_compared() {
     let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
-    // Peaks that differ by the steps of the row change places, one in fifteen at a time.
+    // Small differences of peaks from the steps of the row may exchange neighbours, one in fifteen at a time.
     assert!(distance < 0.14, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }
 
-    // The same of the samples of a run, with a model that is not alike.
+    // The same comparison for the samples of a run, with a model that differs.
     let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
         + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
            [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";

@@ -159,8 +159,7 @@ fn factor_times_amplitude_counts() {
     assert_eq!(a.gaps().iter().map(doubled).collect::<Vec<_>>(), b.gaps());
 }
 
-/// If vertical motion is so strong that nothing presses the column on the ground, there is no history; the known
-/// range ends there.
+/// If the vertical motion unloads the column completely, there is no history; the known range ends there.
 #[test]
 fn factors_with_free_falling_ground_are_reported() {
     let column = Column::new(4.0, 0.8).unwrap();

@@ -24,9 +24,9 @@ fn rows(text: &str, along: &str, factors: Factors) -> Vec<AlongRow> {
     (0..study.count()).map(|index| study.row(index)).collect()
 }
 
-/// The least factors without impact for some durations of a pulse. No other factor overturns the structure, since none is tried.
+/// The least factors that overturn without impact, for some durations of a pulse.
 pub fn without_impact(text: &str, kind: &str, durations_s: &[f64]) -> Vec<f64> {
-    // The step is so long that the search for the first edge tries the ends alone.
+    // With so long a step the search for an edge with impacts computes only the ends of the range.
     let factors = Factors::new(1e-3, 1e3, 1.0).unwrap();
     let least = |duration_s: &f64| {
         let along = format!(
@@ -97,8 +97,8 @@ fn short_pulses_overturn_by_their_impulse() {
     }
 }
 
-/// Half sine of the frequency `w = b p`, as derived in `tests/motion/column.rs`:
-/// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) = b`.
+/// Half sine of the frequency `w = b p`, as derived in `tests/motion/column.rs`: `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) =
+/// b`.
 #[test]
 fn half_sines_on_slender_columns_agree_with_the_linear_solution() {
     let b = [0.8, 1.5, 3.0, 6.0];
@@ -283,7 +283,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     ];
     refused(at, &other, &["belongs to another study: the options"]);
 
-    // As if it had been killed while writing its third row.
+    // The file looks as if the program had been killed while writing its third row.
     fs::create_dir(at.join("killed")).unwrap();
     let part = fs::read_to_string(at.join(&parts[1])).unwrap();
     let killed = part.replace("\"1/3\"", "\"1/1\"");
